@@ -13,10 +13,14 @@ PARTS = ("c", "fortran", "python", "tests", "cases", "docs", "tools", "meson.bui
 
 
 def copy(place: Path) -> None:
-    """Copy the sources to a folder; files that have not changed keep their times, and a build there stays good."""
+    """Copy the sources to a folder, and take away what they no longer hold; files that have not changed keep their times,
+    and a build there stays good."""
     for part in PARTS:
         source = ROOT / part
         files = [source] if source.is_file() else [p for p in source.rglob("*") if p.is_file()]
+        for old in [p for p in (place / part).rglob("*") if p.is_file()]:
+            if not (ROOT / old.relative_to(place)).exists() and not _made(old):
+                old.unlink()
         for path in files:
             if "__pycache__" in path.parts:
                 continue
@@ -24,6 +28,11 @@ def copy(place: Path) -> None:
             if not target.exists() or target.read_bytes() != path.read_bytes():
                 target.parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(path, target)
+
+
+def _made(path: Path) -> bool:
+    """Whether a build or a run has made a file."""
+    return "__pycache__" in path.parts or path.name.startswith("_core") or path.name == "_build_info.py"
 
 
 def build(place: Path, *options: str) -> None:

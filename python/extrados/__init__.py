@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from extrados.running.sweep import Sweep
 
 __all__ = ["DeckError", "deck", "export", "live", "load", "run", "scene", "sweep", "widget"]
+#: What users may catch
+ERRORS = ("DeckError", "Refused", "StoreError")
 
 
 def deck(structure: Any = None, analysis: Any = None, *, folder: str | Path | None = None, **tables: Any) -> "Deck":
@@ -76,7 +78,7 @@ def sweep(deck: "str | Path | dict[str, Any] | Deck", over: Any, **how: Any) -> 
     resume: a folder beside which finished batches are kept, so that the same call goes on where it was stopped.
 
     Returns a `Sweep`: `.frame()` for pandas, `.dataset()` for xarray, with units. DeckError lists what is wrong with the
-    deck or with a value; what a member is refused for stands in its row.
+    deck or with a value; what a member is refused for stands in its row. Refused where no scheduler answers at an address.
     """
     from extrados.running.sweep import sweep
 
@@ -131,11 +133,12 @@ def _checked(deck: Any) -> Any:
 
 def __getattr__(name: str) -> Any:
     """The objects of all tables, and the errors that users catch."""
-    if name in ("DeckError", "StoreError"):
+    if name in ERRORS:
+        from extrados.analyses.context import Refused
         from extrados.decks.reader import DeckError
         from extrados.results.store import StoreError
 
-        return {"DeckError": DeckError, "StoreError": StoreError}[name]
+        return {"DeckError": DeckError, "Refused": Refused, "StoreError": StoreError}[name]
     if not name[:1].isupper():
         raise AttributeError(f"module 'extrados' has no attribute '{name}'")
     from extrados import objects
@@ -154,4 +157,4 @@ def __getattr__(name: str) -> Any:
 def __dir__() -> list[str]:
     from extrados import objects
 
-    return [*globals(), *objects.names(), "DeckError", "StoreError"]
+    return [*globals(), *objects.names(), *ERRORS]

@@ -155,3 +155,15 @@ def test_no_evaluation_of_code() -> None:
             if isinstance(node, ast.Import | ast.ImportFrom):
                 names = {a.name for a in node.names} | {getattr(node, "module", "") or ""}
                 assert not names & {"pickle", "marshal", "shelve", "dill", "joblib"}, path
+
+
+@pytest.mark.parametrize("room", ["analyses", "building"])
+def test_a_refusal_says_which_key_is_to_blame(room: str) -> None:
+    """Or, by WHOLE, that none is: so that it is told with file and line wherever that can be."""
+    silent = []
+    for path in sorted((PACKAGE / room).rglob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("Refused", "NoView"):
+                if len(node.args) + len(node.keywords) < 2:
+                    silent.append(f"{path.relative_to(PACKAGE)}:{node.lineno}")
+    assert not silent

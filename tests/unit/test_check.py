@@ -63,6 +63,8 @@ WRONG = {
         "cannot start turned to the left",
         BLOCK + PULSE + '[supports]\nabutting_wall = "left"\n[initial]\nrotation_ratio = -0.1 # here\n' + ROCKING,
     ),
+    "mesh that is not there": ("none.msh", '[structure]\nkind = "mesh"\nfile = "none.msh" # here\nthickness = 0.1\n' + SLA),
+    "outline that is not there": ("none.dxf", '[structure]\nkind = "panel"\noutline = "none.dxf" # here\nthickness = 0.1\n' + SLA + 'mesh.element = "T3"\nmesh.size = 0.2\n'),
     "linear form of an arch": ("is known of blocks", ARCH + PULSE + ROCKING + 'form = "linear" # here\n'),
     "block that slides off its slope": ("falls", BLOCK.replace("[structure]\n", "[structure]\nbase_slope = 30 # here\n") + TILT),
     "typo in a variant": (
@@ -288,6 +290,26 @@ def test_check_and_run_say_the_same(tmp_path: Path, wrong: str) -> None:
     assert len(said) == 1 and said[0].startswith(f"{path}:{line}: ") and words in said[0], said
     key = said[0].removeprefix(f"{path}:{line}: ").split(": ")
     assert key[0].rsplit(".", 1)[-1] != key[1], "the key stands once"
+
+
+#: What only a run finds
+WHILE_RUNNING = {
+    "no line at that gamma": ("no thrust line is admissible", ARCH + '[[analysis]]\nkind = "thrust"\ngamma = 2.0 # here\n'),
+    "a pier that is crushed": (
+        "crushes the pier", PANEL + 'compressive_strength = "1 MPa"\n[[analysis]]\nkind = "code-checks"\naxial_load = "1 MN" # here\n',
+    ),
+    "an arch too thin": ("cannot stand", ARCH.replace("thickness = 1.5", "thickness = 0.5 # here") + TILT),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("wrong", WHILE_RUNNING)
+def test_what_a_run_refuses_has_its_line_too(tmp_path: Path, wrong: str) -> None:
+    words, text = WHILE_RUNNING[wrong]
+    path = tmp_path / "deck.toml"
+    path.write_text(text)
+    line = 1 + next(k for k, row in enumerate(text.splitlines()) if "# here" in row)
+    (said,) = refused(read_deck(path))
+    assert said.startswith(f"{path}:{line}: ") and words in said, said
 
 
 def test_a_second_assessment_is_refused(tmp_path: Path) -> None:

@@ -231,3 +231,27 @@ def test_a_key_at_the_wrong_place_is_told_its_own(tables: dict, words: str) -> N
     arch = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 150.0, "voussoirs": 20}
     with pytest.raises(DeckError, match=re.escape(words)):
         make_deck({"structure": arch, **tables})
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("piers = { width = 1.0, height = 2.0 }", "expected a list of tables, [{ ... }], also where it is one"),
+        ("piers = 2", "piers: 2: expected a list, [ ... ]"),
+        ("piers = [{ width = 1.0, height = 2.0 }]", "1 span needs no piers; there is 1"),
+        ('title = "x"', "unknown key"),
+    ],
+)
+def test_what_was_expected_is_said_in_words_of_a_deck(text: str, words: str) -> None:
+    deck = f'[structure]\nkind = "bridge"\nspans = [{{ span = 10.0, rise = 2.0, thickness = 0.6 }}]\n{text}\n[analysis]\nkind = "tilt"\n'
+    with pytest.raises(DeckError) as error:
+        read_text(deck.encode())
+    assert words in str(error.value)
+
+
+def test_a_number_where_a_name_is_wanted_and_a_word_of_another_kind() -> None:
+    wall = 'kind = "brickwork"\nunits = 4\ncourses = 4\nunit_length = 0.5\nunit_height = 0.25\nthickness = 0.2\n'
+    with pytest.raises(DeckError) as error:
+        read_text(f'[structure]\n{wall}[[initial.movements]]\njoint = 0\n[analysis]\nkind = "tilt"\n'.encode())
+    assert "thickness: unknown key; did you mean 'depth'?" in str(error.value)
+    assert "initial.movements.joint: 0: expected text in quotes" in str(error.value)

@@ -763,3 +763,18 @@ def test_films_are_films_or_refused() -> None:
     ):
         with pytest.raises(BadFilm):
             film(bad)
+
+
+def test_free_stones_are_as_heavy_deep_and_rough_as_they_were(session: Session) -> None:
+    text = (
+        'title = "A \\"quoted\\" wall"\n[structure]\nkind = "column"\nwidth = 1.0\nheight = 3.0\ndrums = 3\ndepth = 2.0\n'
+        '[material]\ndensity = 1800.0\n[joints]\nfriction = 0.2\n[[analysis]]\nkind = "tilt"\n'
+    )
+    do(session, do="open", text=text, name="pier.toml")
+    before = session.there()["tilt"].collapse_acceleration_g
+    assert before == pytest.approx(0.2), "it slides"
+    do(session, do="blocks")
+    free = session.there()
+    assert free["tilt"].collapse_acceleration_g == pytest.approx(before)
+    stones = free.deck.building.blocks()
+    assert stones.mass.sum() == pytest.approx(1800.0 * 3.0 * 2.0) and "density" not in str(free.deck.data["structure"])

@@ -266,3 +266,9 @@ def test_axes_call_keys_by_words(key: str, words: str) -> None:
     from extrados.plots.limit.sweep import spoken
 
     assert spoken(key) == words
+
+
+def test_a_wall_that_slides_as_a_whole_says_so() -> None:
+    wall = {"kind": "brickwork", "units": 8, "courses": 2, "unit_length": 0.5, "unit_height": 0.25}
+    answer = run(wall, kind="tilt", joints={"friction": 0.2}).answer
+    assert "at its whole base (8 joints)" in answer and "more" not in answer

@@ -232,8 +232,11 @@ def test_the_check_at_collapse_stands_beside_those_of_life_safety() -> None:
     worse = mechanism(**keys, collapse_spectrum={**SITE, "acceleration": "4 g"})["local-mechanism"]
     assert worse.checks["NTC nonlinear"].verdict == of_life.verdict and worse.overall().outcome == "falls"
     assert "SLC governs" in worse.overall().statement
-    high = mechanism(**keys, collapse_spectrum=rare, base_height=4.0, building_height=8.0)["local-mechanism"]
-    assert high.checks["NTC nonlinear at SLC"].demand != pytest.approx(check.demand)
+    # a building that sways as slowly as the wall turns amplifies, a stiff one moves with the ground
+    above = {**keys, "collapse_spectrum": rare, "base_height": 4.0, "building_height": 8.0}
+    stiff, slow = (mechanism(**above, building_period=t)["local-mechanism"] for t in (0.2, 2.4))
+    assert stiff.checks["NTC nonlinear at SLC"].demand == pytest.approx(check.demand)
+    assert slow.checks["NTC nonlinear at SLC"].demand > 2.0 * check.demand
     with pytest.raises(DeckError, match="collapse_spectrum: code EN1998-1 needs acceleration"):
         mechanism(**keys, collapse_spectrum={"code": "EN1998-1", "ground": "B"})
 
@@ -248,10 +251,12 @@ def test_the_floor_spectrum_of_the_circolare() -> None:
     a_z = 2.0 * 0.8 * 9.0 / 7.0 * np.sqrt(1.01)
     assert place.acceleration == pytest.approx(a_z)
     eta = np.sqrt(10.0 / 13.0)
-    top = 1.1 / np.sqrt(5.0) * eta * a_z
+    top = 1.1 / np.sqrt(0.05) * eta * a_z
     assert place(0.35, 0.08) == place(0.4, 0.08) == pytest.approx(top)
     assert place(0.0, 0.05) == pytest.approx(a_z), "a rigid body feels the floor"
-    rise = 1.1 / np.sqrt(5.0) * eta - 1.0
+    # "una forte amplificazione in corrispondenza del periodo fondamentale", of stiff buildings 5 times by Table C7.2.II
+    assert place(0.4, 0.05) == pytest.approx(5.0 * a_z, rel=0.02)
+    rise = 1.1 / np.sqrt(0.05) * eta - 1.0
     assert place(0.2, 0.08) == pytest.approx(top / (1.0 + rise * (1.0 - 0.2 / 0.32) ** 1.6))
     assert place(9.0, 0.08) == pytest.approx(ground(9.0, 0.08)), "not below the ground"
     # the demand does not fall where the floor spectrum does [C8.7.1.12]
@@ -271,6 +276,31 @@ def test_at_a_height_the_floor_is_asked_and_either_check_suffices() -> None:
     assert {linear.code, high.checks["NTC nonlinear"].code} == {"NTC 2018"}
     near = mechanism(**base, base_height=0.1, building_height=10.0, storeys=3)["local-mechanism"].checks
     assert near["NTC linear (at height z)"].demand == pytest.approx(0.18), "not less than the ground itself"
+
+
+def test_a_place_at_a_height_is_not_checked_as_if_it_stood_on_the_ground() -> None:
+    """A peak alone does not say what the floor does: no check of NTC holds by it."""
+    run = mechanism(
+        mechanism="parapet",
+        height=1.2,
+        thickness=0.3,
+        peak_acceleration="0.15 g",
+        base_height=9.0,
+        building_height=10.0,
+    )
+    checks = run["local-mechanism"].checks
+    assert checks["NTC linear (at height z)"].demand is None and not any("at the ground" in name for name in checks)
+    assert checks["EN 1998-1 part of a building"].verdict == "holds"
+    assert any("without a spectrum they have no demand" in w for w in run.results[0].warnings)
+
+
+def test_the_motion_is_not_asked_where_a_code_gives_the_spectrum() -> None:
+    deck = {
+        "structure": {"kind": "block", "width": 1.0, "height": 5.0},
+        "analysis": {"kind": "code-checks", "spectrum": SITE, "motion_spectrum": True},
+    }
+    found = extrados.run(deck)["code-checks"]
+    assert found.peak_ground_velocity_m_s is None and found.peak_ground_acceleration_g == pytest.approx(0.18)
 
 
 def test_the_spectrum_of_the_motion_where_a_deck_has_no_code() -> None:
@@ -350,3 +380,21 @@ def test_ties_of_the_table_are_not_counted_on_to_collapse() -> None:
     assert pushed.zero_displacement_m < bare.zero_displacement_m
     only = mechanism(**base, floors=[{"height": 6.0, "thrust": 8e3}], ties=[{"height": 6.0, "force": 9e3}])
     assert only["local-mechanism"].zero_displacement_m is None and "without its ties" in only.analyses[0]["warnings"][0]
+
+
+def test_a_mechanism_whose_stones_crush_is_not_said_to_slide() -> None:
+    arch = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}
+    own = {"kind": "local-mechanism", "mechanism": "building"}
+    deck = {
+        "structure": arch,
+        "material": {"compressive_strength": 1e6},
+        "joints": {"friction": "no-sliding"},
+        "analysis": own,
+    }
+    found = extrados.run(deck).results[0]
+    assert (
+        any("its stones crush at the hinges before it turns" in w for w in found.warnings) and "crushes" in found.answer
+    )
+    assert found.results.multiplier == pytest.approx(
+        extrados.run({**deck, "analysis": {"kind": "tilt"}})["tilt"].collapse_acceleration_g
+    )

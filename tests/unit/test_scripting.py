@@ -212,3 +212,13 @@ class Deadly:
         if first == 7:
             raise ValueError("member 7")
         return {"value": np.arange(first, first + count, dtype=float)}
+
+
+def test_what_may_be_raised_can_be_caught() -> None:
+    """By its name: also where no scheduler answers, or none can be asked."""
+    arch = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}
+    with pytest.raises(extrados.Refused, match="scheduler"):
+        extrados.sweep(
+            {"structure": arch, "analysis": {"kind": "tilt"}}, over={"structure.thickness": [1.5]}, workers="nowhere"
+        )
+    assert {"DeckError", "Refused", "StoreError"} <= set(dir(extrados))

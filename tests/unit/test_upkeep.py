@@ -93,6 +93,23 @@ def test_the_forge_calls_what_is_there() -> None:
     assert sys.version_info >= (3, 11)
 
 
+def test_a_build_apart_holds_no_source_that_is_gone(tmp_path: Path, monkeypatch) -> None:
+    apart = tool("tools/apart.py")
+    root, place = tmp_path / "root", tmp_path / "place"
+    for name in ("python/extrados/kept.py", "python/extrados/gone.py"):
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text("")
+    monkeypatch.setattr(apart, "ROOT", root)
+    monkeypatch.setattr(apart, "PARTS", ("python",))
+    apart.copy(place)
+    made = [place / "python/extrados" / name for name in ("_core.cpython.so", "_build_info.py")]
+    for path in made:
+        path.write_text("")
+    (root / "python/extrados/gone.py").unlink()
+    apart.copy(place)
+    assert sorted(place.rglob("*.*")) == sorted([place / "python/extrados/kept.py", *made])
+
+
 def test_every_room_of_the_core_has_tests_that_seeded_faults_run(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(ROOT / "tools"))
     rooms = tool("tools/seeded_faults.py").ROOMS

@@ -21,6 +21,7 @@ import numpy as np
 
 from extrados.analyses import workers
 from extrados.analyses.context import Context, Refused
+from extrados.building.errors import WHOLE
 from extrados.core.calls import cancel_requested, interruptible, thread_count
 from extrados.core.errors import Cancelled, status_code
 from extrados.results.checkpoint import fingerprint
@@ -313,13 +314,13 @@ def _on_cluster(context: Context, batches: _Batches, job: Job, pace: _Pace) -> S
         from distributed import Client
     except ImportError:
         raise Refused(
-            "a scheduler was given, but dask.distributed is not installed: pip install 'extrados[cluster]'"
+            "a scheduler was given, but dask.distributed is not installed: pip install 'extrados[cluster]'", WHOLE
         ) from None
     address = context.scheduler
     try:
         client = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
-        raise Refused(f"no dask scheduler answers at {address}: {error}") from None
+        raise Refused(f"no dask scheduler answers at {address}: {error}", WHOLE) from None
     try:
         return _collect(batches, job, pace, client, address)
     except OSError:  # what distributed raises where the connection breaks within a call

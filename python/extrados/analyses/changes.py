@@ -6,7 +6,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from extrados.analyses.context import Refused
-from extrados.building.errors import BadGeometry
+from extrados.building.errors import WHOLE, BadGeometry
 from extrados.schema.table import Table
 
 
@@ -21,9 +21,9 @@ def changed(data: Any, path: str, value: Any) -> Any:
         elif isinstance(place, dict):
             place = place.setdefault(part, {})
         if not isinstance(place, dict | list):
-            raise Refused(f"'{path}' is no key of the deck")
+            raise Refused(f"'{path}' is no key of the deck", WHOLE)
     if not isinstance(place, dict):
-        raise Refused(f"'{path}' is no key of the deck")
+        raise Refused(f"'{path}' is no key of the deck", WHOLE)
     place[last] = value
     return data
 

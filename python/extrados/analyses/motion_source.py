@@ -100,14 +100,16 @@ def source_of(context: Context, seed: int | None, duration: float | None = None)
             members = suite_members(model, folder)
             grounds = [_try(lambda m=m: suite_motion(model, m, folder), notes) for m in members]
             if all(isinstance(g, str) for g in grounds):
-                raise Refused(f"none of the {len(grounds)} records of the suite can be read; the first: {grounds[0]}")
+                raise Refused(
+                    f"none of the {len(grounds)} records of the suite can be read; the first: {grounds[0]}", ("motion",)
+                )
             context.warnings += notes[:MOST_NOTES]
             return ListSource(grounds, [member_name(m) for m in members]), len(grounds)
         motion = make_motion(model, folder)
         context.warnings += motion.notes
         return ListSource([motion.ground], ["motion"]), 1
     except RecordError as error:
-        raise Refused(str(error)) from None
+        raise Refused(str(error), ("motion",)) from None
 
 
 #: Names of the intensity measures that `measures` gives, in SI.

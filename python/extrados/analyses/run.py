@@ -6,11 +6,13 @@ from extrados import interrupts, kinds
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import concluded, faulty
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.left_out import LeftOut, left_out
 from extrados.analyses.needs import complaints
 from extrados.analyses.table import Analysis
 from extrados.building.building import Building
-from extrados.building.errors import BadGeometry
+from extrados.building.errors import WHOLE, BadGeometry
 from extrados.core.errors import Cancelled, CoreError
+from extrados.decks.reader import Deck
 from extrados.limit.errors import Immovable, NoAnswer
 from extrados.results.model import Result
 from extrados.results.store import StoreError
@@ -30,6 +32,7 @@ def run_analyses(context: Context) -> list[Result]:
     """All analyses of the deck in order; after Ctrl-C the rest is marked interrupted."""
     results: list[Result] = []
     told: tuple[str, ...] = ()
+    ignored = _ignored(context.deck)
     for options, building in zip(context.deck.analyses, context.deck.buildings, strict=True):
         if results and results[-1].status == "interrupted":
             results.append(Result(options.kind, "interrupted", "not run: interrupted before"))
@@ -38,8 +41,17 @@ def run_analyses(context: Context) -> list[Result]:
         _, notes = building.told()
         if notes != told:  # what was made of a survey is told once
             result.warnings, told = [*notes, *result.warnings], notes
+        result.warnings += [remark.text for remark in ignored if remark.analysis == len(results)]
         results.append(result)
     return results
+
+
+def _ignored(deck: Deck) -> list[LeftOut]:
+    """What no analysis reckons with; nothing where the building cannot be made, which the analysis that looks at it says."""
+    try:
+        return left_out(deck)
+    except Exception:
+        return []
 
 
 def run_one(context: Context, options: Analysis, building: Building) -> Result:
@@ -48,7 +60,7 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
     try:
         context.warnings = []
         if wrong := complaints(context, options, building):
-            raise Refused("; ".join(wrong))
+            raise Refused("; ".join(wrong), WHOLE)
         result = kinds.load(kinds.ANALYSES[options.kind].driver)(context, options)
         _check(result)
         result.warnings = [*context.warnings, *result.warnings]

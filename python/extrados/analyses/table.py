@@ -43,11 +43,12 @@ class Analysis(Table):
     """Base of the analysis kinds.
 
     view: what it looks at, "blocks", "rocker" or "mesh", "" where it needs no building; structures: the only kinds
-    it takes, None any that has the view. solid: whether it takes solids, where there is no plane section; shells: kinds without stones that it
-    takes as shells. uses: properties of the building that its answer rests on, which every
-    answer tells; method: what the method itself fixes of them, whatever the deck says. starter_structure,
+    it takes, None any that has the view. solid: whether it takes solids, where there is no plane section; shells: kinds without
+    stones that it takes as shells. uses: properties of the building that its answer rests on, which every
+    answer tells; method: what the method itself fixes of them, whatever the deck says; starter_structure,
     starter_motion: their kinds in the deck that `new` writes, "" no motion unless one is needed. bears: what of
-    Building.special_keys it reckons with; one that looks at a building with more is refused.
+    Building.special_keys it reckons with; one that looks at a building with more is refused. beside: what
+    it looks at, or refuses, beside `uses`, without telling it.
     """
 
     kind: str
@@ -59,12 +60,18 @@ class Analysis(Table):
     method: ClassVar[dict[str, str]] = {}
     needs_motion: ClassVar[bool] = False
     bears: ClassVar[tuple[str, ...]] = ()
+    beside: ClassVar[tuple[str, ...]] = ()
     starter_structure: ClassVar[str] = "arch"
     starter_motion: ClassVar[str] = ""
 
     def rests_on(self, building: "Building") -> dict[str, str | None]:
         """The properties of this building that its answer rests on, with what the method fixes of them, else None."""
         return {key: self.method.get(key) for key in self.uses}
+
+    def reckons_with(self, building: "Building") -> set[str]:
+        """The keys of [material], [joints], [supports] and [initial] of which another value may change the answer for this
+        building, or which the answer or a refusal names; what a deck says in others is told to be left out."""
+        return {*self.rests_on(building), *self.beside}
 
 
 class BuildingAnalysis(Analysis):

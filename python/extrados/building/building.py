@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from extrados.building.devices import AddedHinge, Damper
-from extrados.building.errors import BadGeometry, Key, NoView
+from extrados.building.errors import WHOLE, BadGeometry, Key, NoView
 from extrados.building.geometry.anchors import Anchored, moved_joints, stone_at
 from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.geometry.chains import in_order
 from extrados.building.properties import (
     NO_SLIDING,
     NO_SLIDING_COEFFICIENT,
@@ -236,6 +237,15 @@ class Building:
                 )
         return Anchored(block, point)
 
+    @property
+    def one_arch(self) -> bool:
+        """Whether its stones are one arch, from springing to springing."""
+        try:
+            in_order(self.blocks())
+        except BadGeometry:
+            return False
+        return True
+
     def moved(self) -> list[int]:
         """The joints that [[initial.movements]] name, in their order; BadGeometry where one is not on the ground."""
         return moved_joints(self.blocks(), [one.joint for one in self.initial.movements])
@@ -272,7 +282,7 @@ class Building:
 
     def _structure(self) -> Structure:
         if self.structure is None:
-            raise NoView("the deck has no [structure]")
+            raise NoView("the deck has no [structure]", WHOLE)
         return self.structure
 
     def _view(self, name: str, depends: tuple, make: Any) -> Any:

@@ -5,6 +5,8 @@ from contextlib import contextmanager
 
 #: The key of a deck that is to blame: its names and, within lists, numbers from 0
 Key = tuple[str | int, ...]
+#: No one key is to blame: how the building stands as a whole, how a computation went, the machine
+WHOLE: Key = ()
 
 
 class BadGeometry(ValueError):
@@ -21,7 +23,7 @@ class BadGeometry(ValueError):
 class NoView(BadGeometry):
     """A strategy cannot look at this building; the text says why and what would help."""
 
-    def __init__(self, text: str = "", at: Key = ()):
+    def __init__(self, text: str = "", at: Key = WHOLE):
         super().__init__(text, at)
 
 

@@ -41,7 +41,7 @@ class Structure(Table):
 
         Raises BadGeometry with the part and the bound, NoView where the kind has no stones.
         """
-        raise NoView(self.lacks["blocks"])
+        raise NoView(self.lacks["blocks"], ("structure", "kind"))
 
     def inspection(self, folder: Path) -> "Inspection | None":
         """Gaps, overlaps and near misses of a surveyed structure; None where its geometry is exact by its making."""
@@ -66,13 +66,14 @@ class Structure(Table):
 
     def pier_assembly(self, density: float) -> "Assembly":
         """A wall as few rigid bodies, of a density [kg/m^3]; NoView where the kind is no wall."""
-        raise NoView(f"a structure of kind '{self.kind}' has no piers")
+        raise NoView(f"a structure of kind '{self.kind}' has no piers", ("structure", "kind"))
 
     def shell(self, building: "Building", options: "ShellOptions") -> "ShellMesh":
         """Flat shells in space; NoView where the kind stands in a plane. BadGeometry says what is wrong."""
         raise NoView(
             f"a structure of kind '{self.kind}' has no shells; they are made of the kinds building, arch, vault, dome, "
-            "cross-vault and mesh"
+            "cross-vault and mesh",
+            ("structure", "kind"),
         )
 
     def mesh(self, building: "Building", options: "MeshOptions", seed: int | None) -> "Mesh":

@@ -36,6 +36,8 @@ def check(
             continue
         checked = check_building(deck)
         complaints += checked.complaints
+        for remark in checked.ignored:
+            out_console.say(f"warning: {remark}")
         folder = out or deck.default_out.with_name(f"{deck.default_out.name}-check")
         if checked.inspection is not None:
             _tell_survey(checked, folder, asked=out is not None)
@@ -94,9 +96,9 @@ def _tell_plan(checked: "Checked", folder: Path) -> None:
     mesh = checked.plan
     for remark in checked.remarks:
         out_console.say(f"warning: {remark}")
-    walls = f"{len(mesh.walls)} walls, " if mesh.walls else ""
+    walls = f"{len(mesh.walls)} wall{'s' if len(mesh.walls) > 1 else ''}, " if mesh.walls else ""
     out_console.say(
-        f"{walls}{mesh.elements()} elements, {len(mesh.xyz)} nodes; {'walls and floors weigh' if walls else 'weight'} "
+        f"{walls}{mesh.elements()} elements, {len(mesh.xyz)} nodes; {'walls and floors weigh' if mesh.walls else 'weight'} "
         f"{1e-3 * GRAVITY * mesh.mass().sum():.4g} kN"
     )
     try:

@@ -31,6 +31,8 @@ MOST_COMPLAINTS = 50
 PROPERTIES: dict[str, type[Table]] = {"material": Material, "joints": Joints, "supports": Supports, "initial": Initial}
 #: What the report says of a deck in words
 WORDS = ("title", "note", "project", "author", "date")
+#: Words that one kind of structure has for what another calls otherwise
+ALIKE = {"thickness": {"depth"}, "depth": {"thickness"}, "length": {"width", "span"}, "span": {"width", "radius"}}
 TOP_LEVEL = {*WORDS, "structure", *PROPERTIES, "materials", *PLURAL, "motion", "analysis"}
 
 
@@ -342,7 +344,7 @@ class _Checker:
             wanted = f"at least {limits['min_length']}" if sort == "too_short" else f"at most {limits['max_length']}"
             self.complain(at, f"{_shown(problem.get('input'))}: expected {wanted}, found {limits['actual_length']}")
         else:
-            told = ", or ".join(dict.fromkeys(p["msg"][0].lower() + p["msg"][1:] for p in problems))
+            told = ", or ".join(dict.fromkeys(_expected(p) for p in problems))
             unit = _unit(model, place) if told[-1].isdigit() else ""  # of a bound
             self.complain(at, f"{_shown(problem.get('input'))}: {told}{f' {unit}' if unit else ''}")
 
@@ -403,6 +405,8 @@ def _home(model: type[Table], section: str, place: tuple) -> str:
         return f"; it belongs in {'.'.join((section, *(str(p) for p in place[:-1] if not isinstance(p, int)), home))}"
     if section in PROPERTIES and key in _of_analyses():
         return "; it belongs in the [[analysis]] table"
+    if alike := ALIKE.get(key, set()) & known.keys():
+        return f"; did you mean '{min(alike)}'?"
     return _nearest(key, known)
 
 
@@ -436,6 +440,17 @@ def _unit(model: type[Table], place: tuple) -> str:
     branches = [schema, *schema.get("anyOf", [])]
     branches += [b["items"] for b in branches if "items" in b]
     return next((b["unit"] for b in branches if "unit" in b), "")
+
+
+def _expected(problem: ErrorDetails) -> str:
+    """What would have been right, in words of a deck."""
+    if problem["type"] == "string_type":
+        return "expected text in quotes"
+    if problem["type"] == "list_type" and isinstance(problem.get("input"), dict):
+        return "expected a list of tables, [{ ... }], also where it is one"
+    if problem["type"] == "list_type":
+        return "expected a list, [ ... ]"
+    return problem["msg"][0].lower() + problem["msg"][1:]
 
 
 def _shown(value: Any) -> str:

@@ -107,7 +107,7 @@ class Guard:
         if sum(len(name) + len(value) for name, value in scope["headers"]) > LARGEST_HEADS:
             return 431, "the heads of the request are too long"
         lengths = heads.get(b"content-length", [b"0"])
-        if len(lengths) != 1 or not lengths[0].isdigit() or int(lengths[0]) > LARGEST_BODY:
+        if len(lengths) != 1 or not lengths[0].isdigit() or len(lengths[0]) > 12 or int(lengths[0]) > LARGEST_BODY:
             return 413, "too much is sent"
         parts = scope["path"].split("/", 2)
         if len(parts) != 3 or not hmac.compare_digest(parts[1].encode("utf-8", "replace"), self.token):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from extrados.analyses.context import Context
+from extrados.analyses.left_out import left_out
 from extrados.analyses.needs import as_shell, complaints, stones_of
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import Assembly
@@ -36,7 +37,8 @@ class Place:
 
 @dataclass(frozen=True)
 class Checked:
-    """complaints: why the deck would be refused; remarks and notes on its geometry; the list of places, the refused
+    """complaints: why the deck would be refused; ignored: what it says that no analysis reckons with, or not all; remarks and
+    notes on its geometry; the list of places, the refused
     first, then the open, then those that the tolerance closes; inspection: None where it is no survey; solids: what has
     no plane section, or is asked for in a direction; plan: the mesh of a building on a plan."""
 
@@ -47,6 +49,7 @@ class Checked:
     inspection: "Inspection | None" = None
     solids: "SolidAssembly | None" = None
     plan: "ShellMesh | None" = None
+    ignored: list[str] = field(default_factory=list)
 
 
 def check_building(deck: Deck) -> Checked:
@@ -65,11 +68,12 @@ def check_building(deck: Deck) -> Checked:
             found += complaints(context, options, building)
     found = list(dict.fromkeys(found))
     solids, plan = (None, None) if found else _in_space(deck)
+    ignored = [remark.text for remark in left_out(deck)]
     if solids is not None:
-        return Checked(remarks=list(solids.remarks), notes=list(solids.notes), solids=solids)
+        return Checked(remarks=list(solids.remarks), notes=list(solids.notes), solids=solids, ignored=ignored)
     if inspection is None:
-        return Checked(found, plan.warnings if plan else [], plan=plan)
-    return Checked(found, inspection.remarks(), inspection.notes(), _places(inspection), inspection)
+        return Checked(found, plan.warnings if plan else [], plan=plan, ignored=ignored)
+    return Checked(found, inspection.remarks(), inspection.notes(), _places(inspection), inspection, ignored=ignored)
 
 
 def _in_space(deck: Deck) -> "tuple[SolidAssembly | None, ShellMesh | None]":

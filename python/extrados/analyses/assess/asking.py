@@ -14,6 +14,7 @@ from extrados.analyses.conclude import MotionDemand, concluded
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.run import run_one
 from extrados.analyses.statistics.summaries import wilson
+from extrados.building.errors import WHOLE
 from extrados.core.calls import within
 from extrados.decks.reader import DeckError, make_deck
 from extrados.results.assess import StrategyVerdict
@@ -83,7 +84,7 @@ class Asker:
         try:
             deck = make_deck(data, whole.deck.folder)
         except DeckError as error:
-            raise Refused("; ".join(c.removeprefix("deck: analysis: ") for c in error.complaints)) from None
+            raise Refused("; ".join(c.removeprefix("deck: analysis: ") for c in error.complaints), WHOLE) from None
         deck = replace(deck, sha256=whole.deck.identity, path=whole.deck.path)
         one = Context(deck, whole.threads, whole.progress, out=whole.out, resume=whole.resume,
                       scheduler=whole.scheduler, motions=whole.motions)  # fmt: skip

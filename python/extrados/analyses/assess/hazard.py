@@ -75,7 +75,7 @@ def peak_of(context: Context) -> tuple[float, str]:
         try:
             at_zero = float(code_spectrum(model, context.deck.folder, 0.05)(np.array([0.0]))[0])
         except ValueError as error:
-            raise Refused(f"[motion]: {error}") from None
+            raise Refused(str(error), ("motion",)) from None
         return at_zero / GRAVITY, "the code's spectrum at period 0, a_g S"
     return context.motion.peak / GRAVITY, "the greatest horizontal acceleration of the motion"
 

@@ -79,7 +79,7 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
     width, height = block.toe_right + block.toe_left, 2.0 * block.centre_height
     spectrum = demanded_spectrum(context, options.spectrum, options.motion_spectrum)
     pga, sa, pgv = None, None, options.peak_velocity
-    if options.motion_spectrum and pgv is None:
+    if options.motion_spectrum and pgv is None and spectrum_of(context, options.spectrum) is None:
         pgv = float(core_motion.measures(*_sampled(context.motion)).pgv[0])
     if spectrum is not None:
         pga = spectrum(0.0, 0.05) / GRAVITY
@@ -179,7 +179,7 @@ def _pier(
     assert strength is not None and options.axial_load is not None
     load = options.axial_load + weight
     if load >= 0.7 * strength * width * thickness:
-        raise Refused("the vertical load alone crushes the pier (P >= 0.7 f_m A)")
+        raise Refused("the vertical load alone crushes the pier (P >= 0.7 f_m A)", ("analysis", "axial_load"))
     fixed = options.fixity == "double"
     return [
         *piers(width, height, thickness, load, strength, joints.cohesion, options.sliding_friction, fixed),

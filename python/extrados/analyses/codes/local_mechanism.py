@@ -15,6 +15,7 @@ from extrados.analyses.codes.walls import WallPart, wall_parts
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import limit_of
 from extrados.analyses.limit.tables import Tilt
+from extrados.building.errors import WHOLE
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.rockers.restraints import Restraints, members_of
@@ -56,7 +57,9 @@ def run(context: Context, options: LocalMechanism) -> Result:
         turning = _body(body, f"the {options.mechanism}", options)
     found = turning.found
     if found.alpha0 <= 0.0:
-        raise Refused(f"{turning.words} does not stand at rest: its multiplier is {found.alpha0:.3g}")
+        raise Refused(
+            f"{turning.words} does not stand at rest: its multiplier is {found.alpha0:.3g}", ("analysis", "mechanism")
+        )
     if found.d0 is None and found.alone <= 0.0:
         context.warnings.append(
             "without its ties it would not stand at rest: the nonlinear check, which does not count on them, is left out"
@@ -173,7 +176,7 @@ def _of_building(context: Context) -> tuple[Capacity, tuple[np.ndarray, np.ndarr
         try:
             table = model.tables[side]
         except CoreError as error:
-            raise Refused(f"the mechanism cannot be carried through its motion: {error}") from None
+            raise Refused(f"the mechanism cannot be carried through its motion: {error}", WHOLE) from None
         turned = np.linspace(0.0, table.critical, STEPS)
         c = model.coefficients((1, -1)[side], turned)
         drive = np.abs(c.drive) * GRAVITY
@@ -185,17 +188,19 @@ def _of_building(context: Context) -> tuple[Capacity, tuple[np.ndarray, np.ndarr
             "the mechanism is the one without ties, dampers and added hinges, which then hold it: an upper bound"
         )
     words = f"the mechanism of the {building.structure.word}"
-    slides = _sliding(context, tuple(curves), float(alpha[0]))
-    if slides is not None:
+    weaker = _weaker(context, tuple(curves), float(alpha[0]))
+    if weaker is not None:
+        multiplier, field, slides = weaker
+        why, without = "its stones crush at the hinges", "crushing"
+        if slides:
+            why, without = f"its joints slide, at a friction of {building.joints.friction},", "sliding"
         context.warnings.append(
-            f"its joints slide, at a friction of {building.joints.friction}, before it turns (multiplier {float(alpha[0]):.4g} without "
-            "sliding): the displacement that it bears is not known"
+            f"{why} before it turns (multiplier {float(alpha[0]):.4g} without {without}): the displacement that it bears is not known"
         )
-        multiplier, field = slides
         return (
             capacity(multiplier, weight, field, None),
             (np.zeros(1), np.array([multiplier])),
-            f"{words}, which slides,",
+            f"{words}, which {'slides' if slides else 'crushes'},",
         )
     field = model.fields[side][:, 0] * (1.0, -1.0)[side]
     found = capacity(float(alpha[0]), weight, field, critical, model.uplift[side])
@@ -203,9 +208,9 @@ def _of_building(context: Context) -> tuple[Capacity, tuple[np.ndarray, np.ndarr
     return found, (turned * scale, alpha), words
 
 
-def _sliding(context: Context, sides: tuple[int, ...], turning: float) -> tuple[float, np.ndarray] | None:
-    """Multiplier of limit analysis with the deck's friction, and the sideways velocities of its mechanism; None where sliding
-    does not make it less than `turning`, that of the mechanism which turns."""
+def _weaker(context: Context, sides: tuple[int, ...], turning: float) -> tuple[float, np.ndarray, bool] | None:
+    """Multiplier of limit analysis with the deck's friction and compressive strength, the sideways velocities of its mechanism,
+    and whether joints slide in it; None where neither makes it less than `turning`, that of the mechanism which turns."""
     building = context.building
     stones = building.blocks()
     mass, place, _ = laden(stones)
@@ -214,11 +219,12 @@ def _sliding(context: Context, sides: tuple[int, ...], turning: float) -> tuple[
     for side in sides:
         state, mechanism = limit.collapse((1, -1)[side])
         move = mechanism.velocity
-        found.append((abs(state.gamma), move[:, 0] - move[:, 2] * (place - stones.centroid)[:, 1]))
-    multiplier, sideways = min(found, key=lambda one: one[0])
+        sideways = move[:, 0] - move[:, 2] * (place - stones.centroid)[:, 1]
+        found.append((abs(state.gamma), sideways, bool(len(mechanism.sliding))))
+    multiplier, sideways, slides = min(found, key=lambda one: one[0])
     if multiplier > 0.99 * turning:
         return None
-    return multiplier, sideways * np.sign(mass @ sideways)
+    return multiplier, sideways * np.sign(mass @ sideways), slides
 
 
 def _held(held: Restraints, side: int, rotation: np.ndarray) -> np.ndarray:
@@ -241,22 +247,29 @@ def _checks(context: Context, options: LocalMechanism, found: Capacity) -> tuple
     a_g = spectrum(0.0, 0.05) if spectrum is not None else None
     if options.peak_acceleration is not None:
         a_g = options.peak_acceleration
-    q, height = options.behaviour_factor, options.building_height
+    q, height = options.behaviour_factor, options.building_height if options.base_height > 0.0 else None
     at_height = None
-    if spectrum is not None and options.base_height > 0.0 and height is not None:
+    if height is not None and spectrum is not None:
         at_height = ntc.floor(spectrum, options.base_height, height, options.storeys, options.building_period)
+    elif height is not None and a_g is not None:
+        context.warnings.append(
+            f"at {options.base_height:g} m above the foundation the checks of NTC ask how the building answers at its period: without "
+            "a spectrum they have no demand"
+        )
     note = f"alpha_0 {found.alpha0:.4g}, e* {found.part:.3g}, q {q:g}"
     if height is not None:
         note += f", z/H {options.base_height / height:.3g}"
     fc = options.confidence_factor
-    lines = ntc.checks(found.acceleration / fc, found.d0, q, a_g, spectrum, note, at_height, found.alone / fc)
+    lines = ntc.checks(
+        found.acceleration / fc, found.d0, q, a_g, spectrum, note, at_height, found.alone / fc, height is not None
+    )
     if options.collapse_spectrum is not None and found.d0 is not None:
         rare, above = spectrum_of(context, options.collapse_spectrum, "collapse_spectrum"), None
         if options.base_height > 0.0 and height is not None:
             above = ntc.floor(rare, options.base_height, height, options.storeys, options.building_period)
         lines.append(ntc.collapse_check(found.alone / fc, found.d0, rare, above))
     more = {} if at_height is None else {"floor_acceleration_g": at_height.acceleration / GRAVITY}
-    if height is not None and options.base_height > 0.0 and a_g is not None:
+    if height is not None and a_g is not None:
         part = a_g / GRAVITY * (3.0 * (1.0 + options.base_height / height) / 2.0 - 0.5)
         lines.append(
             Line("EN 1998-1 part of a building", "S_a", found.alpha0 * q, part, "g",

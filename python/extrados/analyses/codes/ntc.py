@@ -18,8 +18,11 @@ SLV, SLC = 0.4, 0.6
 #: mechanism in each (C8.7.1.2.1.8)
 PERIOD, DAMPING = 1.68, 0.08
 COLLAPSE_PERIOD, COLLAPSE_DAMPING = 1.56, 0.10
-#: Of the floor spectrum: a and b between which it is greatest, and the damping of the building [%] (C7.2.3)
+#: Of the floor spectrum: a and b between which it is greatest, the damping of the building [%], and 1.1 xi^-0.5, how many times a
+#: part of 5 % that sways with the building feels its acceleration (C7.2.3). The text gives xi in percent, as sqrt(1 + 0.0004 xi^2)
+#: needs it; here it can only be the ratio, for 1.1/sqrt(5) would weaken what the text says is amplified (Table C7.2.II: 5 times).
 A, B, BUILDING_DAMPING = 0.8, 1.1, 5.0
+AMPLIFIED = 1.1 / float(np.sqrt(0.01 * BUILDING_DAMPING))
 #: Periods up to T_SLV at which the demand is looked for
 GRID = 60
 
@@ -56,8 +59,8 @@ class Floor:
 
     def __call__(self, period: float, damping: float) -> float:
         """S_eZ(T, xi, z) [m/s^2], [C7.2.6], from T_1 on not below that of the ground [C7.2.5]."""
-        top = 1.1 / np.sqrt(BUILDING_DAMPING) * damping_factor(damping) * self.acceleration
-        rise = 1.1 / np.sqrt(BUILDING_DAMPING) * damping_factor(damping) - 1.0
+        amplified = AMPLIFIED * damping_factor(damping)
+        top, rise = amplified * self.acceleration, amplified - 1.0
         if period < A * self.first:
             return float(top / (1.0 + rise * (1.0 - period / (A * self.first)) ** 1.6))
         if period >= B * self.first:
@@ -73,18 +76,18 @@ def floor(ground: Spectrum, height: float, building: float, storeys: int, period
 
 def checks(
     a0: float, d0: float | None, q: float, peak: float | None, spectrum: Spectrum | None, note: str, at_height: Floor | None = None,
-    alone: float | None = None,
+    alone: float | None = None, raised: bool = False,
 ) -> list[Line]:  # fmt: skip
     """The linear check with q and the nonlinear one, of which either suffices; at a height both ask the floor.
 
     a0: alpha_0 g/(e* FC) [m/s^2]; d0 [m]: where the capacity vanishes, None where it does not; peak: a_g S [m/s^2];
-    alone: a0 of the curve to d0 where it is another, without ties that may not last to collapse.
+    alone: a0 of the curve to d0 where it is another, without ties that may not last to collapse; raised: whether it stands at
+    a height, where without a floor nothing is known of the demand.
     """
-    demand, where, quantity = peak, "at the ground", "a_g S"
+    demand, where, quantity = (None, "at height z", "a_Z") if raised else (peak, "at the ground", "a_g S")
     if at_height is not None:
         # near the ground the first mode alone would ask for less than the ground itself does
         demand = max(at_height.acceleration, peak or 0.0)
-        where, quantity = "at height z", "a_Z"
     lines = [
         Line(f"NTC linear ({where})", quantity, q * a0 / GRAVITY, None if demand is None else demand / GRAVITY, "g",
              "NTC 2018, Circ. 7/2019 C8.7.1.2.1.7: q alpha_0 g/(e* FC) >= a_Z, at the ground a_g S; [C8.7.1.8], [C7.2.8]", note, "NTC 2018"),

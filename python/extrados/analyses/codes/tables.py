@@ -1,6 +1,6 @@
 """Analysis kind of the codes: code-checks."""
 
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import model_validator
 
@@ -9,12 +9,16 @@ from extrados.schema.quantities import Acceleration, Angle, Force, Length, Stres
 from extrados.schema.spectrum import CodeSpectrum
 from extrados.schema.table import Table, key
 
+if TYPE_CHECKING:
+    from extrados.building.building import Building
+
 
 class CodeChecks(BuildingAnalysis):
     """Rules for rocking bodies, and for walls as piers, beside the dynamics; each with its source."""
 
     kind: Literal["code-checks"]
     uses: ClassVar = ("material.density", "material.compressive_strength", "joints.cohesion", "joints.restitution")
+    beside: ClassVar = ("joints.energy_ratio", "initial.rotation_ratio", "supports.abutting_wall", "supports.stiffness")
     view: ClassVar = ""
     structures: ClassVar = ("block", "column", "panel", "brickwork")
     spectrum: CodeSpectrum | None = key(
@@ -38,6 +42,15 @@ class CodeChecks(BuildingAnalysis):
         None, "tau_0, shear strength of the masonry without compression; asks for the rule of diagonal cracking", gt=0
     )
     fixity: Literal["cantilever", "double"] = key("cantilever", "rotation of the top: free or held")
+
+    def reckons_with(self, building: "Building") -> set[str]:
+        """Strength and cohesion are of piers, impacts and the start of what rocks."""
+        found = super().reckons_with(building)
+        if self.axial_load is None:
+            found -= {"material.compressive_strength", "joints.cohesion"}
+        if building.structure is not None and building.structure.rocks_as == "piers":
+            found -= {"joints.restitution", "joints.energy_ratio", "initial.rotation_ratio", "supports.stiffness"}
+        return found
 
 
 class Floor(Table):
@@ -70,6 +83,7 @@ class LocalMechanism(BuildingAnalysis):
 
     kind: Literal["local-mechanism"]
     uses: ClassVar = ("material.density", "material.compressive_strength")
+    beside: ClassVar = ("joints.friction", "supports.abutting_wall")
     view: ClassVar = ""
     bears: ClassVar = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
     starter: ClassVar = {
@@ -120,3 +134,8 @@ class LocalMechanism(BuildingAnalysis):
         if self.base_height > 0.0 and self.building_height is None:
             raise ValueError("base_height above 0 needs building_height")
         return self
+
+    def reckons_with(self, building: "Building") -> set[str]:
+        """Joints and a wall beside it are of the building's own mechanism."""
+        found = super().reckons_with(building)
+        return found if self.mechanism == "building" else found - {"joints.friction", "supports.abutting_wall"}

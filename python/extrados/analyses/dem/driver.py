@@ -7,6 +7,7 @@ from extrados.analyses.dem.solid_model import make_solid_model
 from extrados.analyses.dem.standing import against_limit_analysis, solids_against_limit_analysis
 from extrados.analyses.dem.tables import Dem
 from extrados.analyses.needs import stones_of
+from extrados.building.errors import WHOLE
 from extrados.building.geometry.assembly import Assembly
 from extrados.core.calls import interruptible
 from extrados.results.model import Result
@@ -23,7 +24,7 @@ def run(context: Context, options: Dem) -> Result:
             result = (tilt if options.test == "tilt" else motion).run(context, options, model)
     except dem_model.Falls as error:
         told = against_limit_analysis(context.building, stands=False)
-        raise Refused(f"{error}; {told}" if told else str(error)) from None
+        raise Refused(f"{error}; {told}" if told else str(error), WHOLE) from None
     if told := against_limit_analysis(context.building, stands=True):
         result.warnings.append(told)
     return result
@@ -37,7 +38,7 @@ def _of_solids(context: Context, options: Dem) -> Result:
             result = (solid_tilt if options.test == "tilt" else solid_motion).run(context, options, model)
     except dem_model.Falls as error:
         told = solids_against_limit_analysis(context.building, stands=False)
-        raise Refused(f"{error}; {told}" if told else str(error)) from None
+        raise Refused(f"{error}; {told}" if told else str(error), WHOLE) from None
     if told := solids_against_limit_analysis(context.building, stands=True):
         result.warnings.append(told)
     return result

@@ -15,7 +15,26 @@ if TYPE_CHECKING:
 
 #: Properties of a building that rigid contacts do not look at
 SPRINGS = ("material.young", "joints.cohesion", "joints.tension", "joints.normal_stiffness", "joints.damping")
+#: What says how stiff and damped springs are
+OF_SPRINGS = {"material.young"} | {
+    f"joints.{name}" for name in ("normal_stiffness", "stiffness_rule", "shear_stiffness", "shear_ratio", "damping",
+                                  "damping_ratio", "beta", "restitution", "energy_ratio")
+}  # fmt: skip
 Positive = Annotated[float, Field(gt=0.0)]
+
+
+def of_springs(building: "Building") -> set[str]:
+    """What of OF_SPRINGS counts: a value that is given goes before the rule that would make one."""
+    joints, found = building.joints, set(OF_SPRINGS)
+    if joints.normal_stiffness is not None:
+        found -= {"material.young", "joints.stiffness_rule"}
+    if joints.shear_stiffness is not None:
+        found.discard("joints.shear_ratio")
+    if joints.beta is not None:
+        found -= {"joints.damping", "joints.damping_ratio"}
+    if joints.beta is None and joints.damping == "restitution":
+        return found - {"joints.damping_ratio"}
+    return found - {"joints.restitution", "joints.energy_ratio"}
 
 
 class DemTable(BuildingAnalysis):
@@ -24,6 +43,11 @@ class DemTable(BuildingAnalysis):
     uses: ClassVar = (
         "material.density", "material.young", "joints.friction", "joints.cohesion", "joints.tension",
         "joints.normal_stiffness", "joints.damping",
+    )  # fmt: skip
+    beside: ClassVar = (
+        "joints.shear_stiffness", "joints.shear_ratio", "joints.stiffness_rule", "joints.damping_ratio", "joints.beta",
+        "joints.restitution", "joints.energy_ratio", "joints.worn_corners", "supports.stiffness", "initial.rotation_ratio",
+        "initial.movements",
     )  # fmt: skip
     solver: Literal["compliant", "nonsmooth"] = key(
         "compliant", "springs and dashpots at the joints, or rigid contacts that neither overlap nor pull (Moreau 1988, "
@@ -56,6 +80,11 @@ class DemTable(BuildingAnalysis):
         """As it says: rigid contacts do not ask how stiff and damped they are."""
         told = super().rests_on(building)
         return {key: fixed for key, fixed in told.items() if not (self.rigid and key in SPRINGS)}
+
+    def reckons_with(self, building: "Building") -> set[str]:
+        """Rigid contacts refuse mortar and a base that gives way, and look at nothing else that springs have."""
+        found = {*self.uses, *self.beside} - OF_SPRINGS
+        return found if self.rigid else found | of_springs(building)
 
     @model_validator(mode="after")
     def _one_solver(self) -> "DemTable":
@@ -143,8 +172,19 @@ class DemDomain(DemTable):
             raise ValueError("amplitudes must be above zero")
         return self
 
+    def reckons_with(self, building: "Building") -> set[str]:
+        """Beside an arch stands its four-hinge curve; a check by the other solver looks at springs, too."""
+        found = super().reckons_with(building) | (of_springs(building) if self.cross_check else set())
+        arch = building.structure is not None and building.structure.kind == "arch"
+        return found | {"joints.restitution"} if arch else found
+
 
 class DemParameters(DemTable):
     """Joint stiffnesses, impact frequencies and damping by the rules of thesis 7.3, without a run."""
 
     kind: Literal["dem-parameters"]
+
+    def reckons_with(self, building: "Building") -> set[str]:
+        """What stiffens and damps joints across them: nothing moves."""
+        shear = {"joints.shear_stiffness", "joints.shear_ratio"}
+        return {"material.density", "supports.stiffness", *of_springs(building)} - shear

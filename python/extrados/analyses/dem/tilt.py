@@ -128,7 +128,8 @@ def capacities(
     for sense, run in zip(SENSES, last, strict=True):
         if run is None:
             raise Refused(
-                f"stands at {options.tilt_limit / GRAVITY:g} g to {'+x' if sense > 0 else '-x'}: raise tilt_limit"
+                f"stands at {options.tilt_limit / GRAVITY:g} g to {'+x' if sense > 0 else '-x'}: raise tilt_limit",
+                ("analysis", "tilt_limit"),
             )
     while True:
         # as fine as numbers are where the middle is one of the ends

@@ -6,6 +6,7 @@ import numpy as np
 
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.tables import AppliedLoad
+from extrados.building.errors import WHOLE
 from extrados.building.geometry.anchors import stones_at
 from extrados.building.geometry.assembly import Assembly
 
@@ -33,7 +34,8 @@ def block_under(assembly: Assembly, x: float) -> tuple[int, float]:
         low = min(float(o[:, 0].min()) for o in assembly.outlines)
         high = max(float(o[:, 0].max()) for o in assembly.outlines)
         raise Refused(
-            f"a load at x = {x:.4g} m stands beside the structure, which reaches from {low:.4g} to {high:.4g} m"
+            f"a load at x = {x:.4g} m stands beside the structure, which reaches from {low:.4g} to {high:.4g} m",
+            WHOLE,
         )
     return best, height
 
@@ -42,7 +44,7 @@ def _block_at(assembly: Assembly, x: float, y: float) -> int:
     """The block that holds a point, or has it on its face."""
     if found := stones_at(assembly, np.array([x, y])):
         return found[0]
-    raise Refused(f"a load at x = {x:.4g}, y = {y:.4g} m acts on no block")
+    raise Refused(f"a load at x = {x:.4g}, y = {y:.4g} m acts on no block", WHOLE)
 
 
 def pieces(assembly: Assembly, load: AppliedLoad, number: int) -> list[tuple[int, np.ndarray, float]]:

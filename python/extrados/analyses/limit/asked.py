@@ -9,7 +9,7 @@ import numpy as np
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.tables import Imperfections, MovingSupports, Survey, Sweep
 from extrados.building.building import Building
-from extrados.building.errors import BadGeometry
+from extrados.building.errors import Key
 from extrados.building.files import read
 from extrados.building.structure import Structure
 from extrados.schema.constants import GRAVITY
@@ -98,10 +98,7 @@ def sections_of(context: Context, options: Survey) -> tuple[list[str], list[list
     """Header and rows of the table of a deck; Refused with its file and line where it is wrong."""
     key = ("analysis", "file")
     structure = context.deck.structure
-    try:
-        header, rows = _rows(read(options.file, LARGEST_FILE, context.deck.folder))
-    except (BadFile, BadGeometry, Refused) as error:
-        raise Refused(str(error), key) from None
+    header, rows = _rows(read(options.file, LARGEST_FILE, context.deck.folder, key), key)
     for name in header:
         if structure is not None and name != "name" and name.split(".")[0] not in type(structure).model_fields:
             raise Refused(
@@ -112,7 +109,7 @@ def sections_of(context: Context, options: Survey) -> tuple[list[str], list[list
     return header, rows
 
 
-def _rows(file: File) -> tuple[list[str], list[list[str]]]:
+def _rows(file: File, key: Key) -> tuple[list[str], list[list[str]]]:
     """Header and rows of a CSV file; Refused with file and line where it is wrong."""
     path = file.path
     try:
@@ -123,16 +120,16 @@ def _rows(file: File) -> tuple[list[str], list[list[str]]]:
             if not any(cell.strip() for cell in row):
                 continue
             if len(row) != len(header):
-                raise Refused(f"{path.name}:{reader.line_num}: {len(row)} cells, the header has {len(header)}")
+                raise Refused(f"{path.name}:{reader.line_num}: {len(row)} cells, the header has {len(header)}", key)
             rows.append([cell.strip() for cell in row])
             if len(rows) > MOST_ROWS:
-                raise Refused(f"{path.name}: more than {MOST_ROWS} sections")
+                raise Refused(f"{path.name}: more than {MOST_ROWS} sections", key)
     except (BadFile, csv.Error) as error:
-        raise Refused(f"{path.name}: is not a CSV table in UTF-8: {error}") from None
+        raise Refused(f"{path.name}: is not a CSV table in UTF-8: {error}", key) from None
     if not header or not rows:
-        raise Refused(f"{path.name}: expected a header of [structure] keys and at least one row")
+        raise Refused(f"{path.name}: expected a header of [structure] keys and at least one row", key)
     if len(set(header)) < len(header):
-        raise Refused(f"{path.name}:1: a column name stands twice")
+        raise Refused(f"{path.name}:1: a column name stands twice", key)
     return header, rows
 
 

@@ -11,7 +11,7 @@ from extrados.analyses.limit.applied import pieces
 from extrados.analyses.limit.needs import refuse_fracture
 from extrados.analyses.limit.tables import AppliedLoad, LimitAnalysisTable
 from extrados.building.building import Building
-from extrados.building.errors import BadGeometry
+from extrados.building.errors import WHOLE, BadGeometry
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
@@ -79,7 +79,7 @@ def limit_of(building: Building, options: LimitAnalysisTable, *, forces_only: bo
             starts=options.starts,
         )
     except Disconnected as error:
-        raise Refused(str(error)) from None
+        raise Refused(str(error), WHOLE) from None
 
 
 def answer_of(building: Building, options: LimitAnalysisTable, limit: LimitAnalysis | None = None) -> Answer:
@@ -90,9 +90,9 @@ def answer_of(building: Building, options: LimitAnalysisTable, limit: LimitAnaly
     except CannotStand as error:
         if isinstance(assembly, ArchAssembly) and limit.strength is None and not options.load:
             _ = ArchModel(assembly).collapse  # refuses with the minimum thickness, if that is the reason
-        raise Refused(f"the structure cannot stand under its own weight: {error}") from None
+        raise Refused(f"the structure cannot stand under its own weight: {error}", WHOLE) from None
     except NoEquilibrium as error:
-        raise Refused(str(error)) from None
+        raise Refused(str(error), WHOLE) from None
     if limit.associated and answer.gap > closed(len(assembly.a), answer.gamma):
         raise NoAnswer(f"the bounds from equilibrium and from the mechanism differ by {answer.gap:.2e} g")
     return answer
@@ -108,7 +108,7 @@ def fracture_of(building: Building, options: LimitAnalysisTable) -> Fracture | N
             assembly, leeward, 1, building.friction(), lambda cracked: loads_of(cracked, options, building)
         )
     except NoCrack as error:
-        raise Refused(f"fracture: {error}") from None
+        raise Refused(f"fracture: {error}", ("analysis", "fracture")) from None
 
 
 def mended_capacity(building: Building, options: LimitAnalysisTable, gamma: float) -> str | None:

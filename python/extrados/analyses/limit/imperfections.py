@@ -10,6 +10,7 @@ from extrados.analyses.limit.asked import deviation_of
 from extrados.analyses.limit.common import answer_of, geometry_arrays, loads_of
 from extrados.analyses.limit.tables import Imperfections
 from extrados.building.building import Building
+from extrados.building.errors import WHOLE
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.deviation import resurveyed
 from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium
@@ -65,7 +66,7 @@ def run(context: Context, options: Imperfections) -> Result:
     stand = np.isfinite(lesser)
     fallen = int((answered & ~stand).sum())
     if not stand.any():
-        raise Refused(f"none of {options.count} surveys within {1e3 * deviation:.3g} mm can stand")
+        raise Refused(f"none of {options.count} surveys within {1e3 * deviation:.3g} mm can stand", WHOLE)
     # A survey that cannot stand bears nothing: it belongs to the lower end of the band.
     borne = np.where(stand, lesser, 0.0)[answered]
     low, median, high = np.percentile(borne, [BAND[0], 50.0, BAND[1]]).tolist()

@@ -23,6 +23,7 @@ from extrados.analyses.limit.common import (
 from extrados.analyses.limit.tables import MovingLoad, PartialFactors
 from extrados.analyses.limit.trains import Train, fitting_train
 from extrados.analyses.limit.variation import signature, spoken
+from extrados.building.errors import WHOLE
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.chains import is_stack
 from extrados.building.geometry.earth import skyline
@@ -236,10 +237,12 @@ def run(context: Context, options: MovingLoad) -> Result:
         capacity = factor * options.force * factors.live * factors.dynamic
     k = int(factor.argmin())
     if not np.isfinite(factor[k]):
-        raise Refused(f"no load of this kind brings the {structure.word} down: it only presses the joints together")
+        raise Refused(
+            f"no load of this kind brings the {structure.word} down: it only presses the joints together", WHOLE
+        )
     worst = job.collapse(k)
     if worst is None:  # the sweep found it by the same steps
-        raise Refused("the most dangerous place was not found again")
+        raise Refused("the most dangerous place was not found again", WHOLE)
     state, mechanism = worst.state, worst.mechanism
     heavier = replace(assembly, mass=factors.masonry * assembly.mass)
     result = Result("moving-load")

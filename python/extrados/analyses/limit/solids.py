@@ -5,6 +5,7 @@ import numpy as np
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import named_places
 from extrados.analyses.limit.tables import Tilt
+from extrados.building.errors import WHOLE
 from extrados.building.geometry.assembly import GROUND
 from extrados.building.geometry.solids.assembly import SolidAssembly
 from extrados.limit.errors import Immovable
@@ -41,7 +42,8 @@ def run(context: Context, options: Tilt) -> Result:
         low, high = sorted((there.gamma, -back.gamma))
         raise Refused(
             f"the {word} cannot stand under its own weight: it stands only when pushed along {first:g} degrees by {low:.4f} to "
-            f"{high:.4f} g; proof: the mechanism of the lesser push, in which the weights do work"
+            f"{high:.4f} g; proof: the mechanism of the lesser push, in which the weights do work",
+            WHOLE,
         )
     rose = [found_at[round(d, 9)] for d in angles.tolist()]
     capacity = np.array([np.inf if one is None else _stands(one, assembly, word).gamma for one in rose])
@@ -102,7 +104,8 @@ def _stands(found: Programme | Falls | None, assembly: SolidAssembly, word: str)
         name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
         raise Refused(
             f"the {word} cannot stand under its own weight; proof: a motion, fastest at {name}, that no contact "
-            "hinders and by which the weights do work"
+            "hinders and by which the weights do work",
+            WHOLE,
         )
     return found
 

@@ -8,7 +8,7 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.asked import movements_of, refuse_still
 from extrados.analyses.limit.common import geometry_arrays, spoken_ties, state_arrays, tie_arrays, tie_rows, ties_of
 from extrados.analyses.limit.tables import MovingSupports
-from extrados.building.errors import BadGeometry
+from extrados.building.errors import WHOLE, BadGeometry
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.chains import in_order, is_stack
 from extrados.limit.loads import tilt_loads
@@ -49,7 +49,7 @@ def run(context: Context, options: MovingSupports) -> Result:
     try:
         states = support_movement(arch, (options.spread, -options.settle), options.steps)
     except NoEquilibrium as error:
-        raise Refused(f"the arch cannot follow the movement: {error}") from None
+        raise Refused(f"the arch cannot follow the movement: {error}", WHOLE) from None
     movement = np.array([s.movement for s in states])
     force = np.array([s.force for s in states])
     ends = arch.p[[0, -1]]
@@ -144,7 +144,7 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
     try:
         found = settle(limit, movement)
     except NoEquilibrium as error:
-        raise Refused(f"the {building.structure.word} cannot follow the movement: {error}") from None
+        raise Refused(f"the {building.structure.word} cannot follow the movement: {error}", WHOLE) from None
     motion = found.motion
     wide = motion[:, :2].max(axis=1)
     moving = np.flatnonzero(np.abs(motion).max(axis=1) > OPENS * np.abs(motion).max())

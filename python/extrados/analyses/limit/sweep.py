@@ -87,7 +87,9 @@ def run(context: Context, options: Sweep) -> Result:
     swept = sweep(context, "sweep", Values(ask, values), len(values), f"sweep of {options.vary}", slow=True)
     outcomes = outcomes_of(swept.whole())
     if all(o.gamma is None for o in outcomes):
-        raise Refused(f"no value of {options.vary} gives a structure that stands: {outcomes[-1].reason}")
+        raise Refused(
+            f"no value of {options.vary} gives a structure that stands: {outcomes[-1].reason}", ("analysis", "vary")
+        )
     changes = _changes(context, ask, values, outcomes) if options.locate and not whole else []
     numbers: dict[Signature, int] = {}
     for _, signature in sorted(

@@ -1,12 +1,15 @@
 """Analysis kinds of limit analysis: tilt, thrust, sweep, survey, imperfections, supports, moving load."""
 
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import model_validator
 
 from extrados.analyses.table import Animated, BuildingAnalysis
 from extrados.schema.quantities import Angle, Force, Gravities, Length, LineForce
 from extrados.schema.table import Table, key
+
+if TYPE_CHECKING:
+    from extrados.building.building import Building
 
 
 class AppliedLoad(Table):
@@ -131,6 +134,7 @@ class MovingSupports(BuildingAnalysis, Animated):
     """
 
     kind: Literal["supports"]
+    beside: ClassVar = ("material.density", "joints.friction", "initial.movements")
     bears: ClassVar = ("[[ties]]",)
     spread: float = key(1.0, "outward movement of the right support, relative to the other component", ge=-10, le=10)
     settle: float = key(0.0, "downward movement of the right support, relative to the other component", ge=-10, le=10)
@@ -140,6 +144,13 @@ class MovingSupports(BuildingAnalysis, Animated):
         gt=0,
     )
     steps: int = key(200, "of an arch: steps from rest to the fall", ge=10, le=5000)
+
+    def reckons_with(self, building: "Building") -> set[str]:
+        """Through its three-hinge states an arch opens alone, and does not slide."""
+        found = super().reckons_with(building)
+        if not building.initial.movements and not building.ties and building.one_arch:
+            found.discard("joints.friction")
+        return found
 
 
 class UniformLoad(Table):

@@ -16,6 +16,7 @@ from extrados.analyses.limit.common import (
     tie_rows,
 )  # fmt: skip
 from extrados.analyses.limit.tables import Thrust
+from extrados.building.errors import WHOLE
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.chains import is_stack
 from extrados.limit.answer import Answer, CannotStand, assess, safety_factor
@@ -33,7 +34,7 @@ def run(context: Context, options: Thrust) -> Result:
     try:
         answer = assess(assembly, limit=limit)
     except CannotStand as error:
-        raise Refused(f"the structure cannot stand under its own weight: {error}") from None
+        raise Refused(f"the structure cannot stand under its own weight: {error}", WHOLE) from None
     low, high = answer.back_state.gamma, answer.gamma
     ends: dict[str, State] = {}
     result = Result("thrust")
@@ -43,7 +44,8 @@ def run(context: Context, options: Thrust) -> Result:
         states, part = _with_central(limit, options.gamma, ends, result)
     except NoEquilibrium:
         raise Refused(
-            f"at {options.gamma:g} g no thrust line is admissible: the structure bears {low:.4f} to {high:.4f} g"
+            f"at {options.gamma:g} g no thrust line is admissible: the structure bears {low:.4f} to {high:.4f} g",
+            ("analysis", "gamma"),
         ) from None
     safety = None if part is None else safety_factor(part)
     lines = {}

@@ -1,5 +1,7 @@
 """tilt: the horizontal acceleration at which a structure becomes a mechanism (thesis chapter 3)."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from extrados.analyses.context import Context
@@ -21,7 +23,7 @@ from extrados.analyses.limit.common import (
 from extrados.analyses.limit.tables import Tilt
 from extrados.building.building import Building
 from extrados.building.errors import NoView
-from extrados.building.geometry.assembly import Assembly
+from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.answer import Answer
 from extrados.limit.fracture import Fracture
 from extrados.limit.graphic import thrust_joint, thrust_of
@@ -277,10 +279,18 @@ def _some(names: list[str], apart: str = ", ") -> str:
     return apart.join(names[:MOST_NAMED]) + (f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else "")
 
 
+def _sliding(assembly: Assembly, joints: Sequence[int]) -> str:
+    """The joints that slide; of what slides as a whole its base."""
+    grounded = np.flatnonzero((assembly.a == GROUND) | (assembly.b == GROUND)).tolist()
+    if len(grounded) > 1 and set(joints) == set(grounded):
+        return f"its whole base ({len(grounded)} joints)"
+    return _some([assembly.joint_names[j] for j in joints])
+
+
 def _words(what: str, assembly: Assembly, answer: Answer, found: out.Tilt) -> str:
     gamma, back = answer.gamma, -answer.back_state.gamma
     where = _some([h.told() for h in found.hinges], "; ")
-    slides = _some([assembly.joint_names[j] for j in answer.mechanism.sliding])
+    slides = _sliding(assembly, answer.mechanism.sliding)
     moves = ([f"it hinges at the {where}"] if where else []) + ([f"it slides or parts at {slides}"] if slides else [])
     text = (
         f"The {what} becomes a mechanism at a constant horizontal acceleration of {gamma:.4f} g, or when its base is "

@@ -53,7 +53,9 @@ def _periods(options: MotionStudy, step: float) -> np.ndarray:
     """Of a spectrum [s]; Refused where the time step is too long for those that are asked for or of a measure."""
     shortest = core.POINTS_PER_CYCLE * step / 4096.0
     if shortest > (needed := min(options.longest, HOUSNER_BAND[0])):
-        raise Refused(f"a time step of {step:.3g} s is too long for the spectrum at a period of {needed:g} s")
+        raise Refused(
+            f"a time step of {step:.3g} s is too long for the spectrum at a period of {needed:g} s", ("motion",)
+        )
     return np.geomspace(max(options.shortest, shortest), options.longest, options.periods)
 
 
@@ -243,7 +245,7 @@ def _readable(context: Context, model: models.Suite, warnings: list[str]) -> lis
     if len(wrong) > 10:
         warnings.append(f"and {len(wrong) - 10} more records that cannot be read")
     if not found:
-        raise Refused(f"none of the {len(wrong)} records can be read; the first: {wrong[0]}")
+        raise Refused(f"none of the {len(wrong)} records can be read; the first: {wrong[0]}", ("motion",))
     return found
 
 
@@ -269,7 +271,7 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
     try:
         members, count = _members(context, options, warnings)
     except RecordError as error:
-        raise Refused(str(error)) from None
+        raise Refused(str(error), ("motion",)) from None
     shown = [(motion.name, *series(motion)) for motion in members.motions(0, min(count, SHOWN), context.threads)]
     periods = _periods(options, shown[0][2])
     measures = sweep(context, "measures", Measures(members, suite), count, "measures of motions").whole().arrays

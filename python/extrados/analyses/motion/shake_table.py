@@ -73,7 +73,7 @@ def _play(context: Context, options: ShakeTable, table: Table, result: Result) -
     try:
         drive = make_drive(acceleration, step, options.low_cut)
     except ValueError as error:
-        raise Refused(str(error)) from None
+        raise Refused(str(error), ("analysis", "low_cut")) from None
     fits = [fit(table, drive, mass, options.keep) for mass in options.masses]
     # one drive for all masses: the scales of the heaviest suit the lighter ones
     heaviest = int(np.argmax(options.masses))

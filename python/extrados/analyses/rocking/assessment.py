@@ -6,6 +6,7 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.rocking.criterion import CAP, Fit, fit_own, interpolated
 from extrados.analyses.rocking.tables import Assessment
+from extrados.building.errors import WHOLE
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.rocker import Rocker
 from extrados.core.rocking import FAILED, OUTCOMES, ensemble
@@ -32,7 +33,7 @@ def run(context: Context, options: Assessment) -> Result:
     try:
         own, own_periods, own_curve = fit_own(rocker.body, gamma, scale, context.threads, context=context)
     except ValueError as error:
-        raise Refused(f"no failure curve of single sines could be fitted: {error}") from None
+        raise Refused(f"no failure curve of single sines could be fitted: {error}", WHOLE) from None
     result = Result("assessment")
     # The table was made of arches with the thesis' impact rule: anything else is judged by its own curve.
     table = None

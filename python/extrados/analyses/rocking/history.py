@@ -43,7 +43,8 @@ def run_history(
         least = end_time * width / LARGEST
         raise Refused(
             f"a history of {end_time:g} s in steps of {options.output_step:g} s is too long to store; "
-            f"the least output_step that fits is {least:.2g} s"
+            f"the least output_step that fits is {least:.2g} s",
+            ("analysis", "output_step"),
         )
     settings: dict[str, Any] = {
         "tolerance": options.tolerance,

@@ -35,7 +35,10 @@ def run(context: Context, options: Rocking) -> Result:
     p = float(model.rigid.frequency.min())
     end_time = options.end_time or context.motion.end + SETTLE / p
     if end_time / options.output_step * 20 > LARGEST:
-        raise Refused(f"a history of {end_time:g} s in steps of {options.output_step:g} s is too long to store")
+        raise Refused(
+            f"a history of {end_time:g} s in steps of {options.output_step:g} s is too long to store",
+            ("analysis", "output_step"),
+        )
     ratio = building.initial.rotation_ratio
     start = soft_base_start(model.core, model.turned(ratio))
     room = ROOM

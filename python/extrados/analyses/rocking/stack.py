@@ -28,7 +28,10 @@ def run(context: Context, options: Rocking) -> Result:
     alpha, unit = model.whole
     end_time = options.end_time or context.motion.end + SETTLE * max(unit, model.alone[1])
     if end_time / options.output_step * 20 > LARGEST:
-        raise Refused(f"a history of {end_time:g} s in steps of {options.output_step:g} s is too long to store")
+        raise Refused(
+            f"a history of {end_time:g} s in steps of {options.output_step:g} s is too long to store",
+            ("analysis", "output_step"),
+        )
     turned = building.initial.rotation_ratio * alpha
     start = (turned, turned, 0.0, 0.0)
 

@@ -24,6 +24,10 @@ class RockingTable(BuildingAnalysis):
     view: ClassVar = "rocker"
     uses: ClassVar = ("material.density", "joints.restitution", "joints.friction", "initial.rotation_ratio")
     method: ClassVar = {"joints.friction": NO_SLIDING}
+    beside: ClassVar = (
+        "joints.energy_ratio", "initial.movements", "supports.abutting_wall", "supports.rebound", "supports.stiffness",
+        "supports.foundation", "supports.damping_ratio",
+    )  # fmt: skip
     bears: ClassVar = HOLDS
     soft_base: ClassVar = False
     form: Literal["nonlinear", "linear"] = key(
@@ -42,6 +46,13 @@ class RockingTable(BuildingAnalysis):
         if self.soft_base and building.supports.stiffness is not None:
             found.pop("joints.restitution", None)
             found |= {f"supports.{key}": None for key in ("stiffness", "foundation", "damping_ratio")}
+        return found
+
+    def reckons_with(self, building: Building) -> set[str]:
+        """Two stacked blocks take impacts without rebound, whatever the deck says."""
+        found = super().reckons_with(building)
+        if building.structure is not None and building.structure.rocks_as == "stack":
+            found.discard("joints.restitution")
         return found
 
 

@@ -35,7 +35,7 @@ def capacities(
         if facing > ALONG:
             rows += [{**row, "facing": facing} for row in _piers(model, plan, w, wall, rules, strength, under)]
     if not rows:
-        raise Refused("frame: no wall stands along the push")
+        raise Refused("frame: no wall stands along the push", ("analysis", "frame"))
     share = _shares(model, plan)
     found = []
     for code in CODES:
@@ -82,7 +82,8 @@ def _piers(
             if not 0.0 < load < 0.7 * strength * width * thickness:
                 raise Refused(
                     f"frame: a pier of wall '{wall.name}', storey {storey}, bears {load / 1e3:.4g} kN under the constant loads; "
-                    f"its formulas need a pressure below 0.7 f_m, {0.7e-3 * strength * width * thickness:.4g} kN"
+                    f"its formulas need a pressure below 0.7 f_m, {0.7e-3 * strength * width * thickness:.4g} kN",
+                    ("analysis", "frame"),
                 )
             double = rules.fixity == "double"
             lines = [

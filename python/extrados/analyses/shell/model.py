@@ -80,7 +80,7 @@ class ShellModel:
                 ("structure",),
             ) from None
         except core.BadElement as error:
-            raise Refused(str(error)) from None
+            raise Refused(str(error), ("structure",)) from None
 
     def borne(self, options: Pushover, curve: Curve, state: State, threads: int) -> np.ndarray:
         """What each ground bears in a state [N], in the direction in which it may give way."""

@@ -1,15 +1,18 @@
 """The deck table of the push of a building."""
 
-from typing import Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from extrados.analyses.sla.tables import CrackOptions, Staged
+from extrados.analyses.sla.tables import MATERIAL, CrackOptions, Staged, without_effect
 from extrados.analyses.table import BuildingAnalysis
 from extrados.building.mesh.shells import ShellOptions
 from extrados.building.places import Range
 from extrados.schema.quantities import Angle, Force, Length, Stress
 from extrados.schema.table import Table, key
+
+if TYPE_CHECKING:
+    from extrados.building.building import Building
 
 
 class Drive(Table):
@@ -120,6 +123,7 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
         "material.density", "material.young", "material.poisson", "material.tensile_strength", "material.fracture_energy",
         "material.compressive_strength", "material.tensile_strength_parallel", "material.shear_strength",
     )  # fmt: skip
+    beside: ClassVar = MATERIAL
     starter_structure: ClassVar = "building"
     starter: ClassVar = {"mesh": '{ size = "0.6 m", layers = 3 }', "ripple": "0.2", "events": "1500"}
 
@@ -178,6 +182,13 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     #: What the events of sla ask for and a push does not offer
     solution: ClassVar = "events"
     algorithm: ClassVar = "update"
+
+    def reckons_with(self, building: "Building") -> set[str]:
+        """Walls, floors and shells have materials, and no joints between stones; formulas of piers ask for a strength."""
+        found = {*MATERIAL} - without_effect(building)
+        if self.frame is not None and self.frame.compressive_strength is None:
+            found.add("material.compressive_strength")
+        return found
 
     @model_validator(mode="after")
     def _consistent(self) -> "Pushover":

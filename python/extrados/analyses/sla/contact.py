@@ -7,6 +7,7 @@ import numpy as np
 from extrados.analyses.context import Refused
 from extrados.analyses.sla.model import SlaModel
 from extrados.analyses.sla.tables import Sla
+from extrados.building.errors import WHOLE
 from extrados.core import sla as core
 from extrados.core.errors import CoreError, status_code
 
@@ -103,7 +104,8 @@ def settle(core_model: core.Model, model: SlaModel, options: Sla, warnings: list
         if _rounds(core_model, model, dry, damage, start, MOST_ROUNDS) is None:
             raise Refused(
                 "the constant loads are not carried: dry joints that only press cannot balance them, the stones would "
-                "fall; limit analysis (tilt) says by how much"
+                "fall; limit analysis (tilt) says by how much",
+                WHOLE,
             )
         return False
     # What touches without sliding is a sound beginning

@@ -18,6 +18,7 @@ from extrados.analyses.sla.incremental import run_incremental
 from extrados.analyses.sla.kept import State, UnderWay
 from extrados.analyses.sla.model import MECHANISM, MECHANISM_OF_STONES, SlaModel
 from extrados.analyses.sla.tables import Sla
+from extrados.building.errors import WHOLE
 from extrados.core import lists
 from extrados.core import sla as core
 from extrados.core.errors import CoreError, status_code
@@ -130,7 +131,8 @@ def run_curves(
     if model.slides and (options.solution == "incremental" or options.without_equilibrium != "load-unload"):
         raise Refused(
             "joints that slide keep forces that neither an incremental solution nor other variants can "
-            'follow: give them no friction coefficient (friction = "no-sliding"), or take events with load-unload'
+            'follow: give them no friction coefficient (friction = "no-sliding"), or take events with load-unload',
+            ("joints", "friction"),
         )
     curves = []
     with model.open(options, threads) as core_model:
@@ -138,7 +140,8 @@ def run_curves(
         if damage is not None:
             if damage.shape[1] != core_model.points:
                 raise Refused(
-                    f"resume_from: that wall has {damage.shape[1]} points with its bars, this one {core_model.points}"
+                    f"resume_from: that wall has {damage.shape[1]} points with its bars, this one {core_model.points}",
+                    ("analysis", "resume_from"),
                 )
             core_model.set_damage(damage)
         else:
@@ -254,7 +257,8 @@ def _constant_stage(
         most = float(events.load.max()) if len(events) else 0.0
         why = events.reason or f"{way.done} events were not enough"
         raise Refused(
-            f"the constant loads are not carried: with damage the wall reaches {100 * most:.3g} % of them ({why})"
+            f"the constant loads are not carried: with damage the wall reaches {100 * most:.3g} % of them ({why})",
+            WHOLE,
         )
     return events
 
@@ -313,7 +317,8 @@ def run_reference_loads(
                 raise
             raise Refused(
                 "the constant loads alone exceed the strength, and no multiplier of the reference load relieves "
-                "them: let constant_damage = true bring them on with damage, or lower them"
+                "them: let constant_damage = true bring them on with damage, or lower them",
+                WHOLE,
             ) from None
         spent = time.perf_counter() - clock
         if model.driven:  # as of a force that moves them

@@ -84,10 +84,11 @@ class SlaModel:
             x, y = self.mesh.xy[error.node]
             raise Refused(
                 f"the wall is a mechanism: node {error.node + 1} at x {x:g} m, y {y:g} m is free to move in "
-                f"{error.direction}; {_coincident(self.mesh) or 'add supports'}"
+                f"{error.direction}; {_coincident(self.mesh) or 'add supports'}",
+                ("supports", "held"),
             ) from None
         except core.BadElement as error:
-            raise Refused(str(error)) from None
+            raise Refused(str(error), ("structure",)) from None
 
 
 def _coincident(mesh: Mesh) -> str:

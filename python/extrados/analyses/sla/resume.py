@@ -77,7 +77,9 @@ def _law(law: core.Softening | Sequence[core.Softening | None] | None) -> list:
 
 def _refuse_other(there: Makeup | None, here: Makeup) -> None:
     if there is None:
-        raise Refused("resume_from: that run does not say of which materials it was; run it again with this version")
+        raise Refused(
+            "resume_from: that run does not say of which materials it was; run it again with this version", RESUME
+        )
     words = {
         "stiffness": "stiffness or thickness",
         "tension": "tensile laws, teeth or crack bands",
@@ -87,7 +89,7 @@ def _refuse_other(there: Makeup | None, here: Makeup) -> None:
     other = [words[name] for name in words if getattr(there, name) != getattr(here, name)]
     if other:
         raise Refused(
-            f"resume_from: that wall has other {' and other '.join(other)}; its damage says nothing of this one"
+            f"resume_from: that wall has other {' and other '.join(other)}; its damage says nothing of this one", RESUME
         )
 
 
@@ -109,21 +111,27 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
         there, here = get["point_xy"], model.point_xy
         if len(there) != len(here):
             raise Refused(
-                f"resume_from: that wall has {len(there)} points, this one {len(here)}; the mesh must be the same"
+                f"resume_from: that wall has {len(there)} points, this one {len(here)}; the mesh must be the same",
+                RESUME,
             )
         apart = float(np.abs(there - here).max())
         if apart > 1e-6 * model.mesh.size:
-            raise Refused(f"resume_from: the points of that wall lie up to {apart:.3g} m away from those of this one")
+            raise Refused(
+                f"resume_from: the points of that wall lie up to {apart:.3g} m away from those of this one", RESUME
+            )
         if len(get["event_point"]) and get["event_point"].max() < 0:
-            raise Refused("resume_from: that run was incremental and has no events to go on from")
+            raise Refused("resume_from: that run was incremental and has no events to go on from", RESUME)
         if stored["sla"].get("stages"):
             raise Refused(
-                "resume_from: that run was in stages, whose supports and loads are not kept: write one more stage"
+                "resume_from: that run was in stages, whose supports and loads are not kept: write one more stage",
+                RESUME,
             )
         _refuse_other(stored["sla"].get("makeup"), makeup(model))
         event = len(get["event_point"]) if options.resume_event is None else options.resume_event
         if event > len(get["event_point"]):
-            raise Refused(f"resume_event is {event}, that run has {len(get['event_point'])} events")
+            raise Refused(
+                f"resume_event is {event}, that run has {len(get['event_point'])} events", ("analysis", "resume_event")
+            )
         earlier = None
         if event >= 1:
             totals = [float(get[f"event_{name}"][event - 1]) for name in LEDGER]
@@ -156,7 +164,8 @@ def _damage_at(event: int, get: dict[str, np.ndarray], traceless: str | None) ->
     if traceless is not None:
         raise Refused(
             f"resume_event: the damage before event {event} was not kept, and {traceless} leave no trace of it; kept "
-            f"were events {', '.join(str(e) for e in kept)}: name others in states of that run"
+            f"were events {', '.join(str(e) for e in kept)}: name others in states of that run",
+            ("analysis", "resume_event"),
         )
     return damage_before(
         get["damage_start"].T, get["damage_end"].T, get["event_point"][: event - 1], get["event_code"][: event - 1]

@@ -7,7 +7,7 @@ from pydantic import Field, field_validator, model_validator
 from extrados.analyses.table import Animated, BuildingAnalysis
 from extrados.building.mesh.options import MeshOptions
 from extrados.building.places import Placed, Range
-from extrados.building.properties import NO_SLIDING
+from extrados.building.properties import NO_SLIDING, Material
 from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import Acceleration, Force, Length, LineForce, Stress
 from extrados.schema.table import Table, key
@@ -134,6 +134,30 @@ class Stage(Table):
         return any(load.kind == "displacement" for load in self.reference)
 
 
+#: What finite elements look at of every material, and of joints between stones
+MATERIAL = tuple(f"material.{name}" for name in Material.model_fields)
+ROWS = ("joints.tension", "joints.fracture_energy", "joints.normal_stiffness", "supports.stiffness")
+INTERFACES = (
+    *ROWS, "joints.friction", "joints.cohesion", "joints.shear_energy", "joints.compressive_strength", "joints.crushing_energy",
+    "joints.softening", "joints.shear_stiffness", "joints.shear_ratio",
+)  # fmt: skip
+
+
+def without_effect(building: "Building") -> set[str]:
+    """Keys of its materials that say how something cracks or crushes which none of them lets crack or crush."""
+    given, found = [building.material, *building.materials.values()], set()
+    crush = any(m.crushing_energy is not None for m in given)
+    if not crush and not any(m.lateral_reduction for m in given):
+        found.add("material.compressive_strength")
+    if not crush:
+        found.add("material.crushing")
+    if not any(m.compressive_strength_parallel is not None for m in given):
+        found |= {"material.compressive_coupling", "material.compressive_shear"}
+    if not any(m.tensile_strength is not None for m in given):
+        found |= {"material.softening", "material.lateral_reduction"}
+    return found
+
+
 class CrackOptions(Table):
     """How cracking masonry softens, and how cracks stand, in every analysis that is sequentially linear."""
 
@@ -200,6 +224,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         "material.density", "material.young", "material.poisson", "material.tensile_strength", "material.fracture_energy",
         "material.compressive_strength", "material.tensile_strength_parallel", "material.shear_strength", "joints.tension",
     )  # fmt: skip
+    beside: ClassVar = (*MATERIAL, *INTERFACES, "supports.held")
     starter_structure: ClassVar = "panel"
     starter: ClassVar = {"target_displacement": '"2 mm"', "ripple": "0.2"}
 
@@ -210,6 +235,16 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
             return {**found, "joints.friction": NO_SLIDING}
         if building.meshed_by_stones or self.mesh.joints == "interfaces":
             return {**found, "joints.friction": None, "joints.cohesion": None}
+        return found
+
+    def reckons_with(self, building: "Building") -> set[str]:
+        """Joints are of stones; of thin rows of elements, what opens and does not slide."""
+        joints: tuple[str, ...] = ()
+        if building.meshed_by_stones or self.mesh.joints is not None:
+            joints = (*ROWS, "joints.friction") if self.mesh.joints == "rows" else INTERFACES
+        found = {*MATERIAL, "supports.held", *joints} - without_effect(building)
+        if building.joints.shear_stiffness is not None:
+            found.discard("joints.shear_ratio")
         return found
 
     constant: list[Load] | None = key(

@@ -59,7 +59,8 @@ def sensitivity(
     if without:
         raise Refused(
             f"{len(without)} of {len(made.bodies)} buildings of the sample do not rock ({without[0]}): the indices of the "
-            "sensitivity need all of them; smaller scatters may help"
+            "sensitivity need all of them; smaller scatters may help",
+            ("analysis", "uncertain"),
         )
     bodies = [body for body in made.bodies if not isinstance(body, str)]
     chosen = np.minimum((points[:, -1] * len(usable)).astype(int), len(usable) - 1) if len(usable) > 1 else 0
@@ -69,7 +70,10 @@ def sensitivity(
     job = runs_job(bodies, usable, body, chosen, 1.0, end, start, tolerance=tolerance, strict=False)
     swept = sweep(context, "sensitivity", job, len(points), "sensitivity").whole()
     if (failed := int((swept["outcome"] == FAILED).sum())) > 0:
-        raise Refused(f"{failed} of {len(points)} runs of the sensitivity fail: its indices need all of them")
+        raise Refused(
+            f"{failed} of {len(points)} runs of the sensitivity fail: its indices need all of them",
+            ("analysis", "uncertain"),
+        )
     answers = np.stack([np.minimum(swept["peak_ratio"], 1.0), swept["outcome"] == COLLAPSE]).astype(float)
     whole = answers.reshape(2, d + 2, samples)
     found = [_indices(rows[None], d) for rows in whole]

@@ -1,13 +1,16 @@
 """Analysis kinds of the rocking statistics: fragility, resonance, spectra, code checks."""
 
 from itertools import pairwise
-from typing import Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
 from extrados.analyses.rocking.tables import HOLDS, SOFT_BASE, RockingTable
 from extrados.schema.quantities import Acceleration, Angle, Frequency, OrText, Time, factor, parse
 from extrados.schema.table import Table, key
+
+if TYPE_CHECKING:
+    from extrados.building.building import Building
 
 #: Measures of levels that have a dimension: SI unit, and the unit of a bare number
 LEVELS = {"pga": ("m/s^2", "g"), "sa": ("m/s^2", "g"), "arias": ("m/s", "m/s")}
@@ -205,6 +208,13 @@ class RockingSpectrum(RockingTable):
         if not all(0.0 < a < 45.0 for a in self.slenderness):
             raise ValueError("slenderness is alpha in degrees, expected above 0 and below 45")
         return self
+
+    def reckons_with(self, building: "Building") -> set[str]:
+        """They start at rest. Of blocks it takes the restitution alone, and refuses what it does not take of impacts and of the
+        ground."""
+        if building.structure is not None and building.structure.kind == "arch":
+            return super().reckons_with(building) - {"initial.rotation_ratio"}
+        return {"joints.restitution", "joints.friction", "joints.energy_ratio", "supports.stiffness"}
 
 
 class HarmonicMap(RockingTable):

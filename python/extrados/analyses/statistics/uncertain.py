@@ -135,7 +135,7 @@ def _model(building: Building, options: Fragility, factor: dict[str, float], see
     if "corners" in factor:
         left = 1.0 - (1.0 - structure.thickness_factor) * factor["corners"]
         if left <= 0.0:
-            raise NoView("its corners are worn away")
+            raise NoView("its corners are worn away", ("analysis", "uncertain", "corners"))
         update["thickness_factor"] = left
     changed = building.having(
         structure=structure.model_copy(update=update), supports=building.supports.model_copy(update=base)

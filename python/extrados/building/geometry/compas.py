@@ -40,7 +40,9 @@ def read_compas(value: Any, name: str, unit: str | None = None) -> tuple[Drawing
     else:
         faults = {AXES[a]: next(k for k, m in meshes.items() if _section(*m, a) is None) for a in (1, 0, 2)}
         told = ", ".join(f"block {key} along {a}" for a, key in faults.items())
-        raise NoView(f"{name}: the blocks are no prisms across one plane ({told}); a section needs prisms")
+        raise NoView(
+            f"{name}: the blocks are no prisms across one plane ({told}); a section needs prisms", ("structure", "file")
+        )
     blocks, ground, depths = [], [], []
     for key, found in sections.items():
         assert found is not None

@@ -17,7 +17,7 @@ def fill_outline(drawing: str, unit: str | None, folder: Path, size: float, seed
     from matplotlib.path import Path as Ring
     from scipy.spatial import Delaunay, cKDTree
 
-    blocks = read_dxf(read(drawing, LARGEST_FILE, folder), unit).blocks
+    blocks = read_dxf(read(drawing, LARGEST_FILE, folder, ("structure", "outline")), unit).blocks
     rings = sorted((np.asarray(p.points) for p in blocks), key=lambda r: -abs(signed_area(r)))
     if not rings:
         raise BadGeometry(f"{drawing}: no closed polyline in the drawing")

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from extrados.building.errors import NoView
+from extrados.building.errors import WHOLE, NoView
 from extrados.building.geometry.mass import together
 from extrados.building.rockers.impact import energy_kept
 from extrados.building.templates.arch import ArchAssembly, make_arch
@@ -106,7 +106,7 @@ class ArchModel:
             state, mechanism = self.limit.collapse(1)
         except Immovable:
             raise NoView(
-                "no horizontal load makes a mechanism of this arch: its joints hold it from all sides"
+                "no horizontal load makes a mechanism of this arch: its joints hold it from all sides", WHOLE
             ) from None
         except NoEquilibrium:
             state = None
@@ -116,7 +116,8 @@ class ArchModel:
             raise NoView(
                 f"the arch cannot stand under its own weight: the effective thickness is {a.thickness:.4g} m "
                 f"(t/R {a.thickness / a.radius:.4f}), the least for {np.degrees(a.embrace):g} deg and "
-                f"{a.voussoirs} voussoirs is {least * a.radius:.4g} m (t/R {least:.5f})"
+                f"{a.voussoirs} voussoirs is {least * a.radius:.4g} m (t/R {least:.5f})",
+                ("structure", "thickness"),
             )
         return state, mechanism
 
@@ -126,7 +127,7 @@ class ArchModel:
         try:
             return four_hinge(self.arch, self.collapse[1])
         except ValueError as error:
-            raise NoView(f"rocking needs a four-hinge mechanism, but {error}") from None
+            raise NoView(f"rocking needs a four-hinge mechanism, but {error}", WHOLE) from None
 
     @cached_property
     def limits(self) -> core_arch.Limits:
@@ -156,7 +157,8 @@ class ArchModel:
         if value < 0.0:
             raise NoView(
                 f'the impact rule "{self.rule}" gives c_v = {value:.3f}: the mirrored mechanism would have to close '
-                f'further; restitution = "inelastic" gives {self.impacts.inelastic:.3f}'
+                f'further; restitution = "inelastic" gives {self.impacts.inelastic:.3f}',
+                ("joints", "restitution"),
             )
         return min(value, 1.0)
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from extrados.building.errors import NoView
+from extrados.building.errors import WHOLE, NoView
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.earth import passive_left_out
 from extrados.building.rockers.impact import MOST_BLOCKS, energy_kept
@@ -75,9 +75,9 @@ class MechanismModel:
             if not found[1][0].gamma < 0.0 < found[0][0].gamma:
                 raise NoEquilibrium
         except Immovable as error:
-            raise NoView(f"it does not rock: {error}") from None
+            raise NoView(f"it does not rock: {error}", WHOLE) from None
         except NoEquilibrium:
-            raise NoView(f"it does not stand: {why_not(limit)}") from None
+            raise NoView(f"it does not stand: {why_not(limit)}", WHOLE) from None
         return found
 
     @cached_property
@@ -88,7 +88,7 @@ class MechanismModel:
             try:
                 made.append(linkage(self.assembly, mechanism, side))
             except CannotRock as error:
-                raise NoView(f"the collapse mechanism to {WORD[side]} does not rock: {error}") from None
+                raise NoView(f"the collapse mechanism to {WORD[side]} does not rock: {error}", WHOLE) from None
         return made[0], made[1]
 
     @cached_property
@@ -99,12 +99,15 @@ class MechanismModel:
             try:
                 table = core_mechanism.table(one)
             except CoreError as error:
-                raise NoView(f"the mechanism to {WORD[side]} cannot be carried through its motion: {error}") from None
+                raise NoView(
+                    f"the mechanism to {WORD[side]} cannot be carried through its motion: {error}", WHOLE
+                ) from None
             uplift = side * table.gravity_moment / (table.drive * GRAVITY)
             if abs(uplift - state.gamma) > SAME * abs(state.gamma):
                 raise NoView(
                     f"the mechanism to {WORD[side]} moves at {uplift:.6g} g by its own weight, but limit analysis says "
-                    f"{state.gamma:.6g} g: some load on it is not its mass"
+                    f"{state.gamma:.6g} g: some load on it is not its mass",
+                    WHOLE,
                 )
             made.append(table)
         return made[0], made[1]
@@ -178,12 +181,16 @@ class MechanismModel:
             if self.energy_kept is None:
                 raise NoView(
                     f'the impact rule "inelastic" is for at most {MOST_BLOCKS} blocks; give [joints] restitution = '
-                    '"energy-safe" or a number'
+                    '"energy-safe" or a number',
+                    ("joints", "restitution"),
                 )
             right, left = np.sqrt(self.energy_kept)
             return float(right) * ratio, float(left) / ratio
         if isinstance(rule, str):
-            raise NoView(f'the impact rule "{rule}" is not known here: "energy-safe", "inelastic", or a number')
+            raise NoView(
+                f'the impact rule "{rule}" is not known here: "energy-safe", "inelastic", or a number',
+                ("joints", "restitution"),
+            )
         return float(rule) * ratio, float(rule) / ratio
 
     def rivals(self, factor: float) -> dict[str, tuple[float, Body]]:

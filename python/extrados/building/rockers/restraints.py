@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from extrados.building.devices import AddedHinge, Damper
-from extrados.building.errors import BadGeometry, Key, NoView
+from extrados.building.errors import WHOLE, BadGeometry, Key, NoView
 from extrados.building.geometry.anchors import stone_at
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.rockers.block import BlockModel
@@ -67,7 +67,7 @@ class Restraints:
             try:
                 found.append(paths(one, sort, self._parts(one), points, reach))
             except CoreError as error:
-                raise NoView(f"what holds it cannot be carried through its motion: {error}") from None
+                raise NoView(f"what holds it cannot be carried through its motion: {error}", WHOLE) from None
         return found[0], found[1]
 
     def _parts(self, one: Linkage) -> np.ndarray:

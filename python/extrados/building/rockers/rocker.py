@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from extrados.building.errors import NoView
+from extrados.building.errors import WHOLE, NoView
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.block import BlockModel, block_model
@@ -93,7 +93,7 @@ def make_rocker(
     """
     structure, ratio = building.structure, building.initial.rotation_ratio
     if structure is None:
-        raise NoView("the deck has no [structure]")
+        raise NoView("the deck has no [structure]", WHOLE)
     if soft_base and building.supports.stiffness is not None:
         return _on_soft_base(building, linear, stones)
     refuse_words(building, linear)

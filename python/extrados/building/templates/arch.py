@@ -121,7 +121,7 @@ class Arch(Structure):
 
     def assembly(self, density: float, folder: Path) -> ArchAssembly:
         if self.skew:
-            raise NoView("a skew arch is no plane section; `tilt` and `dem` look at its solids")
+            raise NoView("a skew arch is no plane section; `tilt` and `dem` look at its solids", ("structure", "skew"))
         return self._section(density)
 
     def solids(self, building: "Building") -> "SolidAssembly":
@@ -133,7 +133,7 @@ class Arch(Structure):
         from extrados.building.mesh.vaults import mesh_barrel
 
         if self.skew:
-            raise NoView("a skew arch is no shell yet; `tilt` looks at its solids")
+            raise NoView("a skew arch is no shell yet; `tilt` looks at its solids", ("structure", "skew"))
         return mesh_barrel(
             building, options, self.radius, self.thickness * self.thickness_factor, self.embrace, self.depth
         )

@@ -195,7 +195,8 @@ class Blocks(Structure):
             return drawing, None
         if sort in SOLID:
             raise NoView(
-                f"{self.file} holds solids, which are no plane section; `tilt` and `dem` look at them in space"
+                f"{self.file} holds solids, which are no plane section; `tilt` and `dem` look at them in space",
+                ("structure", "file"),
             )
         if sort != ".json":
             raise BadGeometry(f"{self.file}: expected a .json, .dxf, .obj or .stl file")

@@ -416,7 +416,9 @@ class Bridge(Structure):
     def _piers(self) -> "Bridge":
         need = len(self.spans) - 1
         if len(self.piers) != need and not (need > 1 and len(self.piers) == 1):
-            raise ValueError(f"piers: {len(self.spans)} spans need {need} piers, or one that stands for all")
+            wanted = "1 pier" if need == 1 else f"{need} piers, or one that stands for all"
+            spans = "1 span needs no piers" if need == 0 else f"{need + 1} spans need {wanted}"
+            raise ValueError(f"piers: {spans}; there {'is 1' if len(self.piers) == 1 else f'are {len(self.piers)}'}")
         if self.surfacing is not None and self.fill is None:
             raise ValueError("surfacing lies on fill: give fill, with a cover of 0 where there is none over the crown")
         return self

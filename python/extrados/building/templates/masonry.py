@@ -101,9 +101,15 @@ class Column(Structure):
 
     def assembly(self, density: float, folder: Path) -> Assembly:
         if self.section == "round":
-            raise NoView("a column of round drums is no plane section; `tilt` and `dem` look at its solids")
+            raise NoView(
+                "a column of round drums is no plane section; `tilt` and `dem` look at its solids",
+                ("structure", "section"),
+            )
         if self.dowels is not None:
-            raise NoView("dowels are known in space alone: ask `tilt` with a direction, or leave them out")
+            raise NoView(
+                "dowels are known in space alone: ask `tilt` with a direction, or leave them out",
+                ("structure", "dowels"),
+            )
         return make_column(self.width, self._heights, self.top_width, density, self.depth)
 
     def solids(self, building: "Building") -> "SolidAssembly":

@@ -118,23 +118,32 @@ class Panel(Laid, MeshedWall):
     def size(self) -> tuple[float, float]:
         """Length and height of the wall [m]; NoView where it is an outline."""
         if self.width is None or self.height is None:
-            raise NoView("a panel of an outline is no rectangle")
+            raise NoView("a panel of an outline is no rectangle", ("structure", "outline"))
         return self.width, self.height
 
     def pier_assembly(self, density: float) -> Assembly:
         if self.outline:
-            raise NoView("the piers of a panel are found between rectangular openings, not in an outline")
+            raise NoView(
+                "the piers of a panel are found between rectangular openings, not in an outline",
+                ("structure", "outline"),
+            )
         if any(region.material or region.thickness for region in self.regions):
             raise NoView(
-                "the piers of a panel weigh the same everywhere; it has regions of another material or thickness"
+                "the piers of a panel weigh the same everywhere; it has regions of another material or thickness",
+                ("structure", "regions"),
             )
         return make_piers(*self.size, self.holes, density, self.thickness)
 
     def assembly(self, density: float, folder: Path) -> Assembly:
         if self.outline:
-            raise NoView("a panel of an outline has no stones: draw them and read the drawing as kind `blocks`")
+            raise NoView(
+                "a panel of an outline has no stones: draw them and read the drawing as kind `blocks`",
+                ("structure", "outline"),
+            )
         if self.unit_length is None or self.unit_height is None:
-            raise NoView("the stones of the panel are not known: give unit_length and unit_height")
+            raise NoView(
+                "the stones of the panel are not known: give unit_length and unit_height", ("structure", "unit_length")
+            )
         bond = self.bond(self.unit_length, self.unit_height)
         return make_brickwork(bond, *self.size, self.holes, density, self.thickness)
 
@@ -143,11 +152,17 @@ class Panel(Laid, MeshedWall):
         ratio = np.ones(len(made.mass))
         for i, region in enumerate(self.regions, start=1):
             if region.thickness not in (None, self.thickness):
-                raise NoView(f"region {i} of the panel has a thickness of its own; stones are all of one")
+                raise NoView(
+                    f"region {i} of the panel has a thickness of its own; stones are all of one",
+                    ("structure", "regions", i - 1, "thickness"),
+                )
             if region.material is None:
                 continue
             if density == 0.0:
-                raise NoView(f"region {i} of the panel has a material of its own, but [material] has no density")
+                raise NoView(
+                    f"region {i} of the panel has a material of its own, but [material] has no density",
+                    ("structure", "regions", i - 1, "material"),
+                )
             ratio[region.holds(made.centroid)] = densities[region.material] / density
         return replace(made, mass=made.mass * ratio, inertia=made.inertia * ratio)
 

@@ -3,16 +3,19 @@
 import base64
 import binascii
 import copy
+import json
 import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import tomlkit
 
 from extrados import kinds
 from extrados._build_info import VERSION
 from extrados.analyses.context import Refused
+from extrados.building.geometry.polygons import signed_area
 from extrados.decks.explain import starter
 from extrados.decks.reader import LARGEST, read_text
 from extrados.explore import statics, stored
@@ -150,24 +153,37 @@ def _under(desk: Desk, record: Path) -> Iterator[Reply]:
 
 
 def blocks(desk: Desk, _: Message) -> Iterator[Reply]:
-    """The stones of any building as free blocks, whose vertices hands can move."""
+    """The stones of any building as free blocks, whose vertices hands can move: as heavy, as deep and as rough as they were.
+    What rests on them and what holds them stays behind, and so do joints of their own, whose names are gone."""
     deck = desk.there().deck
     assembly = deck.building.blocks()
     count = sum(map(len, assembly.outlines))
     if count > MOST_VERTICES * 3:
         raise Refused(f"{len(assembly.mass)} stones of {count} vertices are too many to move by hand")
+    areas = [abs(signed_area(outline)) for outline in assembly.outlines]
+    density = assembly.mass / (np.array(areas) * assembly.depth)
+    # an outline is a little smaller than the arcs that it stands for
+    other = np.abs(density - deck.building.material.density) > 1e-3 * deck.building.material.density
     rows = [
-        f"[[structure.block]]\nname = {name!r}\npoints = {_thinned(outline)}\n".replace("'", '"')
-        for name, outline in zip(assembly.block_names, assembly.outlines, strict=True)
+        f"[[structure.block]]\nname = {json.dumps(name)}\npoints = {_thinned(outline)}\n"
+        + f"density = {rho!r}\n" * differs
+        for name, outline, rho, differs in zip(
+            assembly.block_names, assembly.outlines, density.tolist(), other.tolist(), strict=True
+        )
     ]
     grounded = [j for j in range(len(assembly.a)) if -1 in (assembly.a[j], assembly.b[j])]
     ground = [[round(float(v), 6) for v in (*assembly.p[j], *assembly.q[j])] for j in grounded]
     title = deck.title or deck.building._structure().word
     text = (
-        f'title = "{title.replace(chr(34), chr(39))}, its stones free"\n\n[structure]\nkind = "blocks"\n'
-        f'ground = {ground}\ncontact_tolerance = "1 mm"\n\n{chr(10).join(rows)}\n[[analysis]]\nkind = "tilt"\n'
+        f'title = {json.dumps(f"{title}, its stones free")}\n\n[structure]\nkind = "blocks"\n'
+        + f"depth = {assembly.depth!r}\n" * (assembly.depth != 1.0)
+        + f'ground = {ground}\ncontact_tolerance = "1 mm"\n\n{chr(10).join(rows)}\n[[analysis]]\nkind = "tilt"\n'
     )
-    yield from open_deck(desk, {"text": text, "name": "free-blocks.toml"})
+    document = Document(text)
+    for section in ("material", "joints"):
+        if kept := {key: value for key, value in deck.data.get(section, {}).items() if key != "types"}:
+            document.put([section], kept)
+    yield from open_deck(desk, {"text": document.text, "name": "free-blocks.toml"})
 
 
 def analysis(desk: Desk, message: Message) -> Iterator[Reply]:

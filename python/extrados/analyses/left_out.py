@@ -1,0 +1,104 @@
+"""What a deck says of its building and an analysis does not reckon with: told by `check` and beside the first answer."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from extrados import kinds
+from extrados.analyses.table import OVERRIDES, Analysis
+from extrados.building.building import Building
+from extrados.building.errors import Key
+from extrados.building.properties import JointType
+from extrados.decks.reader import PROPERTIES, Deck
+from extrados.schema.table import Table
+
+#: What bears on whether stones stand, however that is asked: worth a word where only some of a deck's analyses reckon with it
+SHARED = frozenset(
+    f"joints.{name}" for name in ("friction", "cohesion", "tension", "compressive_strength", "worn_corners")
+) | {"material.compressive_strength", "supports.stiffness"}
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """A remark with file and line, and the number of the first analysis of the deck that it is about."""
+
+    text: str
+    analysis: int
+
+
+def left_out(deck: Deck) -> list[LeftOut]:
+    """Keys of the building that the deck itself gives and that none of its analyses reckons with, or, of what bears on
+    whether stones stand, not all; each key once. A value that is the default says nothing, and is not asked for."""
+    asked = [options.reckons_with(building) for options, building in zip(deck.analyses, deck.buildings, strict=True)]
+    names = _names(deck.analyses)
+    found: dict[tuple[str, str], LeftOut] = {}
+    for name, at in _said(deck.building):
+        # who overrides a key for itself does not hear what the deck says of it
+        hears = [k for k in range(len(asked)) if not _overrides(deck.analyses[k], name)]
+        without = [k for k in hears if name not in asked[k]]
+        if not without or ("", name) in found:
+            continue
+        who, able = ", ".join(names[k] for k in without), [names[k] for k in hears if k not in without]
+        if not able:
+            text = f"{who} {'does' if len(without) == 1 else 'do'} not reckon with it{_known_to(name)}"
+        elif name in SHARED:
+            text = f"{', '.join(able)} {'reckons' if len(able) == 1 else 'reckon'} with it, {who} {'does' if len(without) == 1 else 'do'} not"
+        else:
+            continue
+        found["", name] = LeftOut(deck.complaint(None, at, text), without[0])
+    for k, options in enumerate(deck.analyses):
+        for table in OVERRIDES:
+            for name, at in _given(table, getattr(options, table, None)):
+                if name not in asked[k] and (names[k], name) not in found:
+                    words = f"{names[k]} does not reckon with it{_known_to(name)}"
+                    found[names[k], name] = LeftOut(deck.complaint(options, ("analysis", *at), words), k)
+    return list(found.values())
+
+
+def _said(building: Building) -> Iterator[tuple[str, Key]]:
+    """Name and place of every property that the tables of the deck give."""
+    for table in OVERRIDES:
+        yield from _given(table, getattr(building, table))
+    for name, material in building.materials.items():
+        for key, (_, *at) in _given("material", material):
+            yield key, ("materials", name, *at)
+
+
+def _given(table: str, model: Table | None) -> Iterator[tuple[str, Key]]:
+    """Of one table, or of what an analysis overrides of it, what differs from the defaults; what [[joints.types]] give
+    counts as given to all joints."""
+    for name, value in _differing(model, PROPERTIES[table]):
+        if name != "types":
+            yield f"{table}.{name}", (table, name)
+            continue
+        for k, kind in enumerate(value):
+            for key, _ in _differing(kind, JointType):
+                if key != "joints":
+                    yield f"{table}.{key}", (table, name, k, key)
+
+
+def _differing(model: Table | None, sort: type[Table]) -> Iterator[tuple[str, Any]]:
+    for name, known in sort.model_fields.items():
+        if model is not None and name in model.model_fields_set:
+            value = getattr(model, name)
+            if value is not None and value != known.default:
+                yield name, value
+
+
+def _overrides(options: Analysis, name: str) -> bool:
+    table, key = name.split(".")
+    own = getattr(options, table, None)
+    return own is not None and key in own.model_fields_set
+
+
+def _names(analyses: list[Analysis]) -> list[str]:
+    """The analyses as words, numbered where there are several of a kind."""
+    every = [options.kind for options in analyses]
+    return [f"{kind}-{every[:k].count(kind) + 1}" if kind in every[:k] else kind for k, kind in enumerate(every)]
+
+
+def _known_to(name: str) -> str:
+    """Analyses that reckon with a key, as words."""
+    tables = {kind: kinds.load(parts.table) for kind, parts in kinds.ANALYSES.items()}
+    able = [kind for kind, table in tables.items() if name in (*table.uses, *table.beside) and name not in table.method]
+    return f"; {', '.join(able[:3])}{' and others' if len(able) > 3 else ''} may" if able else ""
