@@ -160,7 +160,7 @@ def draw(rows: list[Found]) -> None:
     matplotlib.use("svg")
     import matplotlib.pyplot as plt
 
-    plt.rcParams |= {"svg.hashsalt": "verification", "font.size": 9}
+    plt.rcParams |= {"svg.hashsalt": "verification", "svg.fonttype": "none", "font.size": 9}
     PLOTS.mkdir(exist_ok=True)
     for old in PLOTS.glob("*.svg"):
         old.unlink()
