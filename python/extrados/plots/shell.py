@@ -274,6 +274,9 @@ def _from_above(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str,
             ax.grid(False)
             ax.set_xlabel("x [m]")
             ax.set_ylabel("y [m]")
+            if extent[1] < 0.1 * extent[0]:  # no room for two numbers one above the other
+                top = float(node[:, 1].max())
+                ax.set_yticks([top], [f"{top:.3g}"])
             ax.set_title(_state_word(run, name, prefix, k))
         marks = [Line2D([], [], color=color, linewidth=2.0) for color in (OUTSIDE, INSIDE)]
         fig.legend(
