@@ -23,6 +23,7 @@ from extrados.explore.desk import NEW_DECK
 from extrados.explore.frames import Reply
 from extrados.explore.guard import Bucket
 from extrados.explore.session import ANSWERS, Session
+from extrados.schema.files import locate
 
 TOKEN = "a-token-that-nobody-guesses"
 SECRET = "nobody may read this"
@@ -327,7 +328,8 @@ def test_pages_that_read_nothing_hold_up_nobody_and_lose_their_places(
 ) -> None:
     monkeypatch.setattr(server, "UNREAD", 2.0)
     message = b'{"do": "hello"}'
-    frame = bytes([0x81, 0x80 | len(message), 0, 0, 0, 0]) + message  # masked by nothing, as a page of no browser may
+    # masked with zeros, which leaves the bytes as they are; browsers mask at random
+    frame = bytes([0x81, 0x80 | len(message), 0, 0, 0, 0]) + message
     page = Page(folder)
     page.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 8192)  # the system keeps no megabytes for them
     try:
@@ -377,6 +379,51 @@ def test_a_page_that_goes_amid_long_work_holds_up_nobody(folder: Path, monkeypat
     finally:
         ends.set()
         page.close()
+
+
+def test_what_fails_at_the_end_of_a_page_is_told_on_the_log(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """And a session is closed under the same rules for files as all that its page asked for."""
+
+    def close(_: Session) -> None:
+        locate("/etc/passwd", folder)
+
+    monkeypatch.setattr(Session, "close", close)
+    page = Page(folder)
+    try:
+        with page.open() as link:
+            link.send('{"do": "list", "of": 1}')
+            assert unpack(link.recv(30))[0]["of"] == 1
+        until(lambda: bool(caplog.records))
+    finally:
+        page.close()
+    (record,) = caplog.records
+    assert record.getMessage() == "the end of a page failed"
+    assert record.exc_info is not None
+    assert "only files beside the deck are read here" in str(record.exc_info[1])
+
+
+def test_the_work_of_a_page_is_closed_before_its_session_and_whatever_fails() -> None:
+    told: list[str] = []
+
+    def work(name: str) -> Iterator[Reply]:
+        try:
+            yield Reply({})
+        finally:
+            told.append(name)
+            raise RuntimeError(name)
+
+    class Closed:
+        def close(self) -> None:
+            told.append("session")
+
+    works = [work("one"), work("two")]
+    for begun in works:
+        next(begun)
+    with pytest.raises(RuntimeError):
+        server._end(works, Closed())  # type: ignore[arg-type]
+    assert sorted(told[:2]) == ["one", "two"] and told[2:] == ["session"]
 
 
 def test_a_bucket_lets_its_rate_pass() -> None:
