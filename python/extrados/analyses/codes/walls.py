@@ -9,7 +9,6 @@ from extrados.analyses.codes.kinematics import Overturning, Weight
 from extrados.analyses.codes.mechanisms import set_back
 from extrados.analyses.context import Refused
 from extrados.building.building import Building
-from extrados.building.mesh.plan import around
 from extrados.building.properties import Material
 from extrados.building.templates.plan import Plan, PlanWall
 from extrados.schema.constants import GRAVITY
@@ -51,7 +50,7 @@ def _floors(plan: Plan) -> tuple[dict[tuple[str, int], float], dict[str, set[int
     loads: dict[tuple[str, int], float] = defaultdict(float)
     held: dict[str, set[int]] = defaultdict(set)
     for floor in plan.floors:
-        ring = around(plan, floor)
+        ring = plan.around(floor)
         corner = np.array([np.asarray(plan.walls[w].start) + s * plan.walls[w].direction for w, s, _ in ring])
         x, y = corner.T
         area = 0.5 * abs(float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)))
