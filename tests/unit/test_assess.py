@@ -169,7 +169,7 @@ def test_a_building_on_a_plan_is_pushed_along_both_axes_and_its_walls_are_checke
         assert pushed.margin is None, "without a peak it bears so much at least"
     run.write(tmp_path / "out", figures=False)
     saved, caption = draw_building(Run.read(tmp_path / "out"), _figures(tmp_path))
-    assert saved == "building" and "Storeys of 2.8 m" in caption
+    assert saved == "building" and "Storey: 2.8 m" in caption
 
 
 def _figures(folder: Path) -> Path:

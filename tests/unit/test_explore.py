@@ -173,7 +173,7 @@ def test_the_page_has_no_answer_where_a_run_refuses_one(session: Session, more: 
     (reply,) = do(session, do="open", text=text)
     scene = reply.words["scene"]
     assert (scene["stands"], "capacity" in scene) == (None, False)
-    assert f"does not reckon with {told}" in scene["unknown"]
+    assert f"cannot take {told} into account" in scene["unknown"]
     (refused,) = extrados.run(session.live.deck.data).results
     assert refused.status == "refused" and told in refused.reason
     do(session, do="rest")

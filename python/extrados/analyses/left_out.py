@@ -1,4 +1,4 @@
-"""What a deck says of its building and an analysis does not reckon with: told by `check` and beside the first answer."""
+"""What a deck says of its building and an analysis does not use: told by `check` and beside the first answer."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -40,9 +40,9 @@ def left_out(deck: Deck) -> list[LeftOut]:
             continue
         who, able = ", ".join(names[k] for k in without), [names[k] for k in hears if k not in without]
         if not able:
-            text = f"{who} {'does' if len(without) == 1 else 'do'} not reckon with it{_known_to(name)}"
+            text = f"{who} {'does' if len(without) == 1 else 'do'} not use it{_known_to(name)}"
         elif name in SHARED:
-            text = f"{', '.join(able)} {'reckons' if len(able) == 1 else 'reckon'} with it, {who} {'does' if len(without) == 1 else 'do'} not"
+            text = f"{', '.join(able)} {'uses' if len(able) == 1 else 'use'} it, {who} {'does' if len(without) == 1 else 'do'} not"
         else:
             continue
         found["", name] = LeftOut(deck.complaint(None, at, text), without[0])
@@ -50,7 +50,7 @@ def left_out(deck: Deck) -> list[LeftOut]:
         for table in OVERRIDES:
             for name, at in _given(table, getattr(options, table, None)):
                 if name not in asked[k] and (names[k], name) not in found:
-                    words = f"{names[k]} does not reckon with it{_known_to(name)}"
+                    words = f"{names[k]} does not use it{_known_to(name)}"
                     found[names[k], name] = LeftOut(deck.complaint(options, ("analysis", *at), words), k)
     return list(found.values())
 
@@ -101,4 +101,4 @@ def _known_to(name: str) -> str:
     """Analyses that reckon with a key, as words."""
     tables = {kind: kinds.load(parts.table) for kind, parts in kinds.ANALYSES.items()}
     able = [kind for kind, table in tables.items() if name in (*table.uses, *table.beside) and name not in table.method]
-    return f"; {', '.join(able[:3])}{' and others' if len(able) > 3 else ''} may" if able else ""
+    return f"; {', '.join(able[:3])}{' and others' if len(able) > 3 else ''} can use it" if able else ""
