@@ -303,13 +303,13 @@ def test_saving_replaces_nothing_unasked(session: Session, tmp_path: Path) -> No
     assert (tmp_path / "new" / "mine.toml").read_text() == session.document.text
 
 
-@pytest.mark.parametrize("patience", [1e9, 0.0], ids=["fast", "slow, and a hand is let in between"])
+@pytest.mark.parametrize("patience", [1e9, 0.003], ids=["fast", "slow, and a hand is let in between"])
 def test_the_map_gets_finer_and_is_kept(session: Session, monkeypatch: pytest.MonkeyPatch, patience: float) -> None:
     monkeypatch.setattr("extrados.explore.rocking.PATIENCE", patience)
     do(session, do="set", changes={"motion": {"kind": "step-pulse", "amplitude": "0.5 g", "duration": 0.2}})
     replies = do(session, do="domain")
     parts = [r for r in replies if r.words["domain"]["part"]]
-    assert len(parts) > 1000 if patience == 0.0 else not parts
+    assert len(parts) > 5 if patience < 1.0 else not parts
     if parts:
         assert (parts[0].arrays["codes"] < 255).any(), "what is known of the first round is shown"
     replies = [r for r in replies if not r.words["domain"]["part"]]

@@ -19,19 +19,19 @@ SHARED = frozenset(
 
 
 @dataclass(frozen=True)
-class LeftOut:
+class Remark:
     """A remark with file and line, and the number of the first analysis of the deck that it is about."""
 
     text: str
     analysis: int
 
 
-def left_out(deck: Deck) -> list[LeftOut]:
+def left_out(deck: Deck) -> list[Remark]:
     """Keys of the building that the deck itself gives and that none of its analyses reckons with, or, of what bears on
     whether stones stand, not all; each key once. A value that is the default says nothing, and is not asked for."""
-    asked = [options.reckons_with(building) for options, building in zip(deck.analyses, deck.buildings, strict=True)]
+    asked = [_reckoned_with(*each) for each in zip(deck.analyses, deck.buildings, strict=True)]
     names = _names(deck.analyses)
-    found: dict[tuple[str, str], LeftOut] = {}
+    found: dict[tuple[str, str], Remark] = {}
     for name, at in _said(deck.building):
         # who overrides a key for itself does not hear what the deck says of it
         hears = [k for k in range(len(asked)) if not _overrides(deck.analyses[k], name)]
@@ -45,14 +45,20 @@ def left_out(deck: Deck) -> list[LeftOut]:
             text = f"{', '.join(able)} {'uses' if len(able) == 1 else 'use'} it, {who} {'does' if len(without) == 1 else 'do'} not"
         else:
             continue
-        found["", name] = LeftOut(deck.complaint(None, at, text), without[0])
+        found["", name] = Remark(deck.complaint(None, at, text), without[0])
     for k, options in enumerate(deck.analyses):
         for table in OVERRIDES:
             for name, at in _given(table, getattr(options, table, None)):
                 if name not in asked[k] and (names[k], name) not in found:
                     words = f"{names[k]} does not use it{_known_to(name)}"
-                    found[names[k], name] = LeftOut(deck.complaint(options, ("analysis", *at), words), k)
+                    found[names[k], name] = Remark(deck.complaint(options, ("analysis", *at), words), k)
     return list(found.values())
+
+
+def _reckoned_with(options: Analysis, building: Building) -> set[str]:
+    if options.kind == "assess":
+        return kinds.load("analyses.assess.strategies:reckon_with")(options, building)
+    return options.reckons_with(building)
 
 
 def _said(building: Building) -> Iterator[tuple[str, Key]]:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from extrados import kinds
 from extrados.analyses.assess.hazard import STRONG, strong_end
 from extrados.analyses.assess.tables import Assess
 from extrados.analyses.context import Context
@@ -295,6 +296,14 @@ ALL = tuple(
 )
 #: Rocking at many factors on the hazard: the margin of `rocking`, and of a set the share of its motions
 SCALED = Strategy("scaled", "fragility", "rocking at factors on the hazard", "probability", "", _levels)
+
+
+def reckon_with(options: Assess, building: Building) -> set[str]:
+    """Properties of the building that at least one of the strategies takes into account that are asked and can look at it."""
+    asked = [s for s in ALL if s.name in (options.strategies or [s.name]) and s.applies(building)]
+    every = {s.kind for s in asked} | {"local-mechanism" for s in asked if s.name == "code-checks"}
+    tables = [kinds.table("analysis", kind).model_construct(kind=kind, mechanism="building") for kind in every]
+    return set().union(*(table.reckons_with(building) for table in tables))
 
 
 def of(name: str) -> Strategy:

@@ -1,6 +1,7 @@
 """A building of walls on a plan: storeys, openings, flanges, floors, rods (`building`)."""
 
 from collections import Counter
+from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
@@ -286,8 +287,8 @@ class Plan(Structure):
         total = 0.0
         for wall in self.walls:
             if self.reach(wall)[0] == 1:
-                doors = sum(o.x[1] - o.x[0] for o in wall.openings if o.storey == 1 and o.z[0] == 0.0)
-                total += (wall.thickness or wall.thicknesses[0]) * (wall.length - doors) * abs(wall.direction[axis])
+                sole = self.strips(wall, 1)[0][0]
+                total += (wall.thickness or wall.thicknesses[0]) * sole * abs(wall.direction[axis])
         return float(total)
 
     @property
@@ -300,6 +301,20 @@ class Plan(Structure):
                 if (r := self.reach(wall))
             )
         )
+
+    def strips(self, wall: PlanWall, storey: int) -> list[tuple[float, float, float]]:
+        """Masonry of a wall in a storey, from the bottom up: length, bottom and top above its floor [m] of each strip between
+        sills and heads of openings. What openings share is left out once."""
+        holes = [o for o in wall.openings if o.storey == storey]
+        heights = sorted({0.0, self.storeys[storey - 1], *(z for o in holes for z in o.z)})
+        found = []
+        for low, high in pairwise(heights):
+            cut, end = 0.0, 0.0
+            for left, right in sorted(tuple(o.x) for o in holes if o.z[0] < high and low < o.z[1]):
+                cut += max(right - max(left, end), 0.0)
+                end = max(end, right)
+            found.append((wall.length - cut, low, high))
+        return found
 
     def wall(self, name: str) -> PlanWall:
         return next(wall for wall in self.walls if wall.name == name)
