@@ -75,6 +75,7 @@ class PlanWall(Table):
 
     @property
     def length(self) -> float:
+        """Length on the plan [m]."""
         return float(np.hypot(*np.subtract(self.end, self.start)))
 
     @property
@@ -301,6 +302,7 @@ class Plan(Structure):
         )
 
     def wall(self, name: str) -> PlanWall:
+        """The wall of a name; StopIteration where there is none."""
         return next(wall for wall in self.walls if wall.name == name)
 
     def bond(self, one: str, two: str) -> Corner | None:
