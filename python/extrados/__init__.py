@@ -73,9 +73,13 @@ def sweep(deck: "str | Path | dict[str, Any] | Deck", over: Any, **how: Any) -> 
 
     over: keys as `Live.update` takes them, each with its values (n) in SI or as text with a unit: every value with every
     other. Or rows that belong together: a list of dictionaries, or a pandas.DataFrame whose columns are keys.
-    workers: 1; a number of processes of this machine; or the address of a dask scheduler ("tcp://...").
+
+    workers: 1; a number of processes of this machine; or the address of a dask scheduler, `"tcp://..."`.
+
     threads: of the core within each process, default all of one process, 1 where there are several.
+
     progress: a bar, by default on a terminal; or a function of (done, total, text).
+
     resume: a folder beside which finished batches are kept, so that the same call goes on where it was stopped.
 
     Returns a `Sweep`: `.frame()` for pandas, `.dataset()` for xarray, with units. DeckError lists what is wrong with the

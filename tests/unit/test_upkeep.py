@@ -120,3 +120,28 @@ def test_every_room_of_the_core_has_tests_that_seeded_faults_run(monkeypatch: py
     for native, python, _ in rooms.values():
         assert all((ROOT / "tests" / name).exists() for name in python)
         assert all(any((ROOT / "tests").glob(f"*/{name}.*")) for name in native)
+
+
+def test_a_site_with_a_broken_link_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "tools"))
+    broken = tool("tools/site.py").broken
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub" / "index.html").write_text('<a href="../a.html#here">a</a> <a href="https://afar">b</a>')
+    (tmp_path / "a.html").write_text(
+        '<h1 id="here">a</h1> <a href="sub/">b</a> <a href="#here">c</a> <img src="data:,">'
+    )
+    assert broken(tmp_path) == []
+    (tmp_path / "b.html").write_text(
+        '<a href="gone.html">a</a> <a href="a.html#gone">b</a> <script src="https://afar/x.js"></script>'
+    )
+    assert broken(tmp_path) == [
+        "b.html: gone.html leads nowhere",
+        "b.html: a.html#gone leads nowhere",
+        "b.html: https://afar/x.js is loaded from the network",
+    ]
+
+
+def test_what_the_fortran_reference_loads_from_afar_is_taken_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "tools"))
+    page = '<a><!-- Bootstrap -->\n<link href="https://x">\n<!-- Font Awesome --><b><!-- MathJax --><script src="https://y"></script><!-- Other scripts --><c>'
+    assert tool("tools/site.py").FROM_AFAR.sub("", page) == "<a><!-- Font Awesome --><b><!-- Other scripts --><c>"
