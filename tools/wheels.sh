@@ -22,6 +22,7 @@ if [ ${#pythons[@]} = 0 ]; then
     *) pythons+=("$newer") ;;
   esac
 fi
+commit=$(git -C "$source" describe --always --exclude="*")
 most=$((40 * 1000 * 1000))  # bytes of a wheel
 
 built='
@@ -57,7 +58,7 @@ DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends py
 "$PYTHON" -m venv /root/try
 cd /root
 try/bin/pip install -q --disable-pip-version-check ./*.whl
-try/bin/extrados version
+try/bin/extrados version | grep -F " $COMMIT "
 try/bin/extrados new arch >deck.toml
 try/bin/extrados run deck.toml
 try/bin/extrados cases | grep arch/oppenheim.toml
@@ -70,7 +71,7 @@ room() {  # RELEASE NAME: a fresh machine, with the Python that is taken along
 }
 
 step() {  # MACHINE LOG WHAT SCRIPT: run it there as root
-  enter "$place/$1" root env PYTHON="$python" sh -c "$4" >"$2" 2>&1 || { tail -20 "$2"; echo "$3 failed, see $2" >&2; exit 1; }
+  enter "$place/$1" root env PYTHON="$python" COMMIT="$commit" sh -c "$4" >"$2" 2>&1 || { tail -20 "$2"; echo "$3 failed, see $2" >&2; exit 1; }
 }
 
 for word in "${pythons[@]}"; do

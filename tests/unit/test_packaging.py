@@ -4,6 +4,10 @@ import re
 import tomllib
 from pathlib import Path
 
+import pytest
+
+from extrados.running import provenance
+
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
@@ -61,3 +65,14 @@ def test_wheels_are_small_and_those_that_the_page_promises() -> None:
     oldest = PROJECT["project"]["requires-python"].removeprefix(">=")
     promised = re.findall(r"3\.\d+", next(line for line in page.splitlines() if "tools/wheels.sh" in line))
     assert promised and min(promised) == oldest and all(version in script for version in promised)
+
+
+def test_an_installed_copy_tells_the_commit_that_it_was_built_from(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / ".git").mkdir()  # of a repository that happens to lie around
+    monkeypatch.setattr(provenance, "COMMIT", "abc1234")
+    monkeypatch.setattr(
+        provenance, "__file__", str(tmp_path / "site-packages" / "extrados" / "running" / "provenance.py")
+    )
+    assert provenance.provenance()["commit"] == "abc1234"
