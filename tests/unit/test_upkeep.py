@@ -145,3 +145,18 @@ def test_what_the_fortran_reference_loads_from_afar_is_taken_out(monkeypatch: py
     monkeypatch.syspath_prepend(str(ROOT / "tools"))
     page = '<a><!-- Bootstrap -->\n<link href="https://x">\n<!-- Font Awesome --><b><!-- MathJax --><script src="https://y"></script><!-- Other scripts --><c>'
     assert tool("tools/site.py").FROM_AFAR.sub("", page) == "<a><!-- Font Awesome --><b><!-- Other scripts --><c>"
+
+
+def test_coverage_is_noted_where_contributors_read_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "tools"))
+    coverage, page = tool("tools/coverage.py"), (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    [told] = coverage.NOTE.findall(page)
+    found = [float(number) for number in re.findall(r"\d+\.\d", told)]
+    assert len(found) == 3 and all(50.0 < share <= 100.0 for share in found)
+    made = coverage.noted(page, {"Python": 91.23, "Fortran": 92.0, "C": 93.0}, "2026-12-01")
+    assert (
+        "At the last whole run (2026-12-01) they were 91.2, 92.0 and 93.0 %" in made
+        and len(coverage.NOTE.findall(made)) == 1
+    )
+    with pytest.raises(SystemExit, match="no place"):
+        coverage.noted("nothing", {"Python": 1.0, "Fortran": 1.0, "C": 1.0}, "2026-12-01")
