@@ -153,6 +153,9 @@ def run(
     rate: np.ndarray | None = None,
     times: np.ndarray | None = None,
 ) -> Run:
-    """One run of a model that is made for it; see Model and Model.run. No ground: it stands still."""
+    """One run of a model that is made for it; see Model and Model.run. No ground: it stands still.
+
+    rate (n, 6): velocities [m/s] and spins [rad/s] of the bodies at the start; times (frames): of output [s].
+    """
     with Model(solids, options, rate=rate) as model, as_motion_set([ground or STILL]) as motions:
         return model.run(motions, scale=scale, times=times)

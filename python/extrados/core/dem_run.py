@@ -114,7 +114,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
     ) -> Found:
         """Settle under gravity, then move the ground by `scale` times a motion of the set.
 
-        times: ascending output times [s] instead of every output_step. state: goes on where a run of this model, these
+        times (frames): ascending output times [s] instead of every output_step. state: goes on where a run of this model, these
         times and this motion had paused. watch: the run pauses now and then, and when it is interrupted, tells the time
         it has come to [s], and may be asked for its `state`. Neither changes a bit of the result.
         """
@@ -151,7 +151,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
         return self._last_run(interrupted)
 
     def state(self) -> np.ndarray:
-        """The whole state of a run that has paused, for `run` of this build alone; HandleError where none has."""
+        """The whole state (words) of a run that has paused, for `run` of this build alone; HandleError where none has."""
         words, status = _core.api_dem_run.state_size(self.handle)
         check(status, "state of a run that has paused")
         state, status = _core.api_dem_run.state(self.handle, int(words))
@@ -187,7 +187,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
 
 
 def state_words(state: np.ndarray) -> np.ndarray:
-    """The words of a state that was kept with its digest; ValueError where they are damaged."""
+    """The words (words) of a state that was kept with its digest; ValueError where they are damaged."""
     state = np.ascontiguousarray(state, dtype=np.int64)
     words = state[:-_DIGEST]
     if state.ndim != 1 or not np.array_equal(state[-_DIGEST:], state_digest(words)):
@@ -196,5 +196,5 @@ def state_words(state: np.ndarray) -> np.ndarray:
 
 
 def state_digest(words: np.ndarray) -> np.ndarray:
-    """What tells a damaged state."""
+    """What tells damaged words: four more (4)."""
     return np.frombuffer(hashlib.sha256(words.tobytes()).digest(), dtype=np.int64)
