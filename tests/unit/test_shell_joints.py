@@ -113,6 +113,7 @@ def test_a_flange_behind_a_joint(tmp_path):
         ("beds = [{ z = HEIGHT }]", "beds = [{ z = 1.0 }]", "structure", "is not below the top of a storey"),
         ("beds = [{ z = HEIGHT }]", "beds = [{}, {}]", "structure", "bed 1 lies at the same height"),
         ("beds = [{ z = HEIGHT }]", 'beds = [{ walls = ["b"] }]', "structure", "there is no wall 'b'"),
+        ("ripple = 0.1", 'without_equilibrium = "force-release"', "without_equilibrium", "only load-unload can follow"),
         (
             "friction = 0.4", 'friction = 0.4\ntypes = [{ joints = ["x"], friction = 0.2 }]', "joints.types",
             "names no joint 'x'; there are bed 1",

@@ -164,6 +164,12 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
                 stiffness.astype(float),
             )
         )  # fmt: skip
+    if options.without_equilibrium != "load-unload" and any(np.isfinite(j.strength["friction"]) for j in mesh.joints):
+        raise Refused(
+            'joints that slide keep forces that only load-unload can follow: give them friction = "no-sliding", or leave '
+            "without_equilibrium out",
+            ("analysis", "without_equilibrium"),
+        )
     mass = mesh.mass()
     constant = np.zeros((len(mesh.xyz), 6))
     constant[:, 2] = -GRAVITY * mass

@@ -30,6 +30,10 @@ from extrados.results.vtu import pvd, vtu
 
 #: Part of the weight that walls across the push must take up or down to count as working flanges
 WORKING = 0.05
+#: Forces below this part of the weight are rounding
+ROUNDING = 1e-9
+#: What elements of a mesh file are called that are of no group
+NO_GROUP = "shell"
 
 
 def run(context: Context, options: Pushover) -> Result:
@@ -503,12 +507,13 @@ def _fields(
 
 def _answer(building: Building, options: Pushover, numbers: dict[str, Any]) -> str:
     word = "building" if building.structure is None else building.structure.word
+    grouped = building.structure is not None and building.structure.kind == "mesh"
     parts = []
     if "stages" in numbers:
         ends = [_stage_told(stage) for stage in numbers["stages"]]
         parts.append(f"Stages, each with the damage of those before: {'; '.join(ends)}.")
     for curve in [numbers, *([numbers["minus"]] if "minus" in numbers else [])]:
-        parts.append(_curve_told(options, numbers, curve, word))
+        parts.append(_curve_told(options, numbers, curve, word, grouped))
     if numbers.get("band_N"):
         low, high = numbers["band_N"]
         parts.append(
@@ -534,13 +539,20 @@ def _stage_told(stage: dict[str, Any]) -> str:
     return f"{stage['name']}, a push to {stage['sense']}, ends at {end / 1e3:.4g} kN by: {stage['stop']}"
 
 
-def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any], word: str) -> str:
-    """What a push of a building or a vault says; of ground that gives way what its feet bear."""
+def _pressing(row: dict[str, Any], weight: float) -> str:
+    """What a foot hands to the ground; what is only rounding beside the weight is not told."""
+    parts = []
+    for force, ways in ((row["thrust_N"], ("outward", "inward")), (row["vertical_N"], ("down", "up"))):
+        if abs(force) > ROUNDING * weight:
+            parts.append(f"{ways[force < 0.0]} with {abs(force) / 1e3:.4g} kN")
+    return f"presses {' and '.join(parts)}" if parts else "bears nothing"
+
+
+def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any], word: str, grouped: bool) -> str:
+    """What a push of a building or a vault says; of ground that gives way what its feet bear. grouped: its parts are groups of
+    a mesh file."""
     main = next((stage for stage in numbers.get("stages", []) if not stage["prefix"]), None)
-    feet = "; ".join(
-        f"its foot {row['foot']} presses outward with {row['thrust_N'] / 1e3:.4g} kN and down with {row['vertical_N'] / 1e3:.4g} kN"
-        for row in curve.get("feet", [])
-    )
+    feet = "; ".join(f"its foot {row['foot']} {_pressing(row, numbers['weight_N'])}" for row in curve.get("feet", []))
     if main is not None and main["of"] == "settlement":
         return f"After stage {main['name']} {feet}." if feet else ""
     load = curve["greatest_load_N"]
@@ -567,8 +579,10 @@ def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any
             )
         else:
             x, y, z = crack["place_m"]
+            part = crack["wall"]
+            where = f"group {part}" if grouped and part != NO_GROUP else f"the {part}"
             text += (
-                f"; it cracks first in the {crack['wall']} at x {x:.3g}, y {y:.3g}, z {z:.3g} m, under "
+                f"; it cracks first in {where} at x {x:.3g}, y {y:.3g}, z {z:.3g} m, under "
                 f"{crack['base_shear_N'] / 1e3:.3g} kN"
             )
     if any(r["share"] > 0.02 for r in curve["walls"]):

@@ -209,6 +209,7 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
             {
                 "directions": self.directions != ["+"], "drives": bool(self.drives), "variants": bool(self.variants),
                 "target_displacement": self.target_displacement is not None, "stop_fraction": self.stop_fraction > 0.0,
+                'without_equilibrium = "proportional"': self.without_equilibrium == "proportional",
                 "constant_damage = false": not self.constant_damage,
             }
         )  # fmt: skip
