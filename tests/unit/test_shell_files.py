@@ -122,7 +122,7 @@ def test_a_file_bears_as_the_plan_does(tmp_path):
         ripple = 0.2
         events = 60
     """
-    file = '[structure]\nkind = "mesh"\nfile = "corner.msh"\nthickness = 0.3\ngroups = [{ name = "ground", support = "fixed" }, { name = "front", thickness = 0.3 }]\n'
+    file = '[structure]\nkind = "mesh"\nfile = "corner.msh"\nthickness = 0.3\ngroups = [{ name = "ground", support = "fixed" }, { name = "side", thickness = 0.3 }]\n'
     plan = """
         [structure]
         kind = "building"
@@ -141,7 +141,7 @@ def test_a_file_bears_as_the_plan_does(tmp_path):
         path.write_text(textwrap.dedent(text) + textwrap.dedent(material) + more)
         result = extrados.run(path).results[0]
         found.append(result.results)
-        where = {"file": "it cracks first in group front at x", "plan": "it cracks first in wall"}[name]
+        where = {"file": "it cracks first in group side at x", "plan": "it cracks first in wall"}[name]
         assert where in result.answer
     of_file, of_plan = found
     assert of_file.weight_N == pytest.approx(of_plan.weight_N, rel=1e-12) == pytest.approx(2 * 4 * 0.3 * 2000 * GRAVITY)
