@@ -308,3 +308,31 @@ def test_a_released_load_is_never_raised_on_the_way(tmp_path):
     on_the_way = ~held[1:]
     assert on_the_way.sum() > 1000 and held.sum() > 1000
     assert np.abs(np.diff(load))[on_the_way].max() <= 1e-9 * np.abs(load).max()
+
+
+@pytest.mark.verify
+def test_the_limit_of_a_dome_of_stones_hangs_on_their_friction(tmp_path):
+    """Pushed, its stones slide; where they cannot, no push brings it down. A shell, which does not slide, is no other view of the
+    same limit."""
+
+    def limit(friction):
+        text = """
+            [structure]
+            kind = "dome"
+            radius = 5.0
+            thickness = 0.5
+            embrace = 150.0
+            rings = 4
+            lunes = 8
+            [joints]
+            friction = FRICTION
+            [analysis]
+            kind = "tilt"
+            direction = 0
+        """
+        (tmp_path / "dome.toml").write_text(textwrap.dedent(text).replace("FRICTION", friction))
+        return extrados.run(tmp_path / "dome.toml").results[0]
+
+    low, high, none = limit("0.7"), limit("2.0"), limit('"no-sliding"')
+    assert high.results.collapse_acceleration_g > 1.5 * low.results.collapse_acceleration_g
+    assert none.status == "refused" and "hold it from all sides" in none.reason
