@@ -75,7 +75,7 @@ class Model(BodyModel[Run]):
     """
 
     what = "model of discrete elements in space"
-    rates, values = 6, 18
+    rates, values, in_space = 6, 18, True
     options: Options
 
     def __init__(self, solids: Solids, options: Options, *, rate: np.ndarray | None = None):
@@ -149,10 +149,13 @@ def run(
     options: Options,
     ground: Ground | None = None,
     *,
+    across: Ground | None = None,
     scale: float = 1.0,
     rate: np.ndarray | None = None,
     times: np.ndarray | None = None,
 ) -> Run:
-    """One run of a model that is made for it; see Model and Model.run. No ground: it stands still."""
-    with Model(solids, options, rate=rate) as model, as_motion_set([ground or STILL]) as motions:
-        return model.run(motions, scale=scale, times=times)
+    """One run of a model that is made for it; see Model and Model.run. No ground: it stands still. across: its other
+    horizontal component, along z x way."""
+    grounds = [ground or STILL, *([] if across is None else [across])]
+    with Model(solids, options, rate=rate) as model, as_motion_set(grounds) as motions:
+        return model.run(motions, across=None if across is None else 1, scale=scale, times=times)
