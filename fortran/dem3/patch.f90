@@ -11,13 +11,13 @@
 module dem3_patch
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
-   use dem3_bodies, only : body, body_set, cross
+   use dem3_bodies, only : body, body_set, cross, most_corners
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
    public :: feature, patch, most_points, meet, measure
 
-   integer, parameter :: most_points = 48
+   integer, parameter :: most_points = 2 * most_corners   !! of what two convex faces share
    integer, parameter, public :: on_first = 1     !! a point of the second body over a plane of the first
    integer, parameter, public :: on_second = 2    !! a point of the first body over a plane of the second
    integer, parameter, public :: on_edges = 3     !! an edge of each
@@ -216,7 +216,6 @@ contains
       end do
       n = 0
       do k = set%loop_first(facing), set%loop_first(facing + 1) - 1
-         if (n == most_points) exit
          n = n + 1
          kept(:, n) = corners_other(:, set%loop(k) - shift_other)
          lines(:, n) = [merge(set%loop_first(facing + 1) - 1, k - 1, n == 1), 0, 0]

@@ -61,6 +61,20 @@ def test_a_block_settles_as_far_as_its_joint_gives() -> None:
     assert run.residual < 1e-9
 
 
+@pytest.mark.parametrize("sides", [48, 96])
+def test_round_drums_bear_on_all_of_their_faces(sides: int) -> None:
+    """Two drums settle level, by what the whole polygons give."""
+    angle = 2.0 * np.pi * np.arange(sides) / sides
+    ring = 0.5 * np.column_stack([np.cos(angle), np.sin(angle)])
+    run = dem3.run(
+        solids([prism(ring, k * 1.0, k + 1.0) for k in range(2)], Law(1e9, 1e9, 0.6, 1e-4)), Options(end_time=0.05)
+    )
+    assert [0.5 - run.place[-1, 0, 2], 1.5 - run.place[-1, 1, 2]] == pytest.approx(
+        [DENSITY * GRAVITY * 2.0 / 1e9, DENSITY * GRAVITY * 3.0 / 1e9], rel=1e-3
+    )
+    assert run.turn[-1, :2] == pytest.approx(np.broadcast_to(np.eye(3), (2, 3, 3)), abs=2e-6)
+
+
 def test_a_tiny_step_of_the_run_keeps_nothing_from_rest() -> None:
     block = solids([box((0, 0, 0), (1, 1, 4))], Law(1e9, 1e9, 0.6, 1e-4))
     run = dem3.run(block, Options(end_time=1e-5, step=1e-6, settle_steps=4000))
@@ -295,6 +309,11 @@ def test_bars_that_cross_rest_on_each_other_by_their_edges() -> None:
 def test_wrong_models_are_refused() -> None:
     good = solids([box((0, 0, 0), (1, 1, 1))], Law(1e9, 1e9, 0.6))
     options = Options(end_time=0.1)
+    with pytest.raises(ValueError, match="a face has 97 corners, expected at most 96"):
+        angle = 2.0 * np.pi * np.arange(97) / 97
+        dem3.run(
+            solids([prism(np.column_stack([np.cos(angle), np.sin(angle)]), 0.0, 1.0)], Law(1e9, 1e9, 0.6)), options
+        )
     with pytest.raises(ValueError, match="stiffnesses"):
         Law(0.0, 1e9, 0.6)
     with pytest.raises(ValueError, match="law that is not there"):

@@ -11,6 +11,9 @@ from extrados.core.errors import check
 from extrados.core.ground import Ground, as_motion_set
 from extrados.schema.constants import GRAVITY
 
+#: Corners of a face, at most (fortran/dem3/bodies.f90)
+MOST_CORNERS = 96
+
 
 @dataclass(frozen=True)
 class Law:
@@ -81,6 +84,8 @@ class Model(BodyModel[Run]):
     def __init__(self, solids: Solids, options: Options, *, rate: np.ndarray | None = None):
         if not solids.laws or any(not 0 <= k < len(solids.laws) for k in solids.joints.values()):
             raise ValueError("a joint names a law that is not there")
+        if (most := max((len(face) for faces in solids.faces for face in faces), default=0)) > MOST_CORNERS:
+            raise ValueError(f"a face has {most} corners, expected at most {MOST_CORNERS}")
         n, parts = len(solids.mass), len(solids.vertices)
         mobile = np.asarray(solids.mass, dtype=float) > 0.0
         principal, axes = np.linalg.eigh(np.where(mobile[:, None, None], solids.inertia, np.eye(3)))
