@@ -8,7 +8,8 @@ module dem3_bodies
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: most_corners, body, part, body_set, body_set_new, copy_bodies, place, turn_freely, world_inverse, cross, spin_of
+   public :: most_corners, body, part, body_set, body_set_new, copy_bodies, place, turn_freely, world_inverse, cross, &
+      spin_of
 
    integer, parameter :: most_corners = 96     !! of a face
 
