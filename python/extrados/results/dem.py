@@ -43,6 +43,7 @@ class Convergence(ResultModel):
     worst_violation_ratio: float = fact(
         "greatest violation of the contact law as a velocity, over that which gravity gives in a step"
     )
+    worst_violation_s: float = fact("when that was", "s")
 
 
 class DemRun(KindResults):

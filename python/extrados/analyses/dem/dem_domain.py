@@ -17,7 +17,7 @@ from extrados.analyses.rocking.failure_domain import settling_time, shortest_dur
 from extrados.building.errors import BadGeometry
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
-from extrados.core import dem
+from extrados.core import dem, dem_run
 from extrados.core.calls import interruptible
 from extrados.core.errors import CoreError
 from extrados.results import dem as out
@@ -52,7 +52,7 @@ class Search:
         self.limit = options.collapse_displacement or 0.2 * model.size
         self.shift = start(context, model)
         self.asked, self.total = 0, len(curves) * len(options.amplitudes) * rounds
-        self.residual, self.steps, self.effort = 0.0, 0, dem.Effort(0, 0, 0, 0, 0.0)
+        self.residual, self.steps, self.effort = 0.0, 0, dem_run.NO_EFFORT
 
     def fails(self, pulses: list[tuple[int, float, float]]) -> list[bool]:
         """Whether each pulse (curve, amplitude [m/s^2], duration [s]) brings the structure down; Unfinished where

@@ -8,7 +8,7 @@ from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.tables import Dem
 from extrados.building.geometry.assembly import GROUND
 from extrados.building.geometry.rigid import FOOTING
-from extrados.core import dem, dem3
+from extrados.core import dem, dem3, dem_run
 from extrados.results.dem import APART, CLOSED, HINGED_FIRST, HINGED_SECOND, Convergence
 from extrados.results.model import Array, TableData
 from extrados.schema.constants import GRAVITY
@@ -72,7 +72,7 @@ def peak_slip(state: np.ndarray, slip: np.ndarray) -> float:
     return float(np.nanmax(np.abs(np.where(state == APART, 0.0, slip)), initial=0.0))
 
 
-def convergence(effort: dem.Effort) -> Convergence:
+def convergence(effort: dem_run.Effort) -> Convergence:
     """What rigid contacts took."""
     return Convergence(
         steps=effort.steps,
@@ -80,6 +80,7 @@ def convergence(effort: dem.Effort) -> Convergence:
         most_rounds=effort.most_rounds,
         factorisations_per_step=effort.factors / max(effort.steps, 1),
         worst_violation_ratio=effort.residual,
+        worst_violation_s=effort.worst,
     )
 
 

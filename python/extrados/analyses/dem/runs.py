@@ -104,14 +104,12 @@ class Runs(Job[dem.Run]):
         return {
             **recorded(found, length),
             "blamed": np.array([*found.blamed, -1, -1][:2]),
-            "effort": np.array(astuple(found.effort), dtype=float),
         }
 
     def run_of(self, rows: dict[str, np.ndarray], k: int = 0) -> dem.Run:
         """The run of row k, but for the forces in its contacts at the end."""
         row = {name: values[k] for name, values in rows.items()}
-        effort = dem.Effort(*(int(v) for v in row["effort"][:-1]), float(row["effort"][-1]))
-        return dem.Run(**record_of(row), contacts=NO_CONTACTS, effort=effort)
+        return dem.Run(**record_of(row), contacts=NO_CONTACTS)
 
 
 @dataclass(frozen=True)
@@ -175,6 +173,7 @@ def recorded(found: dem_run.FoundRun, length: int) -> dict[str, np.ndarray]:
         "points": np.array(len(found.time)),
         **{name: padded(getattr(found, name), length) for name in HISTORIES},
         "energy": padded(energy, length),
+        "effort": np.array(astuple(found.effort), dtype=float),
         **{name: getattr(found, name) for name in OF_BODIES},
         **{name: np.array(getattr(found, name)) for name in NUMBERS + COUNTS},
     }
@@ -188,6 +187,7 @@ def record_of(row: dict[str, np.ndarray]) -> dict[str, Any]:
         "blamed": [int(b) for b in row["blamed"] if b >= 0],
         **{name: row[name][:points] for name in HISTORIES},
         "energy": {name: row["energy"][:points, i] for i, name in enumerate(dem_run.ENERGIES)},
+        "effort": dem_run.Effort(*(int(v) for v in row["effort"][:4]), *(float(v) for v in row["effort"][4:])),
         **{name: row[name] for name in OF_BODIES},
         **{name: float(row[name]) for name in NUMBERS},
         **{name: int(row[name]) for name in COUNTS},
