@@ -8,7 +8,8 @@
 !>
 !> With the parting velocities raised by c = mu |w_t| this says that impulses lie in the friction cone and velocities in
 !> its dual, at right angles (de Saxce and Feng 1998). For c held it is a convex problem, and c follows from round to
-!> round (Acary, Cadoux, Lemarechal and Malick 2011). The convex problem is solved by augmented Lagrangians (Alart and
+!> round (Acary, Cadoux, Lemarechal and Malick 2011); where it creeps or swings for long in space, it is taken to where
+!> the last two rounds point (Anderson 1965). The convex problem is solved by augmented Lagrangians (Alart and
 !> Curnier 1991): with weights r the impulses are those which the projection on the cone
 !>
 !>    p = P(p - r (w_n + c, w_t))
@@ -39,6 +40,7 @@ module nonsmooth_impulses
    integer, parameter :: patience = 15           !! rounds before that
    integer, parameter :: most_growth = 2         !! times
    integer, parameter :: most_newton = 60
+   integer, parameter :: now = 1, before = 2     !! round
    integer, parameter :: most_halvings = 30
    !> What a point does. A cone in the plane has two edges; on the round one in space that is one state
    integer, parameter :: parts = 0, sticks = 1, slides = 2, slides_back = 3
@@ -57,9 +59,12 @@ module nonsmooth_impulses
       real(wp), allocatable :: shift(:, :)          !! (direction, points) [m/s]
       real(wp), allocatable :: friction(:)          !! (points) coefficient
       real(wp), allocatable :: impulse(:, :)        !! (direction, points): a guess in, the answer out [N s]
+      real(wp), allocatable :: best(:, :)           !! (direction, points) impulses of the round of least violation
       type(skyline) :: matrix
       real(wp), allocatable :: weight(:)            !! (points) r
       real(wp), allocatable :: raised(:)            !! (points) c [m/s]
+      real(wp), allocatable :: asked(:, :)          !! (points, now and before) c by the sliding found [m/s]
+      real(wp), allocatable :: change(:, :)         !! (points, now and before) of c that was so asked for [m/s]
       real(wp), allocatable :: rate_at(:, :)        !! (direction, points) w [m/s]
       real(wp), allocatable :: trial(:, :)          !! (direction, points) p - r (w_n + c, w_t)
       real(wp), allocatable :: try(:), load(:)      !! (freedoms nodes)
@@ -102,10 +107,12 @@ contains
       integer(c_int), intent(out) :: status
       integer :: failed
       if (allocated(problem%node)) deallocate (problem%node, problem%row, problem%shift, problem%friction, &
-         problem%impulse, problem%weight, problem%raised, problem%rate_at, problem%trial, problem%state, problem%was)
+         problem%impulse, problem%best, problem%weight, problem%raised, problem%asked, problem%change, &
+         problem%rate_at, problem%trial, problem%state, problem%was)
       allocate (problem%node(2, points), problem%row(problem%freedoms, 2, problem%directions, points), &
          problem%shift(problem%directions, points), problem%friction(points), &
-         problem%impulse(problem%directions, points), problem%weight(points), problem%raised(points), &
+         problem%impulse(problem%directions, points), problem%best(problem%directions, points), &
+         problem%weight(points), problem%raised(points), problem%asked(points, 2), problem%change(points, 2), &
          problem%rate_at(problem%directions, points), problem%trial(problem%directions, points), &
          problem%state(points), problem%was(points), stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
@@ -117,6 +124,7 @@ contains
       real(wp), intent(in) :: tolerance             !! violation that is let pass [m/s]
       integer, intent(in) :: most_rounds
       type(impulse_effort), intent(out) :: effort
+      real(wp) :: residual
       integer :: k, n
 
       n = problem%points
@@ -130,13 +138,19 @@ contains
       do while (effort%rounds < most_rounds)
          effort%rounds = effort%rounds + 1
          call least_energy(problem, tolerance, effort)
-         call take_impulses(problem, effort%residual)
+         call take_impulses(problem, residual)
+         if (effort%rounds == 1 .or. residual < effort%residual) then
+            effort%residual = residual
+            problem%best(:, :n) = problem%impulse(:, :n)
+         end if
+         call follow(problem, effort%rounds)
          effort%converged = effort%residual <= tolerance
          if (effort%converged) exit
          if (mod(effort%rounds, patience) > 0 .or. effort%rounds > patience * most_growth) cycle
          problem%weight(:n) = growth * problem%weight(:n)
          problem%was(:n) = -1
       end do
+      problem%impulse(:, :n) = problem%best(:, :n)
       call velocities(problem)
    end subroutine solve_impulses
 
@@ -294,13 +308,13 @@ contains
       real(wp), intent(in) :: tolerance             !! [m/s]
       type(impulse_effort), intent(inout) :: effort
       integer :: n, round, halving
-      real(wp) :: now, next, off
+      real(wp) :: present, next, off
       logical :: whole, still, same
       integer(c_int) :: status
 
       n = problem%points
       call look(problem, problem%rate)
-      now = energy(problem, problem%rate)
+      present = energy(problem, problem%rate)
       do round = 1, most_newton
          if (.not. unchanged(problem)) then
             call assemble(problem)
@@ -315,14 +329,14 @@ contains
          do halving = 0, most_halvings
             call look(problem, problem%try)
             next = energy(problem, problem%try)
-            if (.not. next > now + 1.0e-12_wp * abs(now)) exit
+            if (.not. next > present + 1.0e-12_wp * abs(present)) exit
             problem%try(:) = 0.5_wp * (problem%try + problem%rate)
          end do
          whole = halving == 0
          ! Points on the verge of sliding may change sides for ever and move nothing.
          still = whole .and. maxval(abs(problem%try - problem%rate)) < 0.01_wp * tolerance
          problem%rate(:) = problem%try
-         now = next
+         present = next
          same = whole
          if (same) same = unchanged(problem)
          if (still .or. same) return
@@ -454,9 +468,39 @@ contains
          residual = max(residual, maxval(abs(impulse(:n) - problem%impulse(:, k))) / problem%weight(k))
          if (problem%state(k) > sticks) residual = max(residual, abs(raised - problem%raised(k)))
          problem%impulse(:, k) = impulse(:n)
-         problem%raised(k) = raised
+         problem%asked(k, now) = raised
       end do
    end subroutine take_impulses
+
+   !> c for the next round: as was found, and where that comes no nearer for long in space, as it would come to rest if
+   !> every change were that share of the one before it that the last two show (Anderson 1965, of one round). In the
+   !> plane, where what slides cannot turn, more steps converge so, but the others miss by more
+   pure subroutine follow(problem, rounds)
+      type(impulse_problem), intent(inout) :: problem
+      integer, intent(in) :: rounds                 !! so far
+      real(wp), parameter :: farthest = 100.0_wp     !! changes at once
+      real(wp) :: back, square, share
+      logical :: far
+      integer :: k
+      far = problem%directions == in_space .and. rounds > patience * most_growth + 1
+      back = 0.0_wp
+      square = 0.0_wp
+      do k = 1, problem%points
+         problem%change(k, now) = problem%asked(k, now) - problem%raised(k)
+         if (.not. far) cycle
+         back = back + problem%change(k, now) * (problem%change(k, now) - problem%change(k, before))
+         square = square + (problem%change(k, now) - problem%change(k, before))**2
+      end do
+      share = 0.0_wp
+      if (square > 0.0_wp) share = max(-farthest, back / square)
+      do k = 1, problem%points
+         problem%raised(k) = problem%asked(k, now)
+         if (abs(share) > 0.0_wp) problem%raised(k) = max(0.0_wp, &
+            problem%asked(k, now) - share * (problem%asked(k, now) - problem%asked(k, before)))
+      end do
+      problem%asked(:problem%points, before) = problem%asked(:problem%points, now)
+      problem%change(:problem%points, before) = problem%change(:problem%points, now)
+   end subroutine follow
 
    !> Velocities that follow from the impulses
    pure subroutine velocities(problem)

@@ -104,7 +104,6 @@ def refusals(building: Building, options: Dem) -> list[tuple[str, Key]]:
     """What discrete elements in space do not reckon with, and the key that asks for it."""
     given, joints = options.model_fields_set, building.joints
     asked: list[tuple[str, bool, Key]] = [
-        ('solver = "nonsmooth"', options.rigid, ("analysis", "solver")),
         ("mass_damping", options.mass_damping > 0.0, ("analysis", "mass_damping")),
         ('merge = "three-bars"', options.merge != "none", ("analysis", "merge")),
         ('base = "moving"', options.base == "moving", ("analysis", "base")),
@@ -114,9 +113,12 @@ def refusals(building: Building, options: Dem) -> list[tuple[str, Key]]:
         ("[initial] rotation_ratio", bool(building.initial.rotation_ratio), ("initial", "rotation_ratio")),
         ("stiffness of supports", building.supports.stiffness is not None, ("supports", "stiffness")),
         ("worn corners", joints.worn_corners > 0.0, ("joints", "worn_corners")),
-        ('stiffness_rule = "thesis", which is of a section', joints.stiffness_rule == "thesis", ("joints", "stiffness_rule")),
-        ('damping = "restitution"', joints.damping == "restitution" and joints.beta is None, ("joints", "damping")),
     ]  # fmt: skip
+    if not options.rigid:  # these have no stiffness and no damping
+        asked += [
+            ('stiffness_rule = "thesis", which is of a section', joints.stiffness_rule == "thesis", ("joints", "stiffness_rule")),
+            ('damping = "restitution"', joints.damping == "restitution" and joints.beta is None, ("joints", "damping")),
+        ]  # fmt: skip
     return [(f"dem of solids does not reckon with {what}: leave it out", key) for what, there, key in asked if there]
 
 
