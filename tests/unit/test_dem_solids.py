@@ -130,6 +130,29 @@ def test_a_column_rocks_on_rigid_contacts(tmp_path) -> None:
     assert shift[..., 1] == pytest.approx(-other[..., 1], abs=5e-3 * np.abs(shift).max())
 
 
+DOMAIN = (
+    '[structure]\nkind = "block"\nwidth = 0.5\nheight = 2.0\n[joints]\nfriction = 2.0\n[[analysis]]\nkind = "dem-domain"\n'
+    f'{RIGID}amplitudes = ["0.5 g", "0.8 g"]\ndurations = [0.1, 0.2, 0.3, 0.4, 0.5]\naccuracy = 0.02\n'
+)
+
+
+def test_the_map_of_a_section_drawn_out_is_that_of_the_plane(tmp_path) -> None:
+    """By both solvers, which agree in most cells."""
+    plane = answered(tmp_path, DOMAIN).results
+    space = answered(tmp_path, f"{DOMAIN}direction = 0.0\ncross_check = true\n").results
+    assert plane.direction_deg is None and space.direction_deg == 0.0
+    assert space.shortest_durations_s == pytest.approx(plane.shortest_durations_s, abs=0.02)
+    assert [c.solver for c in space.curves] == ["nonsmooth", "compliant"] and space.curves[0].beta_s is None
+    assert space.cross_check.cells == 10 and space.cross_check.agreement_ratio >= 0.9
+    assert space.convergence.open_steps == 0
+
+
+@pytest.mark.parametrize("key", ["mode_II = true", "vary_friction = [0.5]"])
+def test_what_maps_of_solids_do_not_know_is_refused(tmp_path, key: str) -> None:
+    found = answered(tmp_path, f"{DOMAIN}direction = 0.0\n{key}\n")
+    assert found.status == "refused" and key.split(" ")[0] in found.reason
+
+
 def test_rigid_contacts_find_what_falls(tmp_path) -> None:
     """Under its own weight; and a push without inertia ends as limit analysis says."""
     (tmp_path / "stones.obj").write_text(f"o cube\n{OBJ}\n{CUBE}")

@@ -250,6 +250,7 @@ class DemDomain(KindResults):
     """dem-domain: the shortest pulses that bring the blocks down."""
 
     pulse: Literal["step", "sine"] = fact("shape of the pulses")
+    direction_deg: float | None = maybe("of solids: direction in plan of the motion, from +x to +y", "deg")
     amplitudes_g: list[float] = fact("amplitudes of the pulses", "g")
     shortest_durations_s: list[float | None] = fact("at each amplitude; null where none of those tried fails", "s")
     curves: list[DemCurve] = fact("failure curves with other damping, stiffness or friction; the first is as given")

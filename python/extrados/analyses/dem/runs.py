@@ -114,10 +114,11 @@ class Runs(Job[dem.Run]):
 
 @dataclass(frozen=True)
 class SolidTask:
-    """One run of blocks in space: options, and how the ground moves."""
+    """One run of blocks in space: options, and the ground times `scale`."""
 
     options: dem3.Options
     ground: Ground | None = None
+    scale: float = 1.0
 
     @property
     def times(self) -> np.ndarray:
@@ -147,7 +148,7 @@ class SolidRuns(Job[dem3.Run]):
             as_motion_set([task.ground or dem_run.STILL]) as motions,
         ):
             told = None if watch is None else partial(watch, model)
-            return model.run(motions, times=task.times, state=state, watch=told)
+            return model.run(motions, scale=task.scale, times=task.times, state=state, watch=told)
 
     def rows(self, found: dem3.Run) -> dict[str, np.ndarray]:
         """The row of a run; histories are as long as the longest that was asked for."""

@@ -30,7 +30,6 @@ def collapse_limit(options: Dem, model: SolidModel) -> float:
 def core_options(context: Context, options: Dem, model: SolidModel) -> dem3.Options:
     """Options of the core for a run of this deck."""
     quiet = context.motion.end if context.deck.motion else 0.0
-    turn = np.radians(options.direction or 0.0)
     return dem3.Options(
         end_time=options.end_time or quiet + dem_model.settle_time(model),
         output_step=options.output_step,
@@ -43,7 +42,7 @@ def core_options(context: Context, options: Dem, model: SolidModel) -> dem3.Opti
         rigid=options.rigid,
         rebound=options.rebound,
         quasi_static=options.quasi_static,
-        way=(float(np.cos(turn)), float(np.sin(turn)), 0.0),
+        way=options.way,
     )
 
 
