@@ -22,7 +22,7 @@ contains
       real(wp), intent(in) :: frame(:, :, :)        !! (3, 3, nodes) columns: axes of a node's rotations
       integer(c_int), intent(in) :: flat(:)         !! (nodes) 1: the shell is flat there
       integer(c_int), intent(in) :: connect(:, :)   !! (nodes of an element, elements), 1-based
-      real(wp), intent(in) :: property(:, :)        !! (11, elements) as of plane elements
+      real(wp), intent(in) :: property(:, :)        !! (14, elements) as of plane elements
       integer(c_int), intent(in) :: choice(:, :)    !! (5, elements) as of plane elements
       integer(c_int), intent(out) :: bad            !! the offending element, 1-based
       integer(c_int), intent(out) :: status

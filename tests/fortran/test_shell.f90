@@ -73,7 +73,7 @@ contains
       type(shell_points), intent(out) :: group
       type(tooth_tables) :: teeth
       type(material_options) :: options
-      real(wp) :: property(11, size(connect, 2)), frame(3, 3, size(xyz, 2))
+      real(wp) :: property(14, size(connect, 2)), frame(3, 3, size(xyz, 2))
       integer(c_int) :: choice(5, size(connect, 2)), every(size(xyz, 2)), bad, status
       integer :: e, k, j
       property = 0.0_wp

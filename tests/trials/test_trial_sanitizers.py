@@ -51,7 +51,7 @@ def test_the_core_under_a_watch(name: str) -> None:
     if run.returncode:
         trial.fail(f"tests: exit {run.returncode}: {run.stdout[-1500:]} {run.stderr[-1500:]}")
     native = subprocess.run(
-        [str(Path(sys.executable).with_name("meson")), "test", "-C", str(place / "build"), "--no-rebuild", "--print-errorlogs"],
+        [str(Path(sys.executable).with_name("meson")), "test", "-C", str(place / "build"), "--no-rebuild", "--print-errorlogs", "-t", "20"],
         env={**environment, "LD_PRELOAD": ""}, capture_output=True, text=True,
     )  # fmt: skip
     trial.tried += len(re.findall(r"^ *\d+/\d+ .* OK ", native.stdout, re.M))
