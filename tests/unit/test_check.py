@@ -252,11 +252,11 @@ WRONG = {
         "know no springs", ARCH + PULSE + "[supports]\nstiffness = 1e9 # here\n" + DEM + 'solver = "nonsmooth"\n',
     ),
     "first swings of solids": (
-        "dem of solids does not reckon with mode_II", BLOCK + '[[analysis]]\nkind = "dem-domain"\ndirection = 10\nmode_II = true # here\n'
+        "dem of solids cannot take mode_II into account", BLOCK + '[[analysis]]\nkind = "dem-domain"\ndirection = 10\nmode_II = true # here\n'
         'amplitudes = ["0.5 g"]\ndurations = [0.1, 0.2]\n',
     ),
     "movements of rigid solids": (
-        "dem of solids does not reckon with [[initial.movements]]", ARCH + "[[initial.movements]] # here\njoint = 'joint 1'\ndx = 0.1\n"
+        "dem of solids cannot take [[initial.movements]] into account", ARCH + "[[initial.movements]] # here\njoint = 'joint 1'\ndx = 0.1\n"
         + DEM + 'solver = "nonsmooth"\nquasi_static = true\ndirection = 10\n',
     ),
     "restitution of many blocks": ("of a single block", ARCH + PULSE + '[joints]\ndamping = "restitution" # here\n' + DEM),

@@ -1,4 +1,4 @@
-"""What a deck says of its building is reckoned with, or told to be left out, with file and line: never silently without effect."""
+"""What a deck says of its building is used, or told to be left out, with file and line: never silently without effect."""
 
 import copy
 import json

@@ -12,7 +12,7 @@ from extrados.building.properties import JointType
 from extrados.decks.reader import PROPERTIES, Deck
 from extrados.schema.table import Table
 
-#: What bears on whether stones stand, however that is asked: worth a word where only some of a deck's analyses reckon with it
+#: What bears on whether stones stand, however that is asked: worth a word where only some of a deck's analyses use it
 SHARED = frozenset(
     f"joints.{name}" for name in ("friction", "cohesion", "tension", "compressive_strength", "worn_corners")
 ) | {"material.compressive_strength", "supports.stiffness"}
@@ -27,7 +27,7 @@ class Remark:
 
 
 def left_out(deck: Deck) -> list[Remark]:
-    """Keys of the building that the deck itself gives and that none of its analyses reckons with, or, of what bears on
+    """Keys of the building that the deck itself gives and that none of its analyses uses, or, of what bears on
     whether stones stand, not all; each key once. A value that is the default says nothing, and is not asked for."""
     asked = [_reckoned_with(*each) for each in zip(deck.analyses, deck.buildings, strict=True)]
     names = _names(deck.analyses)
@@ -104,7 +104,7 @@ def _names(analyses: list[Analysis]) -> list[str]:
 
 
 def _known_to(name: str) -> str:
-    """Analyses that reckon with a key, as words."""
+    """Analyses that use a key, as words."""
     tables = {kind: kinds.load(parts.table) for kind, parts in kinds.ANALYSES.items()}
     able = [kind for kind, table in tables.items() if name in (*table.uses, *table.beside) and name not in table.method]
     return f"; {', '.join(able[:3])}{' and others' if len(able) > 3 else ''} can use it" if able else ""

@@ -100,6 +100,6 @@ def _refused(text: str, key: Key) -> Need:
 
 
 def _who(what: str) -> str:
-    """Analyses that reckon with a thing, as words."""
+    """Analyses that take into account a thing, as words."""
     able = [kind for kind, parts in kinds.ANALYSES.items() if what in kinds.load(parts.table).bears]
     return " or ".join([", ".join(able[:3]), *able[3:4]]) if len(able) <= 4 else f"{', '.join(able[:3])} and others"

@@ -47,7 +47,7 @@ class Analysis(Table):
     stones that it takes as shells. uses: properties of the building that its answer rests on, which every
     answer tells; method: what the method itself fixes of them, whatever the deck says; starter_structure,
     starter_motion: their kinds in the deck that `new` writes, "" no motion unless one is needed. bears: what of
-    Building.special_keys it reckons with; one that looks at a building with more is refused. beside: what
+    Building.special_keys it takes into account; one that looks at a building with more is refused. beside: what
     it looks at, or refuses, beside `uses`, without telling it.
     """
 

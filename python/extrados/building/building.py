@@ -72,7 +72,7 @@ class Building:
 
     @property
     def special_keys(self) -> dict[str, Key]:
-        """What of it only some strategies reckon with, as decks call it, with the key that says so; what it has not is
+        """What of it only some strategies take into account, as decks call it, with the key that says so; what it has not is
         left out."""
         found: dict[str, Key] = {
             f"[[{section}]]": (section, 0) for section in ("ties", "dampers", "hinges") if getattr(self, section)

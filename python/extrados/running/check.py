@@ -37,7 +37,7 @@ class Place:
 
 @dataclass(frozen=True)
 class Checked:
-    """complaints: why the deck would be refused; ignored: what it says that no analysis reckons with, or not all; remarks and
+    """complaints: why the deck would be refused; ignored: what it says that no analysis uses, or not all; remarks and
     notes on its geometry; the list of places, the refused
     first, then the open, then those that the tolerance closes; inspection: None where it is no survey; solids: what has
     no plane section, or is asked for in a direction; plan: the mesh of a building on a plan."""

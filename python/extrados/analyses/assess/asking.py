@@ -50,7 +50,7 @@ class Asker:
     clock: Callable[[], float]
 
     def cannot_bear(self, kind: str) -> tuple[str, ...]:
-        """What the deck has that an analysis of this kind does not reckon with, as decks call it."""
+        """What the deck has that an analysis of this kind cannot take into account, as decks call it."""
         bears = kinds.load(kinds.ANALYSES[kind].table).bears
         return tuple(what for what in self.context.building.special_keys if what not in bears)
 

@@ -231,7 +231,7 @@ def crack(facts: Facts, pairs: list[Pair]) -> Reason | None:
 
 
 def left_out(facts: Facts, pairs: list[Pair]) -> Reason | None:
-    """One of them does not reckon with what holds the building; without it the other says the same."""
+    """One of them leaves out what holds the building; without it the other says the same."""
     without = facts.probes.get("without-restraints")
     every = {w for there in facts.bare.values() for w in there}  # what the probe was asked without
     bare = [n for n, there in facts.bare.items() if set(there) == every]
@@ -459,7 +459,7 @@ def membrane(facts: Facts, pairs: list[Pair]) -> Reason | None:
 
 
 def mortar(facts: Facts, pairs: list[Pair]) -> Reason | None:
-    """Joints with tension or cohesion: elements reckon with them, limit analysis and rocking do not."""
+    """Joints with tension or cohesion: elements know them, limit analysis and rocking do not."""
     joints = facts.building.joints
     with_mortar = ("dem", "sla") if facts.building.meshed_by_stones else ("dem",)
     mine = [p for p in pairs if (facts.split(p)[1] in with_mortar and facts.split(p)[0] not in with_mortar)]

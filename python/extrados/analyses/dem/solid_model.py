@@ -101,7 +101,7 @@ def make_solid_model(building: Building, options: SpatialDem) -> SolidModel:
 
 
 def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
-    """What discrete elements in space do not reckon with, and the key that asks for it."""
+    """What discrete elements in space cannot take into account, and the key that asks for it."""
     given, joints = options.model_fields_set, building.joints
     asked: list[tuple[str, bool, Key]] = [
         ("mass_damping", options.mass_damping > 0.0, ("analysis", "mass_damping")),

@@ -107,7 +107,7 @@ def tie_group(mesh: Mesh, tie: Tie, rod: Rod, options: Sla) -> core.Bars:
     """One of [[ties]]: a bar of 1 m^2, so that its stress is its force."""
     if tie.prestress:
         raise BadGeometry(
-            f"{tie.name}: prestress is not reckoned with here; put the pair of its forces among the constant loads"
+            f"{tie.name}: prestress is not taken into account here; put the pair of its forces among the constant loads"
         )
     length = float(rod.length[0])
     thickness = max(float(group.thickness.max()) for group in mesh.groups if group.joint is None)
