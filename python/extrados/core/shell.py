@@ -16,7 +16,7 @@ FLAT = 1e-5
 def node_frames(xyz: np.ndarray, groups: Iterable[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """Axes of the rotations of each node (nodes, 3, 3), columns, and whether the shell is flat there (nodes).
 
-    groups: the nodes (elements, 3 or 4) of all shells that bend. Where they lie in one plane at a node, its axes are
+    xyz (nodes, 3) [m]. groups: the nodes (elements, 3 or 4) of all shells that bend. Where they lie in one plane at a node, its axes are
     those of the plane, the third its normal; elsewhere they are x, y, z.
     """
     frames, flat = np.tile(np.eye(3), (len(xyz), 1, 1)), np.ones(len(xyz), dtype=bool)

@@ -53,6 +53,7 @@ class Monitor:
 
     @staticmethod
     def of(node: int, direction: int) -> "Monitor":
+        """The displacement of one node in one direction."""
         return Monitor(np.array([node]), np.array([direction]), np.array([1.0]))
 
 

@@ -292,6 +292,7 @@ def bands_of(
 
 
 def softening_of(material: Material, options: CrackOptions, factor: float = 1.0) -> core.Softening | None:
+    """The tension softening of a material, its strength times `factor`; None where it does not crack."""
     if material.tensile_strength is None:
         return None
     return core.Softening(
@@ -330,6 +331,7 @@ def bedding_of(material: Material) -> core.Bedding | None:
 
 
 def crushing_of(material: Material, options: CrackOptions) -> core.Softening | None:
+    """The softening of a material in compression; None where it does not crush."""
     if material.crushing_energy is None:
         return None
     return core.Softening(

@@ -166,6 +166,7 @@ class ShellMesh:
         return f"<ShellMesh: {len(self.xyz)} nodes, {self.elements()} elements>"
 
     def elements(self) -> int:
+        """Number of elements."""
         return sum(len(part.connect) for part in self.parts)
 
     def mass(self) -> np.ndarray:

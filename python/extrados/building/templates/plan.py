@@ -76,6 +76,7 @@ class PlanWall(Table):
 
     @property
     def length(self) -> float:
+        """Length on the plan [m]."""
         return float(np.hypot(*np.subtract(self.end, self.start)))
 
     @property
@@ -354,6 +355,7 @@ class Plan(Structure):
         return found
 
     def wall(self, name: str) -> PlanWall:
+        """The wall of a name; StopIteration where there is none."""
         return next(wall for wall in self.walls if wall.name == name)
 
     def bond(self, one: str, two: str) -> Corner | None:
