@@ -68,7 +68,7 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
     "fortran/shell": (
         ("test_shell",),
         ("unit/test_shell_elements.py", "unit/test_shell_events.py", "unit/test_shell_vaults.py", "unit/test_floors.py",
-         "unit/test_vault_shells.py"),
+         "unit/test_vault_shells.py", "unit/test_shell_joints.py"),
         "shell/ or building/one-way",
     ),
     "c/quake": (("test_quake", "test_motion"), ("unit/test_motion_core.py", "unit/test_generated.py"), "motion/"),

@@ -36,6 +36,13 @@ def loaded():
     made.loads(np.zeros((4, 2)), push)
     return made
 
+def joint(kind, **change):
+    values = dict(connect=np.array([[0, 1, 2, 3]]), normal=np.array([[0.0, 1.0]]), area=np.array([[0.5, 0.5]]), normal_stiffness=1e9,
+                  shear_stiffness=1e9)
+    return kind(**{**values, **change})
+def in_space(*groups):
+    xyz = np.column_stack([xy[:, 0], 0.0 * xy[:, 0], xy[:, 1]])
+    return sla.Model(xyz, sla.Freedoms.make(4, held, of_node=6), list(groups))
 watch = [sla.Monitor.of(2, 0)]
 box = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 law = dem.Law(1e8, 1e8, 0.6, damping=1e-3)
@@ -114,6 +121,11 @@ ABUSES = {
     "connectivity negative": ("wall(plane(connect=np.array([[0, 1, 2, -1]])))", "IndexError"),
     "connectivity of another kind": ("wall(plane(connect=np.array([[0, 1, 2]])))", "ValueError"),
     "connectivity of fractions": ("wall(plane(connect=np.array([[0.0, 1.0, 2.0, 3.0]])))", "TypeError"),
+    "joint of shells in the plane": ("wall(plane(), joint(sla.ShellJoints, row=np.zeros((1, 2, 3, 24))))", "CoreError"),
+    "joint of the plane in space": ("in_space(joint(sla.Joints))", "CoreError"),
+    "joint of shells without its vectors": ("in_space(joint(sla.ShellJoints))", "ValueError"),
+    "joint of shells to nowhere": (
+        "in_space(joint(sla.ShellJoints, row=np.zeros((1, 2, 3, 24)), connect=np.array([[0, 1, 2, 9]])))", "IndexError"),
     "bar to nowhere": ("wall(plane(), sla.Bars(np.array([[0, 9]]), 0.1, 1e9))", "IndexError"),
     "spring to nowhere": ("wall(plane(), sla.Springs(np.array([[0, 7]]), np.array([[0, 0]]), np.array([1e6])))",
                           "IndexError"),

@@ -200,7 +200,13 @@ def test_curves_of_several_runs_stand_in_one_picture(run, tmp_path) -> None:
     assert curves[0].greatest()[0] == pytest.approx(found["pushover"].greatest_load_N, rel=1e-12)
     with style.kept() as pictures:
         draw(curves, tmp_path / "together.png")
-    lines = [line for line in pictures["together"].axes[0].lines if len(line.get_xdata()) > 2]
+    ax = pictures["together"].axes[0]
+    marked = [float(line.get_ydata()[0]) for line in ax.lines if len(line.get_xdata()) == 1]
+    carried = [
+        row.shear_N / 1e3 for name in ("pushover", "pushover-2") for row in found[name].walls if row.share > 0.05
+    ]
+    assert marked == pytest.approx(carried) and marked
+    lines = [line for line in ax.lines if len(line.get_xdata()) > 2]
     assert len(lines) == len(curves)
     for line, curve in zip(lines, curves, strict=True):
         np.testing.assert_allclose(line.get_ydata(), curve.load / 1e3)

@@ -2,11 +2,14 @@
 
 import textwrap
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 import extrados
+from extrados.building.mesh.shells import ShellOptions
 from extrados.cli import app
+from extrados.decks.reader import read_text
 
 BED = """
     [structure]
@@ -143,3 +146,27 @@ def test_joints_without_a_bond_along_them_are_told(tmp_path):
         tmp_path, text, "events = 3".replace("events", "#"), HEIGHT=0.0, TENSION=2e4, ENERGY=10, LAYERS=3
     )
     assert any("joints have no cohesion" in warning for warning in warnings)
+
+
+def test_check_draws_the_joints_on_their_walls(tmp_path):
+    """A bed joint along each wall, the joint of the corner up the wall that abuts."""
+    text = textwrap.dedent(FLANGE).replace("CORNER", '{ walls = ["flange", "web"], bond = "joint" }')
+    text = text.replace("[material]", '[[structure.beds]]\nz = 0.5\nwalls = ["web"]\n[material]')
+    (tmp_path / "deck.toml").write_text(text.replace("BOND", "2e4").replace("TOUGH", "10"))
+    told = CliRunner().invoke(app, ["check", str(tmp_path / "deck.toml"), "--out", str(tmp_path / "out")])
+    assert told.exit_code == 0, told.output
+    drawn = (tmp_path / "out" / "plan.svg").read_text(encoding="utf-8")
+    for name in ("joint flange-web", "joint bed 1"):
+        assert drawn.count(f"<!-- {name} -->") == 1
+
+
+@pytest.mark.parametrize("walls, ends", [('["web"]', 1), ('["web", "flange"]', 0)])
+def test_a_wall_that_a_bed_joint_does_not_cut_ends_it(walls, ends):
+    """Where a bonded wall passes through, both sides are one node; where it is cut too, the joint runs around the corner."""
+    plan = textwrap.dedent(FLANGE).replace("[CORNER]", f"[]\nbeds = [{{ z = 0.5, walls = {walls} }}]")
+    building = read_text(plan.replace("BOND", "2e4").replace("TOUGH", "10").encode()).building
+    mesh = building.shell(ShellOptions(size=0.5, layers=3))
+    pairs = np.concatenate([np.vstack([j.connect[:, [0, 3]], j.connect[:, [1, 2]]]) for j in mesh.joints])
+    one = np.unique(pairs[pairs[:, 0] == pairs[:, 1], 0])
+    assert len(one) == ends and all(mesh.xyz[n] == pytest.approx([0.0, 0.0, 0.5]) for n in one)
+    assert np.allclose(mesh.xyz[pairs[:, 0]], mesh.xyz[pairs[:, 1]]) and np.allclose(mesh.xyz[pairs[:, 0], 2], 0.5)

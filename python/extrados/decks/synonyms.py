@@ -54,6 +54,7 @@ SYNONYMS: tuple[Synonym, ...] = (
     _line("strength, compressive strength, crushing, fc", "stones crush by the material, joints by their own strength", "material.compressive_strength joints.compressive_strength", "limit.md"),
     _line("tensile strength, ft, cracking, fracture energy, gf", "what may crack, and the energy that a crack takes", "material.tensile_strength material.fracture_energy", "sla.md"),
     _line("restitution, coefficient of restitution, cor, impact, energy loss, housner", "what an impact leaves of the velocity: a rule or a number", "joints.restitution joints.energy_ratio", "theory.md"),
+    _line("base sliding, sole, damp-proof course, flange, return wall, detached wall", "joints of buildings of shells: bed joints that slide, corners where a wall abuts on another", "building.beds building.corners joints results.pushover.joints", "buildings.md"),
     _line("tie rod, tie, anchor, chain, strut, rod, strengthening, retrofit", "ties between stones or to the ground, with a yield force", "ties building.rods", "rocking-statistics.md"),
     _line("damper, viscous damping, damping ratio, rayleigh damping", "dampers between stones; damping of joints of discrete elements", "dampers joints.damping joints.damping_ratio", "dem.md"),
     _line("settlement, support displacement, spreading, foundation movement, subsidence", "supports that give way, and the joints that open", "supports.stiffness initial.movements supports", "limit.md"),

@@ -1,10 +1,10 @@
 """The picture of a building before it is computed: its plan, and its walls with their mesh; of a vault its mesh in space."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, to_hex
 from matplotlib.patches import Patch
 
@@ -17,7 +17,7 @@ MOST_BESIDE = 3
 @dataclass(frozen=True)
 class Elevation:
     """A wall: ends (2) on the plan [m], thickness [m], corners (elements, 4, 2) of its elements along it and up [m], and
-    which of them stay elastic."""
+    which of them stay elastic; its joints by name, with the ends (stretches, 2, 2) of their stretches [m]."""
 
     name: str
     start: np.ndarray
@@ -25,6 +25,7 @@ class Elevation:
     thickness: float
     corner: np.ndarray
     linear: np.ndarray
+    joints: list[tuple[str, np.ndarray]] = field(default_factory=list)
 
 
 def draw_plan(folder: Path, name: str, walls: list[Elevation], levels: np.ndarray) -> Path:
@@ -59,6 +60,12 @@ def draw_plan(folder: Path, name: str, walls: list[Elevation], levels: np.ndarra
             ax = fig.add_subplot(grid[k // columns, 1 + k % columns])
             shade = [LINTEL if elastic else style.STONE for elastic in wall.linear]
             ax.add_collection(PolyCollection(wall.corner, facecolors=shade, edgecolors="#b3a98f", linewidths=0.3))
+            for joint, ends in wall.joints:
+                ax.add_collection(LineCollection(list(ends), colors=style.THRUST, linewidths=1.6, zorder=3))
+                ax.annotate(
+                    f"joint {joint}", ends.reshape(-1, 2).mean(axis=0), xytext=(4, 4), textcoords="offset points",
+                    fontsize=7, color=style.THRUST, zorder=4,
+                )  # fmt: skip
             for height in levels:
                 ax.axhline(height, color=style.HINGE, linewidth=0.6, linestyle=":")
             ax.autoscale_view()

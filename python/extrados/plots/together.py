@@ -13,6 +13,8 @@ from extrados.results.store import Stored, StoreError
 COLOURS = ("#b3261e", "#1f4e79", "#d9822b", "#3a7d44", "#7b2d8b", "#17808a", "#8a6d3b", "#5d7288")
 #: Marks of an incremental solution stand apart by this part of the picture
 MARKED = 0.03
+#: Part of the base shear from which a wall of a building is marked
+LEAST_SHARE = 0.05
 #: Of the first sense of the load, and of the second
 SENSES = dict(zip(PREFIXES, ("-", "--"), strict=True))
 
@@ -20,7 +22,8 @@ SENSES = dict(zip(PREFIXES, ("-", "--"), strict=True))
 @dataclass(frozen=True)
 class Push:
     """A curve of one sense: displacements [m] and loads [N] of its envelope. analysis: what the picture calls it;
-    incremental: by steps, not by events; weight: of what is pushed [N], None where the run does not say."""
+    incremental: by steps, not by events; weight: of what is pushed [N], None where the run does not say; walls: of a building,
+    what each carries in its plane at the greatest load [N], by name."""
 
     analysis: str
     prefix: str
@@ -29,6 +32,7 @@ class Push:
     load: np.ndarray
     incremental: bool
     weight: float | None
+    walls: dict[str, float]
 
     def greatest(self) -> tuple[float, float]:
         """Greatest load [N] and its displacement [m]."""
@@ -54,8 +58,9 @@ def pushes(runs: list[tuple[str, Stored]]) -> list[Push]:
                 if f"{prefix}envelope_load" not in run.arrays[name]:
                     continue
                 d, p = (run.array(name, f"{prefix}envelope_{of}") for of in ("displacement", "load"))
-                sense = (r.minus if prefix else r).sense
-                found.append(Push(called, prefix, sense, d, p, incremental, r.get("weight_N")))
+                numbers = r.minus if prefix else r
+                walls = {row.wall: row.shear_N for row in numbers.get("walls", []) if row.share > LEAST_SHARE}
+                found.append(Push(called, prefix, numbers.sense, d, p, incremental, r.get("weight_N"), walls))
     return found
 
 
@@ -70,6 +75,11 @@ def draw(curves: list[Push], path: Path) -> Path:
                 color=COLOURS[analyses.index(curve.analysis) % len(COLOURS)], marker="o" if curve.incremental else None,
                 markersize=3, markevery=MARKED,
             )  # fmt: skip
+            colour = COLOURS[analyses.index(curve.analysis) % len(COLOURS)]
+            _, at = curve.greatest()
+            for shear in curve.walls.values():
+                ax.plot(1e3 * at, shear / 1e3, "+" if curve.prefix == PREFIXES[0] else "x", color=colour, markersize=7)
+            style.letters(ax, np.array([(1e3 * at, v / 1e3) for v in curve.walls.values()]), list(curve.walls), colour)
         marks = [Line2D([], [], color=COLOURS[k % len(COLOURS)]) for k in range(len(analyses))]
         labels = list(analyses)
         for prefix, sense in dict.fromkeys((curve.prefix, curve.sense) for curve in curves):
@@ -78,6 +88,9 @@ def draw(curves: list[Push], path: Path) -> Path:
         if any(curve.incremental for curve in curves):
             marks.append(Line2D([], [], color="#555", marker="o", markersize=3))
             labels.append("incremental solution")
+        if any(curve.walls for curve in curves):
+            marks.append(Line2D([], [], color="#555", marker="+", markersize=7, linestyle=""))
+            labels.append("its walls at its greatest load")
         ax.set_xlabel("control displacement [mm]")
         ax.set_ylabel("base shear [kN]" if all(curve.weight is not None for curve in curves) else "load [kN]")
         ax.set_xlim(left=min(0.0, *(1e3 * float(curve.displacement.min()) for curve in curves), 0.0))

@@ -148,7 +148,12 @@ def write_plan(mesh: "ShellMesh", folder: Path) -> Path:
         part = next(p for p in mesh.parts if p.wall == number)
         corner = wall.unfolded(mesh.xyz[part.connect.ravel()]).reshape(*part.connect.shape, 2)
         end = wall.origin + wall.length * wall.along
-        walls.append(Elevation(wall.name, wall.origin, end, float(part.thickness.max()), corner, part.linear))
+        joints = [
+            (joint.name, wall.unfolded(mesh.xyz[joint.connect[:, :2].ravel()]).reshape(-1, 2, 2))
+            for joint in mesh.joints
+            if joint.wall == wall.name
+        ]
+        walls.append(Elevation(wall.name, wall.origin, end, float(part.thickness.max()), corner, part.linear, joints))
     with tempfile.TemporaryDirectory(prefix=f".{folder.name}.checking-", dir=folder.parent) as place:
         scratch = Path(place)
         if walls:
