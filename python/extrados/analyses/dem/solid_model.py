@@ -119,14 +119,14 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
         ]
     if isinstance(options, DemDomain):
         asked.append(("mode_II", options.mode_II, ("analysis", "mode_II")))
-    if not options.rigid or (
-        isinstance(options, DemDomain) and options.cross_check
-    ):  # rigid contacts do not ask for it
+    if not options.rigid or (isinstance(options, DemDomain) and options.cross_check):  # something asks how springs are
         asked += [
             ('stiffness_rule = "thesis", which is of a section', joints.stiffness_rule == "thesis", ("joints", "stiffness_rule")),
             ('damping = "restitution"', joints.damping == "restitution" and joints.beta is None, ("joints", "damping")),
         ]  # fmt: skip
-    return [(f"dem of solids does not reckon with {what}: leave it out", key) for what, there, key in asked if there]
+    return [
+        (f"dem of solids cannot take {what} into account: leave it out", key) for what, there, key in asked if there
+    ]
 
 
 def refuse_stones(building: Building, assembly: SolidAssembly) -> None:
@@ -135,10 +135,10 @@ def refuse_stones(building: Building, assembly: SolidAssembly) -> None:
         if np.nanmax(building.joint_property(name, assembly), initial=0.0) > 0.0:
             raise Refused(f"joints.{name}: dem of solids knows dry joints alone", ("joints", name))
     if assembly.keys is not None:
-        raise Refused("dowels: dem of solids does not reckon with them; leave them out", ("structure", "dowels"))
+        raise Refused("dowels: dem of solids cannot take them into account; leave them out", ("structure", "dowels"))
     if len(assembly.fill):
         raise Refused(
-            "fill: dem of solids does not reckon with what rests on the stones; leave it out", ("structure", "fill")
+            "fill: dem of solids cannot take what rests on the stones into account; leave it out", ("structure", "fill")
         )
 
 
