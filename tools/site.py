@@ -1,14 +1,18 @@
 """Build the documentation site into build/site: the references, a gallery of cases run now, the dissertation's figures redrawn,
 Sphinx, and FORD for the Fortran.
 
-What it needs is the extra `docs` of pyproject.toml, installed first where it is missing. A warning is an error.
+What it needs is the extra `docs` of pyproject.toml, installed first where it is missing. A warning is an error, and so is a link
+that leads nowhere; nothing is loaded from the network, so that the site and its search work without one.
 """
 
+import html
+import re
 import shutil
 import subprocess
 import sys
 import tomllib
 from pathlib import Path
+from urllib.parse import unquote, urlsplit
 
 import dissertation
 import extras
@@ -25,6 +29,7 @@ SHOWN = [
 FORD = """project: extrados
 summary: The Fortran core
 src_dir: {root}/fortran
+css: {root}/docs/fortran.css
 output_dir: {out}
 predocmark: >
 docmark: !
@@ -36,6 +41,11 @@ search: false
 preprocess: false
 parallel: 0
 """
+#: Of the pages of FORD: what they load from the network, and what then rests on it
+FROM_AFAR = re.compile(
+    r"<!-- Bootstrap -->.*?(?=<!-- Font Awesome)|<!-- MathJax -->.*?(?=<!-- Other scripts)|<script>\s*// Enable Bootstrap.*?</script>",
+    re.S,
+)
 
 
 def gallery() -> None:
@@ -109,6 +119,30 @@ def fortran() -> None:
     project = ROOT / "build" / "ford.md"
     project.write_text(FORD.format(root=ROOT, out=SITE / "fortran"), encoding="utf-8")
     subprocess.run([sys.executable, "-m", "ford", project], check=True, stdout=subprocess.DEVNULL)
+    for page in (SITE / "fortran").rglob("*.html"):
+        page.write_text(FROM_AFAR.sub("", page.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+def broken(site: Path) -> list[str]:
+    """Links of a site's pages that lead nowhere, and what they would load from the network: each as "page: link"."""
+    wrong: list[str] = []
+    places: dict[Path, set[str]] = {}
+    pages = {page: page.read_text(encoding="utf-8") for page in sorted(site.resolve().rglob("*.html"))}
+    for page, text in pages.items():
+        places[page] = set(re.findall(r'\b(?:id|name)="([^"]+)"', text))
+    for page, text in pages.items():
+        for tag, link in re.findall(r"""<(\w+)\b[^>]*?\b(?:href|src)=["']([^"']+)["']""", text):
+            parts = urlsplit(html.unescape(link))
+            if parts.scheme or parts.netloc:
+                if tag != "a" and parts.scheme != "data":
+                    wrong.append(f"{page.relative_to(site.resolve())}: {link} is loaded from the network")
+                continue
+            to = (page.parent / unquote(parts.path)).resolve() if parts.path else page
+            to = to / "index.html" if to.is_dir() else to
+            mark = unquote(parts.fragment)
+            if not to.exists() or (mark not in ("", "top") and to in places and mark not in places[to]):
+                wrong.append(f"{page.relative_to(site.resolve())}: {link} leads nowhere")
+    return wrong
 
 
 def main() -> None:
@@ -128,6 +162,8 @@ def main() -> None:
     )
     if not quick:
         fortran()
+        if wrong := broken(SITE):
+            sys.exit("\n".join(wrong[:40]))
     print(f"Site: {SITE / 'index.html'}")
 
 

@@ -71,7 +71,7 @@ contains
    end subroutine start
 
    !> Settle, shake, record: begin, or go on where it has paused, under the same motion
-   subroutine run(handle, motions, motion, scale, steps, paused, time, status)
+   subroutine run(handle, motions, motion, across, scale, steps, paused, time, status)
       use common_handles, only : handle_leave
       use common_motion_set, only : motion_set, motion_set_take, motion_signal
       use common_signal, only : signal
@@ -80,14 +80,15 @@ contains
       integer(c_int64_t), intent(in) :: handle
       integer(c_int64_t), intent(in) :: motions               !! handle of a set of motions
       integer(c_int), intent(in) :: motion                    !! its number in the set, 1-based
-      real(c_double), intent(in) :: scale                     !! factor on the motion
+      integer(c_int), intent(in) :: across                    !! that of the other horizontal one, in space; 0: none
+      real(c_double), intent(in) :: scale                     !! factor on both
       integer(c_int), intent(in) :: steps                     !! after which it pauses; 0: it does not
       integer(c_int), intent(out) :: paused                   !! 1: it can go on
       real(c_double), intent(out) :: time                     !! that it has come to [s]
       integer(c_int), intent(out) :: status                   !! cancelled leaves what was recorded
       class(built_model), pointer :: built
       type(motion_set), pointer :: set
-      type(signal) :: ground
+      type(signal) :: ground, other
       logical :: waits
       !f2py threadsafe
       paused = 0
@@ -97,8 +98,9 @@ contains
       call motion_set_take(motions, .false., set, status)
       if (status == status_ok) then
          call motion_signal(set, motion, scale, ground, status)
+         if (status == status_ok .and. across /= 0) call motion_signal(set, across, scale, other, status)
          if (status == status_ok) then
-            call run_built(built, ground, int(steps), waits, time, status)
+            call run_built(built, ground, other, int(steps), waits, time, status)
             paused = merge(1_c_int, 0_c_int, waits)
          end if
          call handle_leave(motions)

@@ -117,14 +117,14 @@ contains
    !> Body force and base velocity of this step
    subroutine prepare(model)
       type(block_model), intent(inout) :: model
-      real(wp) :: ground(2)
+      real(wp) :: ground(3)
       call begin_step(model%model_clock, ground)
       model%pull_before = model%pull
       model%pull = model%gravity
       if (model%load%moving_base) then
-         model%base = model%base + model%kick * ground
+         model%base = model%base + model%kick * ground(1:2)
       else
-         model%pull = model%pull - ground
+         model%pull = model%pull - ground(1:2)
       end if
    end subroutine prepare
 

@@ -98,6 +98,7 @@ contains
       call on%pass(clock%drift, storage_size(clock%drift))
       call on%pass(clock%kick, storage_size(clock%kick))
       call on%pass(clock%segment, storage_size(clock%segment))
+      call on%pass(clock%segment_across, storage_size(clock%segment_across))
       call on%pass(clock%steps, storage_size(clock%steps))
       call on%pass(clock%waits, storage_size(clock%waits))
       call on%pass(clock%shaking, storage_size(clock%shaking))

@@ -390,10 +390,11 @@ contains
    !> Body force and velocity of the ground in this step
    subroutine prepare(model)
       type(solid_model), intent(inout) :: model
-      real(wp) :: ground(2)
+      real(wp) :: ground(3)
       call begin_step(model%model_clock, ground)
       model%pull_before = model%pull
-      model%pull = model%gravity - ground(1) * model%way - [0.0_wp, 0.0_wp, ground(2)]
+      model%pull = model%gravity - ground(1) * model%way - [0.0_wp, 0.0_wp, ground(2)] &
+         - ground(3) * [-model%way(2), model%way(1), 0.0_wp]
    end subroutine prepare
 
    !> Velocity that follows from the forces of the last step; clears the forces

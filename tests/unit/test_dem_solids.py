@@ -55,6 +55,26 @@ def test_a_column_rocks_in_the_direction_of_the_motion(tmp_path) -> None:
     assert "dem.glb" in there.files and "It rocks" in there.answer
 
 
+def test_both_horizontal_components_of_a_record_act_at_once(tmp_path) -> None:
+    """As they were recorded, however the structure is turned against the record: first along x, second along y."""
+    t = np.arange(0.0, 0.6, 0.01)
+    for name, wave in (("one", 0.5 * np.sin(10.0 * t)), ("other", 0.4 * np.cos(7.0 * t))):
+        np.savetxt(tmp_path / f"{name}.csv", np.column_stack([t, wave]), delimiter=",")
+    found = []
+    for turn in (0.0, 90.0):
+        motion = f'[motion]\nkind = "record"\nfile = "one.csv"\nsecond = "other.csv"\nangle = {turn}\nunit = "g"\n'
+        found.append(
+            answered(tmp_path, f'{COLUMN}{motion}[[analysis]]\nkind = "dem"\nend_time = 0.5\ndirection = {turn}\n')
+        )
+    there, turned = found
+    assert there.results.horizontal_components == turned.results.horizontal_components == 2
+    shift, other = (r.arrays["shift"].data for r in (there, turned))
+    assert np.abs(shift).max(axis=(0, 1))[:2].min() > 5e-3
+    assert other == pytest.approx(shift, abs=1e-3 * np.abs(shift).max())
+    assert there.arrays["ground_across"].data == pytest.approx(turned.arrays["ground"].data)
+    assert turned.arrays["ground_across"].data == pytest.approx(-there.arrays["ground"].data)
+
+
 @pytest.mark.verify
 @pytest.mark.parametrize("solver", ["compliant", "nonsmooth"])
 @pytest.mark.parametrize(

@@ -209,7 +209,11 @@ def run(
     moves: tuple[SupportMove, ...] = (),
     times: np.ndarray | None = None,
 ) -> Run:
-    """One run of a model that is made for it; see Model and Model.run. No ground: it stands still."""
+    """One run of a model that is made for it; see Model and Model.run. No ground: it stands still.
+
+    shift (n, 3): displacements of the bodies at the start [m], [m], [rad]; rate (n, 3): their velocities; times (frames):
+    of output [s].
+    """
     with (
         Model(bodies, options, shift=shift, rate=rate, moves=moves) as model,
         as_motion_set([ground or STILL]) as motions,

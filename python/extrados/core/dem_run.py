@@ -117,6 +117,8 @@ class BodyModel(Owner, ABC, Generic[Found]):
     #: Velocities of a body, and values that tell where it is and how it moves, by which answers are kept within bounds
     rates: ClassVar[int]
     values: ClassVar[int]
+    #: Whether the ground may have two horizontal components
+    in_space: ClassVar[bool] = False
     count: int
     options: RunOptions
 
@@ -139,13 +141,15 @@ class BodyModel(Owner, ABC, Generic[Found]):
         motion: int = 0,
         *,
         scale: float = 1.0,
+        across: int | None = None,
         times: npt.ArrayLike | None = None,
         state: np.ndarray | None = None,
         watch: Callable[[float], None] | None = None,
     ) -> Found:
         """Settle under gravity, then move the ground by `scale` times a motion of the set.
 
-        times: ascending output times [s] instead of every output_step. state: goes on where a run of this model, these
+        across: motion of the set whose horizontal part is the other component, in space a quarter turn from `way` seen from
+        above; of the plane none. times (frames): ascending output times [s] instead of every output_step. state: goes on where a run of this model, these
         times and this motion had paused. watch: the run pauses now and then, and when it is interrupted, tells the time
         it has come to [s], and may be asked for its `state`. Neither changes a bit of the result.
         """
@@ -156,11 +160,15 @@ class BodyModel(Owner, ABC, Generic[Found]):
         wanted = real("times", times, (None,))
         if not len(wanted) or np.any(np.diff(wanted) < 0.0):
             raise ValueError("output times must ascend, and there must be one")
-        if not 0 <= motion < len(motions):
-            raise IndexError(f"motion {motion} is not in the set of {len(motions)}")
+        for number in (motion, across or 0):
+            if not 0 <= number < len(motions):
+                raise IndexError(f"motion {number} is not in the set of {len(motions)}")
+        if across is not None and not self.in_space:
+            raise ValueError("the plane has one horizontal component")
         if not np.isfinite(scale):
             raise ValueError(f"scale is {scale}, expected a number")
-        where = (self.handle, motions.handle, int(motion) + 1, float(scale))
+        other = 0 if across is None else int(across) + 1
+        where = (self.handle, motions.handle, int(motion) + 1, other, float(scale))
         steps = FIRST_PAUSE if watch else 0
         with interruptible():
             if state is None:
@@ -182,7 +190,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
         return self._last_run(interrupted)
 
     def state(self) -> np.ndarray:
-        """The whole state of a run that has paused, for `run` of this build alone; HandleError where none has."""
+        """The whole state (words) of a run that has paused, for `run` of this build alone; HandleError where none has."""
         words, status = _core.api_dem_run.state_size(self.handle)
         check(status, "state of a run that has paused")
         state, status = _core.api_dem_run.state(self.handle, int(words))
@@ -221,7 +229,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
 
 
 def state_words(state: np.ndarray) -> np.ndarray:
-    """The words of a state that was kept with its digest; ValueError where they are damaged."""
+    """The words (words) of a state that was kept with its digest; ValueError where they are damaged."""
     state = np.ascontiguousarray(state, dtype=np.int64)
     words = state[:-_DIGEST]
     if state.ndim != 1 or not np.array_equal(state[-_DIGEST:], state_digest(words)):
@@ -230,5 +238,5 @@ def state_words(state: np.ndarray) -> np.ndarray:
 
 
 def state_digest(words: np.ndarray) -> np.ndarray:
-    """What tells a damaged state."""
+    """What tells damaged words: four more (4)."""
     return np.frombuffer(hashlib.sha256(words.tobytes()).digest(), dtype=np.int64)

@@ -54,6 +54,7 @@ class Scene:
 
     @property
     def aspect(self) -> float:
+        """Height over width of the window."""
         left, right, bottom, top = self.window
         return (top - bottom) / (right - left)
 

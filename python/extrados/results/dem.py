@@ -130,6 +130,7 @@ class SolidDemRun(KindResults):
     outcome: RockingOutcome = fact("no contact opens, contacts open and it stands, or it comes down")
     collapse_time_s: float | None = fact("when a block first moved farther than the collapse displacement", "s")
     direction_deg: float = fact("direction in plan of the horizontal motion, from +x to +y", "deg")
+    horizontal_components: int = fact("2 where a record moves the ground across that direction, too")
     stopped: str = fact("why the run ended")
     stopped_by: list[str] = fact("the blocks that ended it")
     stop_time_s: float = fact("when it ended", "s")

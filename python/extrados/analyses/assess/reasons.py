@@ -53,6 +53,7 @@ class Facts:
         return found.results if found is not None and found.status == "ok" else None
 
     def outcome(self, name: str) -> str:
+        """The outcome of a strategy by its name."""
         return self.rows[name].outcome
 
     def judged(self) -> list[str]:
@@ -103,6 +104,7 @@ HEADLINES = {
 
 
 def reason(rule: str, pairs: list[Pair], text: str, **numbers: float | None) -> Reason:
+    """A reason by its rule, for the pairs of strategies whose difference it explains, with the numbers in its text."""
     return Reason(rule=rule, headline=HEADLINES[rule], explains=[list(p) for p in pairs], text=text, numbers=numbers)
 
 

@@ -75,6 +75,7 @@ class Asked:
 
     @property
     def building(self) -> Building:
+        """The building that all strategies look at."""
         return self.context.building
 
     def share(self, name: str) -> float:

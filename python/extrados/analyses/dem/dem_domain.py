@@ -123,7 +123,7 @@ def _of_solids(search: Search, model: SolidModel) -> Callable[[list[Pulse], floa
         motion = unit_pulse(search.options.pulse, duration)
         given = search.core_options(curve, motion.end, output_step)
         options = dem3.Options(**given, settlement=settlement[curve], way=search.options.way)
-        return SolidTask(options, motion.ground, amplitude)
+        return SolidTask(options, motion.ground, scale=amplitude)
 
     return lambda pulses, output_step: SolidRuns(bodies, [task(*one, output_step) for one in pulses])
 

@@ -190,6 +190,8 @@ def block_places(model: Model, place: np.ndarray) -> np.ndarray:
 
 
 def block_rates(model: Model, run: dem.Run) -> np.ndarray:
+    """Velocities [m/s] and spin [rad/s] (frames, blocks, 3) of the centroids of the blocks, from those of the bodies
+    that they belong to."""
     body = model.rigid.body_of_block
     out = run.rate[:, body].copy()
     arm = block_places(model, run.place)[..., :2] - run.place[:, body, :2]

@@ -114,10 +114,12 @@ class Runs(Job[dem.Run]):
 
 @dataclass(frozen=True)
 class SolidTask:
-    """One run of blocks in space: options, and the ground times `scale`."""
+    """One run of blocks in space: options, and how the ground moves along their way and, horizontally, across it, each times
+    `scale`."""
 
     options: dem3.Options
     ground: Ground | None = None
+    across: Ground | None = None
     scale: float = 1.0
 
     @property
@@ -145,10 +147,11 @@ class SolidRuns(Job[dem3.Run]):
         options = replace(task.options, threads=threads if len(self.bodies.mass) >= SOLIDS_FOR_THREADS else 1)
         with (
             dem3.Model(self.bodies, options) as model,
-            as_motion_set([task.ground or dem_run.STILL]) as motions,
+            as_motion_set([task.ground or dem_run.STILL, task.across or dem_run.STILL]) as motions,
         ):
             told = None if watch is None else partial(watch, model)
-            return model.run(motions, scale=task.scale, times=task.times, state=state, watch=told)
+            across = None if task.across is None else 1
+            return model.run(motions, across=across, scale=task.scale, times=task.times, state=state, watch=told)
 
     def rows(self, found: dem3.Run) -> dict[str, np.ndarray]:
         """The row of a run; histories are as long as the longest that was asked for."""

@@ -130,7 +130,13 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
 
 
 def refuse_stones(building: Building, assembly: SolidAssembly) -> None:
-    """Refused where the blocks have mortar, dowels or fill, which the elements in space do not know."""
+    """Refused where the blocks have mortar, dowels or fill, which the elements in space do not know, or too many corners."""
+    for part, owner in zip(assembly.parts, assembly.owner.tolist(), strict=True):
+        if (most := max(map(len, part.faces))) > dem3.MOST_CORNERS:
+            raise Refused(
+                f"{assembly.block_names[owner]} has a face of {most} corners: dem of solids takes up to {dem3.MOST_CORNERS}; cut it, or "
+                "draw it with fewer", ("structure",),
+            )  # fmt: skip
     for name in ("cohesion", "tension"):
         if np.nanmax(building.joint_property(name, assembly), initial=0.0) > 0.0:
             raise Refused(f"joints.{name}: dem of solids knows dry joints alone", ("joints", name))

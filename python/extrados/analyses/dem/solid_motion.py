@@ -16,6 +16,7 @@ from extrados.analyses.dem.tables import Dem
 from extrados.analyses.dem.words import solid_answer
 from extrados.analyses.limit.solids import scene_arrays
 from extrados.core import dem3
+from extrados.motions.motion import Motion
 from extrados.results import dem as out
 from extrados.results.model import Array, Result, TableData
 from extrados.results.solid_files import glb, series
@@ -49,15 +50,24 @@ def core_options(context: Context, options: Dem, model: SolidModel) -> dem3.Opti
 def run(context: Context, options: Dem, model: SolidModel) -> Result:
     """The run of a deck on blocks in space."""
     moved = context.motion.ground if context.deck.motion else None
-    job = SolidRuns(model.bodies(), [SolidTask(core_options(context, options, model), moved)])
+    across = context.motion.across if context.deck.motion else None
+    job = SolidRuns(model.bodies(), [SolidTask(core_options(context, options, model), moved, across)])
     found = dem_model.checked(watched(context, "dem-solids", job, "discrete elements"), model)
     ground = context.motion.sample(found.time) if moved is not None else np.zeros(len(found.time))
     seen = solid_measures.look(model, found, options.track, ground)
     result = Result("dem", status="interrupted" if found.interrupted else "ok")
     again = "; --resume goes on from here" if context.checkpoint is not None and len(found.time) else ""
     result.reason = f"interrupted at {found.stop_time:.3f} s{again}" if found.interrupted else ""
-    result.results = r = out.SolidDemRun(**_numbers(options, model, found, seen))
+    numbers = _numbers(options, model, found, seen)
+    result.results = r = out.SolidDemRun(**numbers, horizontal_components=1 if across is None else 2)
     _store(options, model, found, seen, result)
+    if across is not None:
+        result.arrays["ground_across"] = Array(
+            Motion("", across).sample(found.time),
+            ("time",),
+            "m/s^2",
+            "acceleration of the ground a quarter turn from the direction",
+        )
     if seen.sliding > measures.SLIDES * float(np.sqrt(model.assembly.area.min())):
         result.warnings.append(f"contacts slide by up to {1e3 * seen.sliding:.3g} mm")
     if found.residual > 0.01:

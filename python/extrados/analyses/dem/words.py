@@ -26,6 +26,7 @@ def _audit(r: DemRun | SolidDemRun) -> str:
 
 
 def motion_answer(r: DemRun, model: Model, idle: bool) -> str:
+    """The answer of a run under a motion; idle: nothing moves the ground."""
     if idle and r.outcome == "no-hinging":
         return "It stands under its own weight; nothing moves it."
     turn = max(r.peak_rotation_rad.items(), key=lambda item: abs(item[1]), default=("", 0.0))
@@ -47,6 +48,7 @@ def motion_answer(r: DemRun, model: Model, idle: bool) -> str:
 
 
 def tilt_answer(r: DemTilt) -> str:
+    """The answer of a tilt test in the plane."""
     collapse, back = r.collapse_acceleration_g, r.collapse_acceleration_opposite_g
     where = ", ".join(f"{h.name} ({h.side})" for h in r.hinges[:6]) or "none"
     least, sense = min((collapse, "+x"), (back, "-x"))
@@ -58,6 +60,7 @@ def tilt_answer(r: DemTilt) -> str:
 
 
 def solid_answer(r: SolidDemRun, idle: bool) -> str:
+    """The answer of a run in space; idle: nothing moves the ground."""
     if idle and r.outcome == "no-hinging":
         return "It stands under its own weight; nothing moves it."
     turn = max(r.peak_rotation_rad.items(), key=lambda item: item[1], default=("", 0.0))
@@ -77,6 +80,7 @@ def solid_answer(r: SolidDemRun, idle: bool) -> str:
 
 
 def solid_tilt_answer(r: SolidDemTilt) -> str:
+    """The answer of a tilt test in space."""
     where = ", ".join(r.opening_contacts[:6]) or "none"
     least = min(r.collapse_acceleration_g, r.collapse_acceleration_opposite_g)
     return (
