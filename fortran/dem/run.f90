@@ -57,7 +57,8 @@ module dem_run
       real(wp) :: residual = 0.0_wp          !! greatest, over the energy that went round
       type(energy_terms) :: start            !! energies as the shaking began
       real(wp) :: round = 0.0_wp             !! greatest energy that went round so far [J]
-      real(wp) :: taken = 0.0_wp             !! greatest loss by rigid contacts so far [J]
+      real(wp) :: taken = 0.0_wp             !! greatest lasting loss by rigid contacts so far [J]
+      real(wp) :: damping = 0.0_wp           !! loss at the look before [J]
       integer :: calm_looks = 0              !! looks in a row at which all was quiet
       logical :: begun = .false.
       logical :: paused = .false.            !! it has not come to its end and can go on
@@ -455,8 +456,10 @@ contains
          nowhere = abs(energy_residual(energy, record%start))
          round = max(record%round, record%start%elastic, tiny(1.0_wp))
          if (solver%setting%used) then
-            record%taken = max(record%taken, energy%damping)
-            nowhere = nowhere + record%taken - energy%damping
+            ! In the midst of a rebound half of its impulse is booked, which takes more than the whole.
+            record%taken = max(record%taken, min(record%damping, energy%damping))
+            record%damping = energy%damping
+            nowhere = nowhere + max(0.0_wp, record%taken - energy%damping)
             round = max(round, still * solver%size * solver%gravity * solver%mass)
          end if
          ratio = nowhere / round

@@ -125,6 +125,7 @@ contains
          call on%pass(record%start, storage_size(record%start))
          call on%pass(record%round, storage_size(record%round))
          call on%pass(record%taken, storage_size(record%taken))
+         call on%pass(record%damping, storage_size(record%damping))
          call on%pass(record%calm_looks, storage_size(record%calm_looks))
          call on%pass(record%begun, storage_size(record%begun))
          call on%pass(record%paused, storage_size(record%paused))

@@ -137,14 +137,17 @@ def blocks(centroid, mass, inertia, part, owner, outer, depth, joint, law, end_t
         return run.reason, run.place, run.energy, run.contacts.force, again.rate
 
 
-def solids(centroid, mass, inertia, vertices, faces, owner, joint, law, end_time, output_step, step, fraction, settle, gravity, way,
-           rate, times, scale, number, samples, dt, threads) -> Any:  # fmt: skip
+def solids(centroid, mass, inertia, vertices, faces, owner, joint, law, end_time, output_step, step, fraction, settle, gravity, rigid,
+           quasi, rebound, way, rate, times, scale, number, samples, dt, threads) -> Any:  # fmt: skip
     """A cube on a support in space, shaken."""
     bodies = dem3.Solids(
         centroid, mass, inertia, [vertices, vertices - [0.0, 0.0, 1.0]], [faces, faces], owner, [dem3.Law(1e8, 1e8, 0.6, 1e-3)],
         {joint: law},
     )  # fmt: skip
-    options = dem3.Options(end_time, output_step, step, fraction, settle, gravity=gravity, way=way, threads=threads)
+    options = dem3.Options(
+        end_time, output_step, step, fraction, settle, gravity=gravity, way=way, threads=threads, rigid=rigid,
+        quasi_static=quasi, rebound=rebound,
+    )  # fmt: skip
     with dem3.Model(bodies, options, rate=rate) as model, MotionSet([Ground(samples=samples, step=dt)]) as motions:
         run = model.run(motions, number, scale=scale, times=times)
         states = []
@@ -371,12 +374,12 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
             settle=5000, domain=(-9.0, 9.0, -9.0, 9.0), gravity=(0.0, -9.8), rigid=rigid, quasi=False, rebound=0.1, shift=np.zeros((2, 3)), rate=np.full((2, 3), 1e-3), mover=1, travel=0.001, begin=0.0,
             lasts=0.01, times=np.array([0.0, 0.01]), scale=1.0, number=0, samples=np.ones((1, 5)), dt=0.01, threads=2,
         )) for rigid in (False, True)),
-        (solids, dict(
+        *((solids, dict(
             centroid=np.array([[0.5, 0.5, 0.5], [0.5, 0.5, -0.5]]), mass=np.array([2000.0, 0.0]), inertia=np.tile(300.0 * np.eye(3), (2, 1, 1)),
             vertices=CUBE, faces=CUBE_FACES, owner=[0, 1], joint=(0, 1), law=0, end_time=0.02, output_step=0.01, step=0.0, fraction=0.3,
-            settle=5000, gravity=(0.0, 0.0, -9.8), way=(0.6, 0.8, 0.0), rate=np.full((2, 6), 1e-3), times=np.array([0.0, 0.01]), scale=1.0,
+            settle=5000, gravity=(0.0, 0.0, -9.8), rigid=rigid, quasi=False, rebound=0.1, way=(0.6, 0.8, 0.0), rate=np.full((2, 6), 1e-3), times=np.array([0.0, 0.01]), scale=1.0,
             number=0, samples=np.ones((1, 5)), dt=0.01, threads=2,
-        )),
+        )) for rigid in (False, True)),
         (rockers, dict(
             mass=1000.0, inertia=1500.0, height=2.0, toe=0.5, restitution=(0.9, 0.9), linear=False, kind=rocking.block_body(
                 1000.0, 1500.0, 2.0, 0.5, 0.5, (0.9, 0.9)).kind, parameters=np.array([0.0, 1000.0, 1500.0, 2.0, 0.5, 0.5, 0.9, 0.9]),

@@ -79,6 +79,16 @@ def test_a_block_that_spins_is_stopped_by_its_corners() -> None:
     assert np.abs(run.place[-1, 0] - run.place[0, 0]).max() < 1e-9
 
 
+def test_what_slides_and_turns_at_once_takes_few_factorisations() -> None:
+    """Newton's matrix knows how friction turns with the sliding: without that it takes some 300 a step."""
+    rate = STILL.copy()
+    rate[0] = [1.0, 0.3, 0.0, 0.0, 0.0, 3.0]
+    run = dem3.run(solids([box((-0.5, -0.3, 0), (0.5, 0.3, 0.2))], law(0.4)), options(0.3, step=1e-3), rate=rate)
+    assert run.effort.open_steps == 0 and run.effort.factors < 30 * run.effort.steps
+    lost = run.energy["kinetic"][0] - run.energy["kinetic"][-1]
+    assert run.energy["friction"][-1] == pytest.approx(lost, rel=1e-3) and lost > 0.5 * run.energy["kinetic"][0]
+
+
 @pytest.mark.parametrize("rebound", [0.0, 0.5, 0.8])
 def test_a_flat_fall_rebounds_as_newton_says(rebound: float) -> None:
     block = box((0, 0, 0), (1, 1, 1)).moved(np.eye(3), np.array([0.0, 0.0, 0.1]))
@@ -145,6 +155,15 @@ def test_without_inertia_it_falls_where_statics_say(direction: float) -> None:
     assert 0.05 * run.stop_time == pytest.approx(reach / 1.5, rel=0.01)
 
 
+def test_without_inertia_nothing_goes_on_by_itself() -> None:
+    rate = STILL.copy()
+    rate[0] = [0.3, 0.1, 0.0, 0.0, 0.0, 3.0]
+    block = solids([box((-0.5, -0.3, 0), (0.5, 0.3, 0.2))], law(0.0))
+    run = dem3.run(block, options(1.0, quasi_static=True), rate=rate)
+    assert run.reason == "end" and np.abs(run.turn[-1, 0] - np.eye(3)).max() < 1e-12
+    assert np.abs(run.place[-1, 0] - run.place[0, 0]).max() < 1e-12
+
+
 def test_energy_is_never_gained() -> None:
     """A drum set down on its rim and turning wobbles: what moves and what is lifted only falls, as do the losses rise."""
     drum = drums(1, 24, 2.0)[0].moved(Rotation.from_rotvec([0.0, 0.12, 0.0]).as_matrix())
@@ -160,6 +179,17 @@ def test_energy_is_never_gained() -> None:
         run.energy["friction"][-1] + run.energy["damping"][-1], abs=0.01 * most
     )
     assert run.energy["damping"][-1] > 0.1 * most
+
+
+@pytest.mark.parametrize("rebound", [0.2, 0.8])
+def test_a_rebound_takes_no_more_than_it_keeps(rebound: float) -> None:
+    """A look at the ledger in the midst of a rebound, when half of its impulse is booked, is no alarm: in both rooms."""
+    ground, given = cosine(0.6 * G, 2.0 * np.pi / 0.6), {"end_time": 0.6, "output_step": 0.002, "rigid": True}
+    space = dem3.run(solids(drums(2, 8), law(0.7)), dem3.Options(**given, rebound=rebound), ground)
+    plane = dem.run(block_on_floor(1.0, 2.0, dem.Law(ANY, ANY, 0.7)), dem.Options(**given, rebound=rebound), ground)
+    for run in (space, plane):
+        assert run.reason == "end" and run.residual < 1e-3
+        assert run.bounces[0] > 0 and run.energy["damping"][-1] > 0.0
 
 
 def pile() -> dem3.Solids:

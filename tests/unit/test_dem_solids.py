@@ -150,6 +150,17 @@ def test_a_column_rocks_on_rigid_contacts(tmp_path) -> None:
     assert shift[..., 1] == pytest.approx(-other[..., 1], abs=5e-3 * np.abs(shift).max())
 
 
+def test_rebound_and_rest_without_inertia_are_heard_of_solids(tmp_path) -> None:
+    """With a rebound drums leave what they hit; without inertia a push falls at once that is more than statics bear."""
+    text = f'{COLUMN}{PULSE}[[analysis]]\nkind = "dem"\nend_time = 0.6\n{RIGID}'
+    dead, lively = (answered(tmp_path, f"{text}rebound = {e}\n").results for e in (0.0, 0.8))
+    assert dead.bounces == 0 and lively.bounces > 5
+    push = '[motion]\nkind = "constant"\namplitude = "{}"\n[[analysis]]\nkind = "dem"\nend_time = 2.0\nquasi_static = true\n'
+    for amplitude, outcome in (("0.45 g", "no-hinging"), ("0.55 g", "collapse")):
+        found = answered(tmp_path, f"{COLUMN}{push.format(amplitude)}{RIGID}")
+        assert found.results.outcome == outcome and (found.results.collapse_time_s == 0.0) == (outcome == "collapse")
+
+
 DOMAIN = (
     '[structure]\nkind = "block"\nwidth = 0.5\nheight = 2.0\n[joints]\nfriction = 2.0\n[[analysis]]\nkind = "dem-domain"\n'
     f'{RIGID}amplitudes = ["0.5 g", "0.8 g"]\ndurations = [0.1, 0.2, 0.3, 0.4, 0.5]\naccuracy = 0.02\n'

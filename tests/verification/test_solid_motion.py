@@ -1,6 +1,7 @@
 """Blocks in space that roll, wobble and rock: against equations of motion by another integrator; order in step and stiffness."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -27,17 +28,18 @@ def cylinder(height: float, sides: int = SIDES) -> tuple[Polyhedron, tuple[float
     return drum, (inertia[0, 0] / mass, inertia[2, 2] / mass)
 
 
-def let_go(height: float, tilt: float, share: float, stiffness: float, times: np.ndarray, sides: int = SIDES) -> tuple[dem3.Run, np.ndarray, np.ndarray]:  # fmt: skip
+def let_go(height: float, tilt: float, share: float, stiffness: float | None, times: np.ndarray, sides: int = SIDES) -> tuple[dem3.Run, np.ndarray, np.ndarray]:  # fmt: skip
     """A cylinder on its rim that leans towards +x, with a share of the spin of steady rolling: the run, its axis over time, and
-    that of a circular one that rolls without sliding."""
+    that of a circular one that rolls without sliding. Without a stiffness on rigid contacts."""
     drum, inertia = cylinder(height, sides)
     leaning = drum.moved(Rotation.from_rotvec([0.0, tilt, 0.0]).as_matrix())
     leaning = leaning.moved(np.eye(3), np.array([0, 0, -leaning.low[2]]))
     axis = np.array([np.sin(tilt), 0.0, np.cos(tilt)])
     spin = share * steady(tilt, inertia, RADIUS, height)[0]
     speed = -np.cross(spin, arm(axis, RADIUS, height))
+    rigid = Options(end_time=float(times[-1]), step=2e-4, rigid=True)
     run = dem3.run(
-        solids([leaning], Law(stiffness, stiffness, 2.0)), Options(end_time=float(times[-1]), fraction=0.1),
+        solids([leaning], Law(stiffness or 1.0, stiffness or 1.0, 2.0)), replace(rigid, step=0.0, rigid=False, fraction=0.1) if stiffness else rigid,
         rate=np.array([[*speed, *spin], [0.0] * 6]), times=times,
     )  # fmt: skip
     return run, run.turn[:, 0] @ axis, rolled(axis, spin, inertia, RADIUS, height, times)
@@ -83,6 +85,21 @@ def test_a_wobbling_drum_rolls_as_its_equations_say() -> None:
         off.append(np.linalg.norm(axis - exact, axis=1).max() / np.linalg.norm(exact - exact[0], axis=1).max())
         assert run.residual < 1e-3
     assert off[1] < 0.03 and off[1] < 0.4 * off[0]
+
+
+def test_on_rigid_contacts_it_rolls_so_too_and_gains_no_energy() -> None:
+    """No spring lets the drum pivot: it stays nearer to its equations than on springs."""
+    times = np.linspace(0.0, 0.5, 101)
+    run, axis, exact = let_go(DRUM, 0.12, 0.3, None, times)
+    assert np.linalg.norm(axis - exact, axis=1).max() < 0.01 * np.linalg.norm(exact - exact[0], axis=1).max()
+    assert run.effort.open_steps == 0 and run.residual < 2e-3
+    run, axis, _ = let_go(COIN, 0.4, 1.0, None, times)
+    energy = run.energy["kinetic"] + run.energy["potential"]
+    assert np.diff(energy).max() < 1e-5 * run.energy["kinetic"][0] and energy[-1] < energy[0]
+    at, inertia = np.unwrap(np.arctan2(axis[:, 1], axis[:, 0])), cylinder(COIN)[1]
+    by_law = [steady(lean, inertia, RADIUS, COIN)[1] for lean in np.arccos(axis[:, 2])]
+    assert (at[-1] - at[0]) / np.trapezoid(by_law, times) == pytest.approx(1.0, abs=0.03)
+    assert run.effort.open_steps == 0 and run.residual < 2e-3
 
 
 def test_free_rocking_on_a_facet() -> None:

@@ -291,7 +291,7 @@ def _both_solvers(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         for cells, label, look in kinds:
             at = cells.astype(bool)
             if at.any():
-                ax.scatter(duration[at], amplitude[at], s=36, label=label, **look)
+                ax.scatter(duration[at], amplitude[at], s=36, label=label, zorder=3, **look)
         ax.set_xlabel("t_p [s]" if run[name].pulse == "step" else "T_p [s]")
         ax.set_ylabel("amplitude [g]")
         ax.set_xlim(left=0.0)

@@ -119,9 +119,7 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
         ]
     if isinstance(options, DemDomain):
         asked.append(("mode_II", options.mode_II, ("analysis", "mode_II")))
-    if not options.rigid or (
-        isinstance(options, DemDomain) and options.cross_check
-    ):  # rigid contacts do not ask for it
+    if not options.rigid or (isinstance(options, DemDomain) and options.cross_check):  # something asks how springs are
         asked += [
             ('stiffness_rule = "thesis", which is of a section', joints.stiffness_rule == "thesis", ("joints", "stiffness_rule")),
             ('damping = "restitution"', joints.damping == "restitution" and joints.beta is None, ("joints", "damping")),
