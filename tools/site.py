@@ -14,11 +14,12 @@ import tomllib
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
+import dissertation
 import extras
 
 ROOT = Path(__file__).resolve().parents[1]
 SITE, GALLERY, PAGE = ROOT / "build" / "site", ROOT / "docs" / "_gallery", ROOT / "docs" / "gallery.md"
-DISSERTATION, REDRAWN = ROOT / "docs" / "dissertation", ROOT / "docs" / "dissertation" / "redrawn.md"
+REDRAWN = dissertation.PLACE / "redrawn.md"
 #: Decks of the gallery, each with the analysis whose first figure is shown; together they take about a minute
 SHOWN = [
     ("arch/oppenheim", "tilt"), ("arch/oppenheim-domain", "failure-domain"), ("arch/figure-5-4", "failure-curves"), ("vault/dejong-a", "tilt"),
@@ -79,14 +80,6 @@ def redrawn() -> None:
     """docs/dissertation/redrawn.md: the pictures that its pages name, by running their decks; slow cases are left out."""
     import extrados
 
-    pages = [file for file in sorted(DISSERTATION.glob("*.md")) if file != REDRAWN]
-    rows = [
-        (figure, shows, re.findall(r"`cases/([\w/-]+)`((?: `figures/[\w-]+\.png`)+)", by))
-        for page in sorted(pages, key=lambda file: (file.stem == "appendices", file.stem))
-        for figure, shows, by in re.findall(
-            r"^\| ([\dA-C]+-\d+) \| (.*?) \| (.*?) \|", page.read_text(encoding="utf-8"), re.M
-        )
-    ]
     runs: dict = {}
     slow: set[str] = set()
     lines = [
@@ -94,8 +87,10 @@ def redrawn() -> None:
         "",
         "Made by running the decks that the pages of the chapters name, as this site was built.",
     ]
-    for figure, shows, decks in rows:
-        for case, names in decks:
+    for figure, shows, by, *_ in dissertation.rows():
+        for case, names in dissertation.redrawn_by(by):
+            if not names:
+                continue
             deck = ROOT / "cases" / f"{case}.toml"
             if tomllib.loads(deck.with_suffix(".expect.toml").read_text(encoding="utf-8")).get("slow"):
                 slow.add(case)
@@ -105,7 +100,7 @@ def redrawn() -> None:
                 runs[case] = {
                     title: drawn[title] for row in run.analyses for drawn in [run.plot(row["name"])] for title in drawn
                 }
-            for name in re.findall(r"figures/([\w-]+)\.png", names):
+            for name in names:
                 if name not in runs[case]:
                     sys.exit(f"cases/{case}.toml draws no {name}, which docs/dissertation names for Fig. {figure}")
                 picture = GALLERY / f"{case.replace('/', '-')}-{name}.png"
@@ -113,8 +108,9 @@ def redrawn() -> None:
                 if f"## Fig. {figure}: {shows}" not in lines:
                     lines += ["", f"## Fig. {figure}: {shows}"]
                 lines += ["", f"`cases/{case}.toml`:", "", f"![Fig. {figure}](../_gallery/{picture.name})"]
-    left = ", ".join(f"`cases/{case}.toml`" for case in sorted(slow))
-    lines += ["", "## Left out", "", f"Decks that take minutes: {left}."]
+    if slow:
+        left = ", ".join(f"`cases/{case}.toml`" for case in sorted(slow))
+        lines += ["", "## Left out", "", f"Decks that take minutes: {left}."]
     REDRAWN.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 

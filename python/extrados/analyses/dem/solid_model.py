@@ -117,7 +117,9 @@ def refusals(building: Building, options: Dem) -> list[tuple[str, Key]]:
         ('stiffness_rule = "thesis", which is of a section', joints.stiffness_rule == "thesis", ("joints", "stiffness_rule")),
         ('damping = "restitution"', joints.damping == "restitution" and joints.beta is None, ("joints", "damping")),
     ]  # fmt: skip
-    return [(f"dem of solids does not reckon with {what}: leave it out", key) for what, there, key in asked if there]
+    return [
+        (f"dem of solids cannot take {what} into account: leave it out", key) for what, there, key in asked if there
+    ]
 
 
 def refuse_stones(building: Building, assembly: SolidAssembly) -> None:
@@ -126,10 +128,10 @@ def refuse_stones(building: Building, assembly: SolidAssembly) -> None:
         if np.nanmax(building.joint_property(name, assembly), initial=0.0) > 0.0:
             raise Refused(f"joints.{name}: dem of solids knows dry joints alone", ("joints", name))
     if assembly.keys is not None:
-        raise Refused("dowels: dem of solids does not reckon with them; leave them out", ("structure", "dowels"))
+        raise Refused("dowels: dem of solids cannot take them into account; leave them out", ("structure", "dowels"))
     if len(assembly.fill):
         raise Refused(
-            "fill: dem of solids does not reckon with what rests on the stones; leave it out", ("structure", "fill")
+            "fill: dem of solids cannot take what rests on the stones into account; leave it out", ("structure", "fill")
         )
 
 

@@ -76,7 +76,7 @@ class ShellModel:
             x, y, z = self.mesh.xyz[error.node]
             raise Refused(
                 f"the building is a mechanism: node {error.node + 1} at x {x:g}, y {y:g}, z {z:g} m is free to move in "
-                f"{error.direction}; what stands there hangs on nothing",
+                f"{error.direction}; what stands there is not supported",
                 ("structure",),
             ) from None
         except core.BadElement as error:

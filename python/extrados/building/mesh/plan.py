@@ -140,8 +140,8 @@ def _apart(plan: Plan, parts: list[ShellPart], bars: list[ShellBar], xyz: np.nda
         if len(loose):
             x, y, z = xyz[loose].mean(axis=(0, 1))
             raise BadGeometry(
-                f"wall '{part.name}': what of it is at x {x:.3g}, y {y:.3g}, z {z:.3g} m hangs on nothing: no masonry joins it with "
-                "the ground", ("structure", "walls", part.wall),
+                f"wall '{part.name}': its part around x {x:.3g}, y {y:.3g}, z {z:.3g} m is not supported: no masonry connects it "
+                "with the ground", ("structure", "walls", part.wall),
             )  # fmt: skip
     piece = pieces(len(xyz), parts, bars)
     joined: dict[frozenset[int], list[str]] = {}
@@ -265,7 +265,7 @@ def _wall_part(
         inside = grid.cells((box[0], box[1]), (box[2], box[3]))[i, k]
         if not inside.any():
             raise BadGeometry(
-                f"wall '{wall.name}': a lintel at x {box[0]:g} to {box[1]:g}, z {box[2]:g} to {box[3]:g} m is all in openings"
+                f"wall '{wall.name}': a lintel at x {box[0]:g} to {box[1]:g}, z {box[2]:g} to {box[3]:g} m lies entirely within openings"
             )
         linear |= inside
         if name is not None:
@@ -297,29 +297,12 @@ def _level_nodes(plan: Plan, storey: int, grid: _Grid, number: np.ndarray) -> tu
     return number[grid.number(i, np.full(len(i), k))], grid.s[i]
 
 
-def around(plan: Plan, floor: StoreyFloor) -> list[tuple[int, float, float]]:
-    """The walls around a floor in order: number, and the places along it where the one before and the one after meet it [m]."""
-    what = f"floor on storey {floor.storey}"
-    reach = [plan.reach(wall) for wall in plan.walls]
-    names = floor.walls or [w.name for w, r in zip(plan.walls, reach, strict=True) if r[0] <= floor.storey <= r[1]]
-    walls = [next(i for i, w in enumerate(plan.walls) if w.name == name) for name in names]
-    if floor.walls is None:
-        walls = _in_order(plan, walls, what)
-    corners = []
-    for a, b in zip(walls, walls[1:] + walls[:1], strict=True):
-        at = meeting(plan.walls[a], plan.walls[b])
-        if at is None:
-            raise BadGeometry(f"{what}: walls '{plan.walls[a].name}' and '{plan.walls[b].name}' do not meet")
-        corners.append(at)
-    return [(w, corners[k - 1][1], corners[k][0]) for k, w in enumerate(walls)]
-
-
 def _ring(
     plan: Plan, floor: StoreyFloor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray
 ) -> tuple[list[int], list[int]]:
     """Walls around a floor and the nodes on them in order, counter-clockwise."""
     what = f"floor on storey {floor.storey}"
-    walls = around(plan, floor)
+    walls = plan.around(floor)
     nodes: list[int] = []
     for w, start, end in walls:
         own, s = _level_nodes(plan, floor.storey, grids[w], number)
@@ -339,24 +322,6 @@ def _ring(
     if np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) < 0.0:
         ring.reverse()
     return [w for w, _, _ in walls], ring
-
-
-def _in_order(plan: Plan, walls: list[int], what: str) -> list[int]:
-    """Walls that meet two others each, in the order of the ring they make."""
-    meets = {a: [b for b in walls if b != a and meeting(plan.walls[min(a, b)], plan.walls[max(a, b)])] for a in walls}
-    if any(len(others) != 2 for others in meets.values()):
-        raise BadGeometry(
-            f"{what}: the walls of the storey make no simple ring; name those around the floor by `walls`"
-        )
-    ring = [walls[0], meets[walls[0]][0]]
-    while len(ring) < len(walls):
-        after = [b for b in meets[ring[-1]] if b != ring[-2]]
-        if after[0] in ring:
-            raise BadGeometry(
-                f"{what}: the walls of the storey make more than one ring; name those around it by `walls`"
-            )
-        ring.append(after[0])
-    return ring
 
 
 def _add_floor(

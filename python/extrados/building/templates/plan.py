@@ -1,6 +1,7 @@
 """A building of walls on a plan: storeys, openings, flanges, floors, rods (`building`)."""
 
 from collections import Counter
+from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
@@ -282,17 +283,18 @@ class Plan(Structure):
         return np.concatenate([[0.0], np.cumsum(self.storeys)])
 
     def foot_area(self, axis: int) -> float:
-        """Of the walls on the ground, doors left out, each by how far it runs along x (0) or y (1) [m^2]."""
+        """Area of the walls' soles at the ground without doors [m^2], each times the share of its direction along x (0) or
+        y (1)."""
         total = 0.0
         for wall in self.walls:
             if self.reach(wall)[0] == 1:
-                doors = sum(o.x[1] - o.x[0] for o in wall.openings if o.storey == 1 and o.z[0] == 0.0)
-                total += (wall.thickness or wall.thicknesses[0]) * (wall.length - doors) * abs(wall.direction[axis])
+                sole = self.strips(wall, 1)[0][0]
+                total += (wall.thickness or wall.thicknesses[0]) * sole * abs(wall.direction[axis])
         return float(total)
 
     @property
     def wall_area(self) -> float:
-        """Of all walls in their planes, openings counted [m^2]."""
+        """Of all walls in their planes, openings not deducted [m^2]."""
         return float(
             sum(
                 wall.length * np.diff(self.levels[[r[0] - 1, r[1]]])[0]
@@ -301,6 +303,20 @@ class Plan(Structure):
             )
         )
 
+    def strips(self, wall: PlanWall, storey: int) -> list[tuple[float, float, float]]:
+        """Masonry of a wall in a storey, from the bottom up: length, bottom and top above its floor [m] of each strip between
+        sills and heads of openings. What openings share is left out once."""
+        holes = [o for o in wall.openings if o.storey == storey]
+        heights = sorted({0.0, self.storeys[storey - 1], *(z for o in holes for z in o.z)})
+        found = []
+        for low, high in pairwise(heights):
+            cut, end = 0.0, 0.0
+            for left, right in sorted(tuple(o.x) for o in holes if o.z[0] < high and low < o.z[1]):
+                cut += max(right - max(left, end), 0.0)
+                end = max(end, right)
+            found.append((wall.length - cut, low, high))
+        return found
+
     def wall(self, name: str) -> PlanWall:
         """The wall of a name; StopIteration where there is none."""
         return next(wall for wall in self.walls if wall.name == name)
@@ -308,6 +324,23 @@ class Plan(Structure):
     def bond(self, one: str, two: str) -> Corner | None:
         """What a deck says of the corner of two walls; None where they are one masonry."""
         return next((c for c in self.corners if set(c.walls) == {one, two} and c.bond != "bonded"), None)
+
+    def around(self, floor: StoreyFloor) -> list[tuple[int, float, float]]:
+        """The walls around a floor in order: number, and the places along it where the one before and the one after meet it
+        [m]; BadGeometry where they make no ring."""
+        what = f"floor on storey {floor.storey}"
+        reach = [self.reach(wall) for wall in self.walls]
+        names = floor.walls or [w.name for w, r in zip(self.walls, reach, strict=True) if r[0] <= floor.storey <= r[1]]
+        walls = [next(i for i, w in enumerate(self.walls) if w.name == name) for name in names]
+        if floor.walls is None:
+            walls = _in_order(self, walls, what)
+        corners = []
+        for a, b in zip(walls, walls[1:] + walls[:1], strict=True):
+            at = meeting(self.walls[a], self.walls[b])
+            if at is None:
+                raise BadGeometry(f"{what}: walls '{self.walls[a].name}' and '{self.walls[b].name}' do not meet")
+            corners.append(at)
+        return [(w, corners[k - 1][1], corners[k][0]) for k, w in enumerate(walls)]
 
     def shell(self, building: "Building", options: "ShellOptions") -> "ShellMesh":
         from extrados.building.mesh.plan import mesh_plan
@@ -351,3 +384,21 @@ def meeting(one: PlanWall, two: PlanWall) -> tuple[float, float] | None:
     if not (-MEETS <= s <= one.length + MEETS and -MEETS <= t <= two.length + MEETS):
         return None
     return float(np.clip(s, 0.0, one.length)), float(np.clip(t, 0.0, two.length))
+
+
+def _in_order(plan: Plan, walls: list[int], what: str) -> list[int]:
+    """Walls that meet two others each, in the order of the ring they make."""
+    meets = {a: [b for b in walls if b != a and meeting(plan.walls[min(a, b)], plan.walls[max(a, b)])] for a in walls}
+    if any(len(others) != 2 for others in meets.values()):
+        raise BadGeometry(
+            f"{what}: the walls of the storey make no simple ring; name those around the floor by `walls`"
+        )
+    ring = [walls[0], meets[walls[0]][0]]
+    while len(ring) < len(walls):
+        after = [b for b in meets[ring[-1]] if b != ring[-2]]
+        if after[0] in ring:
+            raise BadGeometry(
+                f"{what}: the walls of the storey make more than one ring; name those around it by `walls`"
+            )
+        ring.append(after[0])
+    return ring
