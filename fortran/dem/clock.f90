@@ -14,6 +14,7 @@ module dem_clock
       real(wp) :: drift = 0.0_wp               !! position step that led here; 0 at the start [s]
       real(wp) :: kick = 0.0_wp                !! velocity step taken last [s]
       integer :: segment = 0                   !! of the ground motion
+      integer :: segment_across = 0            !! and of its other horizontal component
       integer :: steps = 0
       integer :: waits = 0                     !! steps in a row in which time stands still, until all has come to rest
       logical :: quasi_static = .false.        !! without inertia: every step starts from rest
@@ -26,14 +27,19 @@ contains
    !> Length of the coming velocity step, and the ground acceleration over it
    pure subroutine begin_step(clock, ground)
       type(model_clock), intent(inout) :: clock
-      real(wp), intent(out) :: ground(2)       !! mean, horizontal and vertical; 0 while settling [m/s^2]
-      real(wp) :: half
+      real(wp), intent(out) :: ground(3)       !! mean, horizontal, vertical and across; 0 while settling [m/s^2]
+      real(wp) :: half, from, to, other(2)
       ! At the very start half a velocity step leads from the initial velocity to the half step.
       half = 0.5_wp * clock%step
       clock%kick = 0.5_wp * clock%drift + half
       ground = 0.0_wp
       if (.not. clock%shaking) return
-      call mean_acceleration(clock%load%ground, clock%segment, clock%t - 0.5_wp * clock%drift, clock%t + half, ground)
+      from = clock%t - 0.5_wp * clock%drift
+      to = clock%t + half
+      call mean_acceleration(clock%load%ground, clock%segment, from, to, ground(1:2))
+      if (clock%load%across%segments == 0) return
+      call mean_acceleration(clock%load%across, clock%segment_across, from, to, other)
+      ground(3) = other(1)
    end subroutine begin_step
 
    pure subroutine end_step(clock)

@@ -10,6 +10,7 @@ module dem_handle
    use common_status, only : status_ok, status_invalid_argument, status_not_ready, status_out_of_memory
    use common_threads, only : threads_available
    use dem_clock, only : model_clock
+   use dem_rigid, only : rigid_setting
    use dem_run, only : run_begin, run_on, run_options, simulation
    use dem_state, only : state_load
    use, intrinsic :: iso_c_binding, only : c_f_pointer, c_funloc, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
@@ -20,6 +21,7 @@ module dem_handle
 
    type, abstract :: built_model
       type(run_options) :: options
+      type(rigid_setting) :: rigid                 !! contacts without springs
       logical :: ready = .false.                   !! the options were given
       class(simulation), allocatable :: run        !! the last one, as it was left
    contains
@@ -139,9 +141,10 @@ contains
 
    !> Begin a run that was made new, or go on with one that has paused, under the same motion: to its end or until it
    !> pauses. A cancelled run leaves what it has
-   subroutine run_built(built, ground, steps, paused, time, status)
+   subroutine run_built(built, ground, across, steps, paused, time, status)
       class(built_model), intent(inout) :: built
       type(signal), intent(in) :: ground            !! acceleration [m/s^2]
+      type(signal), intent(in) :: across            !! its other horizontal component; no segments: none
       integer, intent(in) :: steps                  !! after which it pauses; 0: it does not
       logical, intent(out) :: paused                !! it can go on
       real(wp), intent(out) :: time                 !! that it has come to [s]
@@ -151,7 +154,7 @@ contains
       status = status_not_ready
       if (.not. allocated(built%run)) return
       if (built%run%record%begun .and. .not. built%run%record%paused) return
-      call move_ground(built, ground)
+      call move_ground(built, ground, across)
       status = status_ok
       if (.not. built%run%record%begun) call run_begin(built%run, status)
       if (status == status_ok .and. built%run%record%paused) call run_on(built%run, steps, status)
@@ -161,12 +164,14 @@ contains
    end subroutine run_built
 
    !> The ground's motion for this call, and threads as the machine has them now
-   subroutine move_ground(built, ground)
+   subroutine move_ground(built, ground, across)
       class(built_model), intent(inout), target :: built
       type(signal), intent(in) :: ground
+      type(signal), intent(in) :: across            !! its other horizontal component; no segments: none
       type(model_clock), pointer :: clock
       clock => built%run%clock()
       clock%load%ground = ground
+      clock%load%across = across
       built%run%options%threads = threads_available(built%options%threads)
    end subroutine move_ground
 
@@ -177,6 +182,7 @@ contains
       type(signal) :: silence
       clock => built%run%clock()
       clock%load%ground = silence
+      clock%load%across = silence
    end subroutine rest_ground
 
    !> Take back the state of a run that had paused; see dem_state

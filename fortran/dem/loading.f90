@@ -16,6 +16,7 @@ module dem_loading
 
    type :: loading
       type(signal) :: ground               !! acceleration [m/s^2]
+      type(signal) :: across               !! its other horizontal component, of blocks in space [m/s^2]
       logical :: moving_base = .false.     !! supports move; otherwise a body force in the ground's frame
       type(support_move), allocatable :: move(:)
    end type loading
@@ -73,6 +74,7 @@ contains
       integer :: k
       t = 0.0_wp
       if (load%ground%segments > 0) t = load%ground%break_time(load%ground%segments + 1)
+      if (load%across%segments > 0) t = max(t, load%across%break_time(load%across%segments + 1))
       if (.not. allocated(load%move)) return
       do k = 1, size(load%move)
          t = max(t, load%move(k)%start + load%move(k)%duration)

@@ -8,7 +8,10 @@ module dem3_bodies
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: body, part, body_set, body_set_new, copy_bodies, place, turn_freely, world_inverse, cross, spin_of
+   public :: most_corners, body, part, body_set, body_set_new, copy_bodies, place, turn_freely, world_inverse, cross, &
+      spin_of
+
+   integer, parameter :: most_corners = 96     !! of a face
 
    !> A rigid body. Velocity and swing are those of the half step before the current time (leap-frog).
    type :: body
@@ -97,6 +100,7 @@ contains
       status = status_out_of_memory
       if (failed /= 0) return
       status = status_bad_geometry
+      if (any(loop_first(2:) - loop_first(:size(loop_first) - 1) > most_corners)) return
       set%vertex(:, :) = vertex
       set%loop_first(:) = loop_first
       set%loop(:) = loop

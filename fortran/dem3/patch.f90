@@ -11,13 +11,13 @@
 module dem3_patch
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
-   use dem3_bodies, only : body, body_set, cross
+   use dem3_bodies, only : body, body_set, cross, most_corners
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
    public :: feature, patch, most_points, meet, measure
 
-   integer, parameter :: most_points = 48
+   integer, parameter :: most_points = 2 * most_corners   !! of what two convex faces share
    integer, parameter, public :: on_first = 1     !! a point of the second body over a plane of the first
    integer, parameter, public :: on_second = 2    !! a point of the first body over a plane of the second
    integer, parameter, public :: on_edges = 3     !! an edge of each
@@ -66,8 +66,8 @@ contains
       type(patch), intent(out) :: found
       integer(c_int), intent(out) :: status      !! status_out_of_memory, else ok
       real(wp), allocatable :: here_one(:, :), here_two(:, :)
-      real(wp) :: least_one, least_two, size, handicap
-      integer :: face_one, face_two, failed
+      real(wp) :: least_one, least_two, size, handicap, facing_cosine
+      integer :: face_one, face_two, facing, failed
 
       allocate (here_one(3, set%parts(one)%vertex_last - set%parts(one)%vertex_first + 1), &
          here_two(3, set%parts(two)%vertex_last - set%parts(two)%vertex_first + 1), stat=failed)
@@ -81,20 +81,29 @@ contains
          if (least_one > margin) return
          call least_overlap(set, two, b, here_one, margin, least_two, face_two)
          if (least_two > margin) return
-         if (max(least_one, least_two) < -deep * size) then
-            call edges(set, one, two, here_one, here_two, max(least_one, least_two), margin, size, found)
-            if (found%points >= 0) return
-            found%points = 0
-         end if
          handicap = 0.0_wp
          if (before == 1) handicap = better * size
          if (before == 2) handicap = -better * size
-         if (least_one + handicap >= least_two - 1.0e-9_wp * size) then
-            found%reference = 1
-            call share(set, one, face_one, here_one, a, two, here_two, b, on_first, size, margin, found)
+         found%reference = merge(1, 2, least_one + handicap >= least_two - 1.0e-9_wp * size)
+         if (found%reference == 1) then
+            call look_back(set, face_one, a, two, b, facing, facing_cosine)
          else
-            found%reference = 2
-            call share(set, two, face_two, here_two, b, one, here_one, a, on_second, size, margin, found)
+            call look_back(set, face_two, b, one, a, facing, facing_cosine)
+         end if
+         ! Corners beyond the outline of a face may lie deep below its plane: of faces that look against each other the
+         ! polygon tells what touches.
+         if (max(least_one, least_two) < -deep * size .and. facing_cosine > -facing_enough) then
+            call edges(set, one, two, here_one, here_two, max(least_one, least_two), margin, size, found)
+            if (found%points >= 0) found%reference = 0
+            if (found%points >= 0) return
+            found%points = 0
+         end if
+         if (found%reference == 1) then
+            call share(set, one, face_one, here_one, a, two, facing, facing_cosine, here_two, b, on_first, size, &
+               margin, found)
+         else
+            call share(set, two, face_two, here_two, b, one, facing, facing_cosine, here_one, a, on_second, size, &
+               margin, found)
          end if
       end associate
    end subroutine meet
@@ -179,32 +188,18 @@ contains
       end do
    end subroutine least_overlap
 
-   !> The polygon that the reference face shares with the face of the other part that looks against it
-   pure subroutine share(set, part, face, corners, a, other, corners_other, b, kind, size, margin, found)
+   !> The face of another part that looks most against a face, and the cosine between their normals
+   pure subroutine look_back(set, face, a, other, b, facing, facing_cosine)
       type(body_set), intent(in) :: set
-      integer, intent(in) :: part                !! of the reference face
       integer, intent(in) :: face
-      real(wp), intent(in) :: corners(:, :)      !! its vertices in space [m]
       type(body), intent(in) :: a                !! its owner
       integer, intent(in) :: other
-      real(wp), intent(in) :: corners_other(:, :)
-      type(body), intent(in) :: b
-      integer, intent(in) :: kind                !! of a point of the other over the reference
-      real(wp), intent(in) :: size               !! of the lesser part [m]
-      real(wp), intent(in) :: margin             !! [m]
-      type(patch), intent(inout) :: found
-      real(wp) :: normal(3), against(3), inward(3), start(3), along(3), kept(3, most_points), next(3, most_points)
-      real(wp) :: side(most_points), area(most_points), facing_cosine, cosine, level, gap, limit
-      !> Of each corner the line on which the outline arrives at it, and the two that cross there: above 0 an edge of
-      !> the other face, below 0 one of the reference
-      integer :: lines(3, most_points), next_lines(3, most_points)
-      integer :: f, k, n, m, i, j, facing, shift, shift_other
-      logical :: crossing
-
-      shift = set%parts(part)%vertex_first - 1
-      shift_other = set%parts(other)%vertex_first - 1
+      type(body), intent(in) :: b                !! owner of the other
+      integer, intent(out) :: facing
+      real(wp), intent(out) :: facing_cosine
+      real(wp) :: normal(3), cosine
+      integer :: f
       normal = matmul(a%turn, set%normal(:, face))
-      level = set%level(face) + dot_product(normal, a%x)
       facing_cosine = huge(1.0_wp)
       facing = set%parts(other)%face_first
       do f = set%parts(other)%face_first, set%parts(other)%face_last
@@ -214,9 +209,39 @@ contains
             facing = f
          end if
       end do
+   end subroutine look_back
+
+   !> The polygon that the reference face shares with the face of the other part that looks against it
+   pure subroutine share(set, part, face, corners, a, other, facing, facing_cosine, corners_other, b, kind, size, &
+                         margin, found)
+      type(body_set), intent(in) :: set
+      integer, intent(in) :: part                !! of the reference face
+      integer, intent(in) :: face
+      real(wp), intent(in) :: corners(:, :)      !! its vertices in space [m]
+      type(body), intent(in) :: a                !! its owner
+      integer, intent(in) :: other
+      integer, intent(in) :: facing              !! the face of the other, see look_back
+      real(wp), intent(in) :: facing_cosine
+      real(wp), intent(in) :: corners_other(:, :)
+      type(body), intent(in) :: b
+      integer, intent(in) :: kind                !! of a point of the other over the reference
+      real(wp), intent(in) :: size               !! of the lesser part [m]
+      real(wp), intent(in) :: margin             !! [m]
+      type(patch), intent(inout) :: found
+      real(wp) :: normal(3), against(3), inward(3), start(3), along(3), kept(3, most_points), next(3, most_points)
+      real(wp) :: side(most_points), area(most_points), level, gap, limit
+      !> Of each corner the line on which the outline arrives at it, and the two that cross there: above 0 an edge of
+      !> the other face, below 0 one of the reference
+      integer :: lines(3, most_points), next_lines(3, most_points)
+      integer :: k, n, m, i, j, shift, shift_other
+      logical :: crossing
+
+      shift = set%parts(part)%vertex_first - 1
+      shift_other = set%parts(other)%vertex_first - 1
+      normal = matmul(a%turn, set%normal(:, face))
+      level = set%level(face) + dot_product(normal, a%x)
       n = 0
       do k = set%loop_first(facing), set%loop_first(facing + 1) - 1
-         if (n == most_points) exit
          n = n + 1
          kept(:, n) = corners_other(:, set%loop(k) - shift_other)
          lines(:, n) = [merge(set%loop_first(facing + 1) - 1, k - 1, n == 1), 0, 0]

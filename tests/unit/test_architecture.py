@@ -62,7 +62,7 @@ MAY_USE = {
     "shell": {"common", "sla"},
     "nonsmooth": {"common"},
     "dem": {"common", "nonsmooth"},
-    "dem3": {"common", "dem"},
+    "dem3": {"common", "dem", "nonsmooth"},
     "motion": {"common"},
     "limit": {"common"},
 }

@@ -91,11 +91,11 @@ ABUSES = {
         "ValueError"),
     "dem read before a run": ("m = dem.Model(bodies(), short); m._last_run(False)", "HandleError"),
     "dem run before a start": (
-        "status_of(*_core.api_dem_run.run(dem.Model(bodies(), short).handle, MotionSet([one]).handle, 1, 1.0, 0))",
+        "status_of(*_core.api_dem_run.run(dem.Model(bodies(), short).handle, MotionSet([one]).handle, 1, 0, 1.0, 0))",
         "HandleError"),
     "dem run after its end": (
         "m = dem.Model(bodies(), short); s = MotionSet([one]); m.run(s);"
-        "status_of(*_core.api_dem_run.run(m.handle, s.handle, 1, 1.0, 0))", "HandleError"),
+        "status_of(*_core.api_dem_run.run(m.handle, s.handle, 1, 0, 1.0, 0))", "HandleError"),
     "dem of solids asked for plane blocks": (
         "m = solid(); m.run(MotionSet([one])); status_of(*_core.api_dem.bodies(m.handle, 1))", "HandleError"),
     "dem of solids built as plane blocks": (
@@ -279,7 +279,7 @@ def test_an_owner_that_is_gone_does_not_pull_the_object_from_under_a_call() -> N
     model, motions = long_run()
     before = _core.api_support.handle_count()
     assert _core.api_dem_run.start(model.handle, np.zeros(1)) == 0
-    thread = threading.Thread(target=_core.api_dem_run.run, args=(model.handle, motions.handle, 1, 1.0, 0))
+    thread = threading.Thread(target=_core.api_dem_run.run, args=(model.handle, motions.handle, 1, 0, 1.0, 0))
     handle = model.handle
     thread.start()
     while status_list()[_core.api_dem_run.summary(handle)[2]][0] != "busy":
@@ -298,7 +298,7 @@ def test_an_error_is_not_hidden_by_an_object_in_use() -> None:
     before = _core.api_support.handle_count()
     model, motions = long_run()
     assert _core.api_dem_run.start(model.handle, np.zeros(1)) == 0
-    thread = threading.Thread(target=_core.api_dem_run.run, args=(model.handle, motions.handle, 1, 1.0, 0))
+    thread = threading.Thread(target=_core.api_dem_run.run, args=(model.handle, motions.handle, 1, 0, 1.0, 0))
     thread.start()
     while status_list()[_core.api_dem_run.summary(model.handle)[2]][0] != "busy":
         pass

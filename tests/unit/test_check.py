@@ -251,6 +251,14 @@ WRONG = {
     "springs under rigid contacts": (
         "know no springs", ARCH + PULSE + "[supports]\nstiffness = 1e9 # here\n" + DEM + 'solver = "nonsmooth"\n',
     ),
+    "first swings of solids": (
+        "dem of solids does not reckon with mode_II", BLOCK + '[[analysis]]\nkind = "dem-domain"\ndirection = 10\nmode_II = true # here\n'
+        'amplitudes = ["0.5 g"]\ndurations = [0.1, 0.2]\n',
+    ),
+    "movements of rigid solids": (
+        "dem of solids does not reckon with [[initial.movements]]", ARCH + "[[initial.movements]] # here\njoint = 'joint 1'\ndx = 0.1\n"
+        + DEM + 'solver = "nonsmooth"\nquasi_static = true\ndirection = 10\n',
+    ),
     "restitution of many blocks": ("of a single block", ARCH + PULSE + '[joints]\ndamping = "restitution" # here\n' + DEM),
     "facade without its thickness": ("needs thickness", '[[analysis]] # here\nkind = "local-mechanism"\nmechanism = "facade"\nheight = 6\n'),
     "mechanism of no building": ("needs a [structure]", '[[analysis]]\nkind = "local-mechanism"\nmechanism = "building" # here\n'),

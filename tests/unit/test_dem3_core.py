@@ -61,6 +61,20 @@ def test_a_block_settles_as_far_as_its_joint_gives() -> None:
     assert run.residual < 1e-9
 
 
+@pytest.mark.parametrize("sides", [48, 96])
+def test_round_drums_bear_on_all_of_their_faces(sides: int) -> None:
+    """Two drums settle level, by what the whole polygons give."""
+    angle = 2.0 * np.pi * np.arange(sides) / sides
+    ring = 0.5 * np.column_stack([np.cos(angle), np.sin(angle)])
+    run = dem3.run(
+        solids([prism(ring, k * 1.0, k + 1.0) for k in range(2)], Law(1e9, 1e9, 0.6, 1e-4)), Options(end_time=0.05)
+    )
+    assert [0.5 - run.place[-1, 0, 2], 1.5 - run.place[-1, 1, 2]] == pytest.approx(
+        [DENSITY * GRAVITY * 2.0 / 1e9, DENSITY * GRAVITY * 3.0 / 1e9], rel=1e-3
+    )
+    assert run.turn[-1, :2] == pytest.approx(np.broadcast_to(np.eye(3), (2, 3, 3)), abs=2e-6)
+
+
 def test_a_tiny_step_of_the_run_keeps_nothing_from_rest() -> None:
     block = solids([box((0, 0, 0), (1, 1, 4))], Law(1e9, 1e9, 0.6, 1e-4))
     run = dem3.run(block, Options(end_time=1e-5, step=1e-6, settle_steps=4000))
@@ -131,6 +145,52 @@ def test_both_planes_rock_alike() -> None:
     along, _ = rocking(0.8)
     across, _ = rocking(0.8, (0.0, 1.0, 0.0))
     assert across == pytest.approx(along, abs=1e-7)
+
+
+def test_two_components_are_one_along_their_sum() -> None:
+    """A motion along 30 degrees is its parts along x and y, whichever of them is called along."""
+    block = solids([box((-0.5, -0.5, 0), (0.5, 0.5, HIGH))], Law(K, K, MU, BETA))
+    one, turn = shaken(0.3), np.radians(30.0)
+    assert one.samples is not None
+    part = [Ground(samples=f * one.samples, step=one.step) for f in (np.cos(turn), np.sin(turn), -np.cos(turn))]
+    given = Options(end_time=0.3, step=2e-4)
+    whole = dem3.run(block, replace(given, way=(np.cos(turn), np.sin(turn), 0.0)), one)
+    along_x = dem3.run(block, given, part[0], across=part[1])
+    along_y = dem3.run(block, replace(given, way=(0.0, 1.0, 0.0)), part[1], across=part[2])
+    assert np.abs(whole.place[:, 0] - whole.settled[0]).max() > 0.01
+    for run in (along_x, along_y):
+        assert run.place == pytest.approx(whole.place, abs=1e-9) and run.residual < 1e-2
+    with dem3.Model(block, given) as model, as_motion_set(part[:2]) as motions:
+        with pytest.raises(IndexError, match="motion 5 is not in the set of 2"):
+            model.run(motions, across=5)
+
+
+def test_sliding_on_ground_that_moves_in_a_circle() -> None:
+    """Against the equation of a point with Coulomb friction, u'' = -a(t) - mu g u'/|u'|, by another integrator."""
+    mu, strength, pace = 0.3, 0.5 * GRAVITY, 4.0 * np.pi
+    grounds = [
+        Ground(
+            breaks=np.array([0.0, 1.0]),
+            linear=np.zeros((1, 1, 2)),
+            harmonic=np.array([[[[strength, 0.0, pace, phase]]]]),
+        )
+        for phase in (0.5 * np.pi, 0.0)
+    ]
+    slab = solids([box((-1, -1, 0), (1, 1, 0.2))], Law(1e10, 1e10, mu, 1e-5))
+    run = dem3.run(slab, Options(end_time=1.0), grounds[0], across=grounds[1])
+
+    def point(t: float, state: np.ndarray) -> np.ndarray:
+        speed = max(float(np.hypot(*state[2:])), 1e-12)
+        pull = -strength * np.array([np.cos(pace * t), np.sin(pace * t)])
+        return np.concatenate([state[2:], pull - mu * GRAVITY * state[2:] / speed])
+
+    start = 1e-6  # it slides from the first
+    exact = solve_ivp(
+        point, (0.0, 1.0), [0.0, 0.0, -start * (strength - mu * GRAVITY), 0.0], rtol=1e-9, atol=1e-12, t_eval=run.time
+    )
+    gone = run.place[:, 0, :2] - run.settled[0, :2]
+    assert np.linalg.norm(gone, axis=1).max() > 0.02
+    assert gone == pytest.approx(exact.y[:2].T, abs=2e-3 * np.abs(gone).max())
 
 
 def test_no_bit_depends_on_threads_pauses_or_a_state_taken_back(monkeypatch) -> None:
@@ -249,6 +309,11 @@ def test_bars_that_cross_rest_on_each_other_by_their_edges() -> None:
 def test_wrong_models_are_refused() -> None:
     good = solids([box((0, 0, 0), (1, 1, 1))], Law(1e9, 1e9, 0.6))
     options = Options(end_time=0.1)
+    with pytest.raises(ValueError, match="a face has 97 corners, expected at most 96"):
+        angle = 2.0 * np.pi * np.arange(97) / 97
+        dem3.run(
+            solids([prism(np.column_stack([np.cos(angle), np.sin(angle)]), 0.0, 1.0)], Law(1e9, 1e9, 0.6)), options
+        )
     with pytest.raises(ValueError, match="stiffnesses"):
         Law(0.0, 1e9, 0.6)
     with pytest.raises(ValueError, match="law that is not there"):

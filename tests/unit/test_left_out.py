@@ -109,6 +109,7 @@ DECKS = {
     "pier": (WALL, None, {"kind": "code-checks", "axial_load": 1e4}),
     "arch by codes": (ARCH, None, {"kind": "local-mechanism", "mechanism": "building"}),
     "rigid contacts": (BLOCK, SINE, {"kind": "dem", "end_time": 0.4, "solver": "nonsmooth"}),
+    "rigid solids": (BLOCK, SINE, {"kind": "dem", "end_time": 0.2, "solver": "nonsmooth", "direction": 0.0}),
     "sla of a panel": (WALL, None, {"kind": "sla", "mesh": {"size": 0.5}, "events": 30}),
     "pushover": (HOUSE, None, {"mesh": {"size": 0.9, "layers": 3}, "events": 25}),
     "walls of a plan": (HOUSE, None, {"kind": "local-mechanism", "mechanism": "building"}),

@@ -11,6 +11,9 @@ from extrados.core.errors import check
 from extrados.core.ground import Ground, as_motion_set
 from extrados.schema.constants import GRAVITY
 
+#: Corners of a face, at most (fortran/dem3/bodies.f90)
+MOST_CORNERS = 96
+
 
 @dataclass(frozen=True)
 class Law:
@@ -75,12 +78,14 @@ class Model(BodyModel[Run]):
     """
 
     what = "model of discrete elements in space"
-    rates, values = 6, 18
+    rates, values, in_space = 6, 18, True
     options: Options
 
     def __init__(self, solids: Solids, options: Options, *, rate: np.ndarray | None = None):
         if not solids.laws or any(not 0 <= k < len(solids.laws) for k in solids.joints.values()):
             raise ValueError("a joint names a law that is not there")
+        if (most := max((len(face) for faces in solids.faces for face in faces), default=0)) > MOST_CORNERS:
+            raise ValueError(f"a face has {most} corners, expected at most {MOST_CORNERS}")
         n, parts = len(solids.mass), len(solids.vertices)
         mobile = np.asarray(solids.mass, dtype=float) > 0.0
         principal, axes = np.linalg.eigh(np.where(mobile[:, None, None], solids.inertia, np.eye(3)))
@@ -149,13 +154,16 @@ def run(
     options: Options,
     ground: Ground | None = None,
     *,
+    across: Ground | None = None,
     scale: float = 1.0,
     rate: np.ndarray | None = None,
     times: np.ndarray | None = None,
 ) -> Run:
     """One run of a model that is made for it; see Model and Model.run. No ground: it stands still.
 
-    rate (n, 6): velocities [m/s] and spins [rad/s] of the bodies at the start; times (frames): of output [s].
+    across: its other horizontal component, along z x way. rate (n, 6): velocities [m/s] and spins [rad/s] of the bodies at
+    the start; times (frames): of output [s].
     """
-    with Model(solids, options, rate=rate) as model, as_motion_set([ground or STILL]) as motions:
-        return model.run(motions, scale=scale, times=times)
+    grounds = [ground or STILL, *([] if across is None else [across])]
+    with Model(solids, options, rate=rate) as model, as_motion_set(grounds) as motions:
+        return model.run(motions, across=None if across is None else 1, scale=scale, times=times)

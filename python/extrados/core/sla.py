@@ -29,6 +29,7 @@ from extrados.core.sla_parts import (
     Joints,
     Monitor,
     Plane,
+    ShellJoints,
     Shells,
     Softening,
     Springs,
@@ -58,6 +59,7 @@ __all__ = [
     "Model",
     "Monitor",
     "Plane",
+    "ShellJoints",
     "Shells",
     "Softening",
     "Springs",
@@ -334,7 +336,11 @@ class Model(Owner):
             _each("small", group.small, count), *real("normal", np.transpose(group.normal), (2, count)),
         )  # fmt: skip
         dry = np.broadcast_to(np.asarray(group.dry, dtype=np.int32), (count,))
-        return _core.api_sla_joints.joints(self.handle, connect, properties, _rows(*tables, dry), float(group.ripple))
+        choices, ripple = _rows(*tables, dry), float(group.ripple)
+        if isinstance(group, ShellJoints):
+            row = real("row", group.row.reshape(2 * count, 3, 24).transpose(2, 1, 0), (24, 3, 2 * count))
+            return _core.api_sla_joints.joints_between_shells(self.handle, connect, properties, choices, ripple, row)
+        return _core.api_sla_joints.joints(self.handle, connect, properties, choices, ripple)
 
     def _add_springs(self, group: Springs) -> None:
         count = len(group.stiffness)

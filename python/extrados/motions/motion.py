@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from extrados.core.ground import Ground
+from extrados.motions.directions import rotated
 
 #: An analytic motion is never sampled at more points than this.
 MOST_SAMPLES = 1_000_000
@@ -15,14 +16,15 @@ MOST_SAMPLES = 1_000_000
 class Motion:
     """A ground motion with its name and origin; `ground` is what the core integrates [m/s^2].
 
-    horizontal: both horizontal components (2, points) as recorded [m/s^2], of a record that has them. title, station: of
-    a record, as its file says.
+    horizontal: both horizontal components (2, points) as recorded [m/s^2], of a record that has them, and `angle` from the
+    first to the plane of the structure [deg]. title, station: of a record, as its file says.
     """
 
     name: str
     ground: Ground
     notes: list[str] = field(default_factory=list)
     horizontal: np.ndarray | None = None
+    angle: float = 0.0
     title: str = ""
     station: str = ""
 
@@ -30,6 +32,13 @@ class Motion:
     def end(self) -> float:
         """When it is over [s]."""
         return self.ground.end
+
+    @property
+    def across(self) -> Ground | None:
+        """What is left of a record with two horizontal components: the part a quarter turn from that in the plane."""
+        if self.horizontal is None:
+            return None
+        return Ground(samples=rotated(*self.horizontal, self.angle + 90.0)[None], step=self.ground.step)
 
     def sample(self, time: np.ndarray, channel: int = 0) -> np.ndarray:
         """Acceleration at the given times [m/s^2]; zero outside the motion."""

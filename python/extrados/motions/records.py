@@ -169,6 +169,7 @@ def record_motion(
         Ground(samples=rows * factor, step=step),
         notes,
         None if horizontal is None else horizontal * factor,
+        angle,
         title=record.title,
         station=" ".join(part for part in (record.station, record.component) if part),
     )

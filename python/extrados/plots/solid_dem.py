@@ -85,7 +85,7 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     shift, turn, tracked = (run.array(name, key) for key in ("shift", "turn", "tracked"))
     far = np.linalg.norm(shift[:, tracked], axis=2).max(axis=0)
     order = np.argsort(-far, kind="stable")[:SHOWN]
-    names = list(r.peak_rotation_rad)
+    names, both = list(r.peak_rotation_rad), r.horizontal_components == 2
     with style.figure(8.0, 9.0, rows=5, sharex=True, height_ratios=[2, 2, 2, 2, 1]) as (fig, axes):
         for n in order:
             i = tracked[n]
@@ -96,14 +96,19 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.set_ylabel(f"{axis} [mm]")
         style.legend_above(axes[0])
         axes[3].set_ylabel("turned by [mrad]")
-        axes[4].plot(time, run.array(name, "ground") / GRAVITY, color=style.EDGE)
+        axes[4].plot(time, run.array(name, "ground") / GRAVITY, color=style.EDGE, label="along")
+        if both:
+            axes[4].plot(
+                time, run.array(name, "ground_across") / GRAVITY, color=style.THRUST, linewidth=0.8, label="across"
+            )
+            axes[4].legend(loc="upper right", ncols=2, fontsize=8)
         axes[4].set_ylabel("ground [g]")
         axes[4].set_xlabel("time [s]")
-        axes[4].set_xlim(0.0, float(time[-1]) if len(time) > 1 else 1.0)
+        axes[4].set_xlim(0.0, float(time.max(initial=0.0)) or 1.0)
         saved = style.save(fig, folder, f"{name}-displacements")
     return saved, (
         f"Displacements of the stones that go farthest, from their settled places, and by how much they turn; the ground moves along "
-        f"{r.direction_deg:g} degrees in plan."
+        f"{r.direction_deg:g} degrees in plan{' and across' if both else ''}."
     )
 
 

@@ -16,6 +16,7 @@ from extrados.analyses.dem.tables import Dem
 from extrados.analyses.dem.words import solid_answer
 from extrados.analyses.limit.solids import scene_arrays
 from extrados.core import dem3
+from extrados.motions.motion import Motion
 from extrados.results import dem as out
 from extrados.results.model import Array, Result, TableData
 from extrados.results.solid_files import glb, series
@@ -30,7 +31,6 @@ def collapse_limit(options: Dem, model: SolidModel) -> float:
 def core_options(context: Context, options: Dem, model: SolidModel) -> dem3.Options:
     """Options of the core for a run of this deck."""
     quiet = context.motion.end if context.deck.motion else 0.0
-    turn = np.radians(options.direction or 0.0)
     return dem3.Options(
         end_time=options.end_time or quiet + dem_model.settle_time(model),
         output_step=options.output_step,
@@ -38,30 +38,43 @@ def core_options(context: Context, options: Dem, model: SolidModel) -> dem3.Opti
         fraction=options.fraction,
         collapse=collapse_limit(options, model) if options.stop_at_collapse else 0.0,
         domain=options.domain * model.size,
-        settlement=farthest_settlement(model),
+        settlement=farthest_settlement(model, options.rigid),
         stop_at_rest=options.end_time is None,
-        way=(float(np.cos(turn)), float(np.sin(turn)), 0.0),
+        rigid=options.rigid,
+        rebound=options.rebound,
+        quasi_static=options.quasi_static,
+        way=options.way,
     )
 
 
 def run(context: Context, options: Dem, model: SolidModel) -> Result:
     """The run of a deck on blocks in space."""
     moved = context.motion.ground if context.deck.motion else None
-    job = SolidRuns(model.bodies(), [SolidTask(core_options(context, options, model), moved)])
+    across = context.motion.across if context.deck.motion else None
+    job = SolidRuns(model.bodies(), [SolidTask(core_options(context, options, model), moved, across)])
     found = dem_model.checked(watched(context, "dem-solids", job, "discrete elements"), model)
     ground = context.motion.sample(found.time) if moved is not None else np.zeros(len(found.time))
     seen = solid_measures.look(model, found, options.track, ground)
     result = Result("dem", status="interrupted" if found.interrupted else "ok")
     again = "; --resume goes on from here" if context.checkpoint is not None and len(found.time) else ""
     result.reason = f"interrupted at {found.stop_time:.3f} s{again}" if found.interrupted else ""
-    result.results = r = out.SolidDemRun(**_numbers(options, model, found, seen))
+    numbers = _numbers(options, model, found, seen)
+    result.results = r = out.SolidDemRun(**numbers, horizontal_components=1 if across is None else 2)
     _store(options, model, found, seen, result)
+    if across is not None:
+        result.arrays["ground_across"] = Array(
+            Motion("", across).sample(found.time),
+            ("time",),
+            "m/s^2",
+            "acceleration of the ground a quarter turn from the direction",
+        )
     if seen.sliding > measures.SLIDES * float(np.sqrt(model.assembly.area.min())):
         result.warnings.append(f"contacts slide by up to {1e3 * seen.sliding:.3g} mm")
     if found.residual > 0.01:
         result.warnings.append(
             f"the energy ledger is off by {100 * found.residual:.2g} % of the energy that went round"
         )
+    result.warnings += dem_model.unconverged(found.effort)
     if r.still_moving:
         result.warnings.append("it still moves at the end of the run: a longer end_time may show another outcome")
     if moved is None:
@@ -71,7 +84,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
 
 
 def _numbers(options: Dem, model: SolidModel, found: dem3.Run, seen: SolidsSeen) -> dict[str, Any]:
-    names, values, limit = model.assembly.block_names, model.values, collapse_limit(options, model)
+    names, limit = model.assembly.block_names, collapse_limit(options, model)
     mobile = slice(0, model.count)
     kinetic = found.energy["kinetic"]
     noise = 1e-6 * float(model.assembly.mass.sum()) * GRAVITY * model.size
@@ -100,12 +113,9 @@ def _numbers(options: Dem, model: SolidModel, found: dem3.Run, seen: SolidsSeen)
         "energy_residual_ratio": found.residual,
         "bounces": int(found.bounces[mobile].sum()),
         "airborne_time_s": float(found.airborne[mobile].max(initial=0.0)),
-        "solver": "compliant",
-        "joint_stiffness_min_Pa_per_m": float(values.stiffness.min()),
-        "joint_stiffness_max_Pa_per_m": float(values.stiffness.max()),
-        "beta_s": values.beta,
-        **{f"damping_ratio_{name}": ratio for name, ratio in values.ratios().items()},
-        "critical_step_s": found.critical_step,
+        "solver": options.solver,
+        "convergence": measures.convergence(found.effort) if options.rigid else None,
+        **measures.springs(options, model.values, found),
         "steps": found.steps,
         "settling_steps": found.settling_steps,
         "time_step_s": found.step,

@@ -89,9 +89,10 @@ class Corner(Table):
     """How two walls that meet hang together."""
 
     walls: list[str] = key(about="names of the two walls; the second abuts on the first", min_length=2, max_length=2)
-    bond: Literal["bonded", "weak", "open"] = key(
+    bond: Literal["bonded", "weak", "joint", "open"] = key(
         about="bonded: one masonry; weak: the column of elements of the second wall beside the first has less strength; "
-        "open: nothing but floors holds them together"
+        "joint: one of [joints] between them, which opens, slides up and down, and crushes; open: nothing but floors holds "
+        "them together"
     )
     strength: float = key(0.5, "of a weak corner: its tensile strength over that of the wall", gt=0, le=1)
 
@@ -100,6 +101,15 @@ class Corner(Table):
         if self.walls[0] == self.walls[1]:
             raise ValueError(f"walls: '{self.walls[0]}' stands twice; expected two walls that meet")
         return self
+
+
+class Bed(Table):
+    """A bed joint of [joints] all along a height of some walls: it opens, slides along the wall, and crushes."""
+
+    name: str | None = key(None, 'what answers and [[joints.types]] call it; default "bed 1" and so on', max_length=40)
+    storey: int = key(1, "the storey it is in, from 1 at the ground", ge=1)
+    z: Length = key(0.0, "height above the floor of the storey; 0 in the first is the sole", ge=0)
+    walls: list[str] = key([], "names of the walls that it runs through; default all of the storey", max_length=200)
 
 
 class StoreyFloor(Table):
@@ -189,6 +199,7 @@ class Plan(Structure):
     storeys: list[Length] = key(about="heights of the storeys, from the ground up", min_length=1, max_length=50)
     walls: list[PlanWall] = key(about="[[structure.walls]]", min_length=1, max_length=200)
     corners: list[Corner] = key([], "where walls meet and are not one masonry, [[structure.corners]]", max_length=1000)
+    beds: list[Bed] = key([], "bed joints that may slide, [[structure.beds]]", max_length=100)
     floors: list[StoreyFloor] = key([], "[[structure.floors]]", max_length=200)
     rods: list[Rod] = key([], "[[structure.rods]]", max_length=200)
     props: list[Prop] = key([], "[[structure.props]]", max_length=200)
@@ -211,6 +222,7 @@ class Plan(Structure):
             self._check_wall(w, wall)
         for what, named in (
             *((f"corners[{k}].walls", corner.walls) for k, corner in enumerate(self.corners)),
+            *((f"beds[{k}].walls", bed.walls) for k, bed in enumerate(self.beds)),
             *((f"floors[{k}].walls", floor.walls or []) for k, floor in enumerate(self.floors)),
             *((f"floors[{k}].bears_on", floor.bears_on) for k, floor in enumerate(self.floors)),
             *((f"prestress[{k}].wall", [part.wall]) for k, part in enumerate(self.prestress)),
@@ -218,6 +230,21 @@ class Plan(Structure):
         ):
             if strange := [name for name in named if name not in names]:
                 raise ValueError(f"{what}: there is no wall '{strange[0]}'; there are {', '.join(names)}")
+        heights: dict[float, int] = {}
+        for k, bed in enumerate(self.beds):
+            if bed.storey > len(self.storeys):
+                raise ValueError(f"beds[{k}].storey: there is no storey {bed.storey}, there are {len(self.storeys)}")
+            if bed.z >= self.storeys[bed.storey - 1]:
+                raise ValueError(
+                    f"beds[{k}].z: {bed.z:g} m is not below the top of a storey of {self.storeys[bed.storey - 1]:g} m; "
+                    "that on top of it is z = 0 of the next"
+                )
+            if (first := heights.setdefault(round(self.bed_height(bed), 9), k)) != k:
+                raise ValueError(f"beds[{k}]: bed {first + 1} lies at the same height; name all of its walls there")
+        names_of_joints = self.joint_names
+        for k, name in enumerate(names_of_joints):
+            if name in names_of_joints[:k]:
+                raise ValueError(f"beds: the name '{name}' of a joint stands twice")
         told: dict[frozenset[str], int] = {}
         for k, corner in enumerate(self.corners):
             if (first := told.setdefault(frozenset(corner.walls), k)) != k:
@@ -276,6 +303,16 @@ class Plan(Structure):
     def reach(self, wall: PlanWall) -> tuple[int, int]:
         """First and last storey of a wall."""
         return (wall.storeys[0], wall.storeys[1]) if wall.storeys is not None else (1, len(self.storeys))
+
+    def bed_height(self, bed: Bed) -> float:
+        """Height of a bed joint above the ground [m]."""
+        return float(self.levels[bed.storey - 1] + bed.z)
+
+    @property
+    def joint_names(self) -> list[str]:
+        """Of the joints between walls, then of the bed joints."""
+        between = ["-".join(corner.walls) for corner in self.corners if corner.bond == "joint"]
+        return between + [bed.name or f"bed {k}" for k, bed in enumerate(self.beds, 1)]
 
     @property
     def levels(self) -> np.ndarray:

@@ -1,0 +1,101 @@
+"""The same blocks in space in MuJoCo (extra `bench`), with free joints; boxes as its boxes, other parts as meshes."""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from dem_peers import acceleration
+
+from extrados.core.dem3 import Solids
+from extrados.core.ground import Ground
+from extrados.schema.constants import GRAVITY
+
+SETTLE = 0.2  # seconds under gravity alone, before the motion
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Wall and processor time [s] of the motion, times (t) [s], displacements (t, bodies, 3) [m] of the mobile bodies."""
+
+    seconds: float
+    processor: float
+    time: np.ndarray
+    moved: np.ndarray
+
+
+def box_of(vertices: np.ndarray, faces: tuple[tuple[int, ...], ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:  # fmt: skip
+    """Centre, axes in the columns and half sizes of a part that is a box; None of another."""
+    if len(vertices) != 8 or any(len(face) != 4 for face in faces):
+        return None
+    beside = {int(k) for face in faces if 0 in face for k in (face[face.index(0) - 1], face[(face.index(0) + 1) % 4])}
+    edges = vertices[sorted(beside)] - vertices[0]
+    size = np.linalg.norm(edges, axis=1)
+    axes = (edges / size[:, None]).T
+    if len(beside) != 3 or np.abs(axes.T @ axes - np.eye(3)).max() > 1e-9:
+        return None
+    if np.linalg.det(axes) < 0.0:
+        axes, size = axes[:, [1, 0, 2]], size[[1, 0, 2]]
+    return vertices.mean(axis=0), axes, 0.5 * size
+
+
+def numbers(values: np.ndarray) -> str:
+    return " ".join(f"{v:.12g}" for v in np.ravel(values))
+
+
+def model_text(solids: Solids, dt: float) -> str:
+    """The blocks as MuJoCo reads them; friction of the first law."""
+    assets: list[str] = []
+    geoms: dict[int, list[str]] = {}
+    for k, owner in enumerate(solids.owner):
+        vertices = np.asarray(solids.vertices[k]) - solids.centroid[owner]
+        found = box_of(vertices, solids.faces[k])
+        if found is None:
+            assets.append(f'<mesh name="m{k}" vertex="{numbers(vertices)}"/>')
+            geom = f'<geom type="mesh" mesh="m{k}"/>'
+        else:
+            centre, axes, half = found
+            geom = (
+                f'<geom type="box" size="{numbers(half)}" pos="{numbers(centre)}" xyaxes="{numbers(axes[:, :2].T)}"/>'
+            )
+        geoms.setdefault(owner, []).append(geom)
+    world = []
+    for b, parts in geoms.items():
+        free = ""
+        if solids.mass[b] > 0.0:
+            i = solids.inertia[b]
+            full = numbers(np.array([i[0, 0], i[1, 1], i[2, 2], i[0, 1], i[0, 2], i[1, 2]]))
+            free = f'<freejoint/><inertial pos="0 0 0" mass="{solids.mass[b]:.12g}" fullinertia="{full}"/>'
+        world.append(f'<body name="b{b}" pos="{numbers(solids.centroid[b])}">{free}{"".join(parts)}</body>')
+    return (
+        f'<mujoco><compiler inertiafromgeom="false"/><option timestep="{dt}" integrator="implicitfast" cone="elliptic" solver="Newton" '
+        f'iterations="50" impratio="10"><flag multiccd="enable"/></option><size memory="900M"/><default><geom condim="3" '
+        f'friction="{solids.laws[0].friction}" solref="{2 * dt} 1" solimp="0.99 0.999 0.0001"/></default>'
+        f"<asset>{''.join(assets)}</asset><worldbody>{''.join(world)}</worldbody></mujoco>"
+    )
+
+
+def mujoco(solids: Solids, along: Ground, across: Ground | None, end: float, dt: float, every: int = 1) -> Answer:
+    """A run from rest under the own weight; gravity carries the ground's acceleration along x and y."""
+    import mujoco as mj
+
+    model = mj.MjModel.from_xml_string(model_text(solids, dt))
+    data = mj.MjData(model)
+    model.opt.gravity[:] = (0.0, 0.0, -GRAVITY)
+    for _ in range(round(SETTLE / dt)):
+        mj.mj_step(model, data)
+    data.qvel[:] = 0.0
+    steps = round(end / dt)
+    middle = dt * (np.arange(steps) + 0.5)
+    pull = np.array([acceleration(along, middle), np.zeros(steps) if across is None else acceleration(across, middle)])
+    mobile = int(np.count_nonzero(solids.mass > 0.0))
+    place = np.empty((steps // every, mobile, 3))
+    start = data.qpos.reshape(-1, 7)[:, :3].copy()
+    gravity, step = model.opt.gravity, mj.mj_step
+    begin, spent = time.perf_counter(), time.process_time()
+    for n in range(steps):
+        gravity[:2] = -pull[:, n]
+        step(model, data)
+        if (n + 1) % every == 0:
+            place[(n + 1) // every - 1] = data.qpos.reshape(-1, 7)[:, :3]
+    seconds, processor = time.perf_counter() - begin, time.process_time() - spent
+    return Answer(seconds, processor, dt * every * np.arange(1, len(place) + 1), place - start)
