@@ -35,7 +35,7 @@ def node_frames(xyz: np.ndarray, groups: Iterable[np.ndarray]) -> tuple[np.ndarr
 
 
 def layers_of(count: int, through: str) -> tuple[np.ndarray, np.ndarray]:
-    """Heights of the layers of a shell over its middle, in thicknesses, and their shares of the thickness."""
+    """Heights (count) of the layers of a shell over its middle, in thicknesses, and their shares (count) of the thickness."""
     height, share, status = _core.api_shell.layers_of(THROUGH[through], count)
     check(status, f"{count} layers by {through}")
     return np.array(height[:count]), np.array(share[:count])
