@@ -90,6 +90,7 @@ contains
       type(contact_pair), intent(inout) :: pair
       type(contact_point), allocatable :: before(:)
       type(patch) :: found
+      real(wp) :: share
       integer(c_int) :: status
       integer :: i, old, failed
       logical, allocatable :: taken(:)
@@ -119,7 +120,11 @@ contains
          associate (point => pair%point(i), one => before(old))
             point = one
             if (equal(one%what, found%point(i))) cycle
+            ! The springs keep what they are drawn out by, so that a corner that parts in two holds the energy that it held.
+            share = found%point(i)%area / one%what%area
             point%what = found%point(i)
+            point%spring_n = share * one%spring_n
+            point%spring_s = share * one%spring_s
          end associate
       end do
       pair%points = found%points

@@ -11,7 +11,7 @@ from extrados.core.ground import Ground
 from extrados.schema.constants import GRAVITY
 
 SETTLE = 0.2  # seconds under gravity alone, before the motion
-PATIENCE = 40.0  # seconds of processor time for a motion, and for settling before
+PATIENCE = 15.0  # seconds of processor time for a motion, and for settling before
 
 
 @dataclass(frozen=True)
