@@ -12,6 +12,7 @@ extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx_copybutton"]
 source_suffix = {".md": "markdown"}
 myst_heading_anchors = 4
 autodoc_typehints = "none"
+default_role = "code"  # what a docstring has in single backquotes
 html_theme = "furo"
 html_title = f"extrados {version}"
 html_show_sourcelink = False

@@ -9,7 +9,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 #: What belongs to the program and its tests
 PARTS = ("c", "fortran", "python", "tests", "cases", "docs", "tools", "meson.build", "meson.options", "pyproject.toml",
-         "Makefile", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "CITATION.cff", "LICENSE")  # fmt: skip
+         "Makefile", "Containerfile", ".github", ".ci", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "CITATION.cff", "LICENSE")  # fmt: skip
 
 
 def copy(place: Path) -> None:

@@ -4,10 +4,12 @@
 
 The program is built anew in build/coverage with gcov's counters; pytest-cov (the extra `coverage`) is installed
 first where it is missing. Python line by line: build/coverage/html. The wanted shares are told beside those found; exit code 1 below them, unless tests
-are named.
+are named. A whole run writes what it found into CONTRIBUTING.md.
 """
 
+import datetime
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -20,6 +22,8 @@ HTML = ROOM / "html"
 WANTED = {"Python": 90.0, "Fortran": 85.0, "C": 85.0}
 INTERRUPTED = 2  # of pytest's exit codes: it then keeps no counts
 LEAST = 8  # files of each language that are told
+#: The words of CONTRIBUTING.md that a whole run writes anew
+NOTE = re.compile(r"At the last whole run \([\d-]+\) they were [\d., and]+ %")
 
 
 def run(tests: list[str]) -> None:
@@ -76,6 +80,17 @@ def tell(language: str, files: dict[str, tuple[int, int]]) -> float:
     return share
 
 
+def noted(page: str, shares: dict[str, float], date: str) -> str:
+    """The text of CONTRIBUTING.md with the shares of today; SystemExit where it has no place for them."""
+    python, fortran, c = (f"{shares[language]:.1f}" for language in WANTED)
+    made, count = NOTE.subn(f"At the last whole run ({date}) they were {python}, {fortran} and {c} %", page)
+    if count != 1:
+        sys.exit(
+            "CONTRIBUTING.md has no place for the shares: expected 'At the last whole run (DATE) they were A, B and C %'"
+        )
+    return made
+
+
 def main() -> int:
     extras.install("coverage")
     apart.copy(ROOM)
@@ -91,6 +106,11 @@ def main() -> int:
     found = {"Python": of_python(), "Fortran": of_core("fortran"), "C": of_core("c")}
     shares = {language: tell(language, files) for language, files in found.items()}
     print(f"Lines: {HTML}")
+    if not sys.argv[1:]:
+        page = apart.ROOT / "CONTRIBUTING.md"
+        page.write_text(
+            noted(page.read_text(encoding="utf-8"), shares, datetime.date.today().isoformat()), encoding="utf-8"
+        )
     return 0 if sys.argv[1:] else int(any(shares[language] < wanted for language, wanted in WANTED.items()))
 
 

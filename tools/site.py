@@ -1,21 +1,25 @@
 """Build the documentation site into build/site: the references, a gallery of cases run now, the dissertation's figures redrawn,
 Sphinx, and FORD for the Fortran.
 
-What it needs is the extra `docs` of pyproject.toml, installed first where it is missing. A warning is an error.
+What it needs is the extra `docs` of pyproject.toml, installed first where it is missing. A warning is an error, and so is a link
+that leads nowhere; nothing is loaded from the network, so that the site and its search work without one.
 """
 
+import html
 import re
 import shutil
 import subprocess
 import sys
 import tomllib
 from pathlib import Path
+from urllib.parse import unquote, urlsplit
 
+import dissertation
 import extras
 
 ROOT = Path(__file__).resolve().parents[1]
 SITE, GALLERY, PAGE = ROOT / "build" / "site", ROOT / "docs" / "_gallery", ROOT / "docs" / "gallery.md"
-DISSERTATION, REDRAWN = ROOT / "docs" / "dissertation", ROOT / "docs" / "dissertation" / "redrawn.md"
+REDRAWN = dissertation.PLACE / "redrawn.md"
 #: Decks of the gallery, each with the analysis whose first figure is shown; together they take about a minute
 SHOWN = [
     ("arch/oppenheim", "tilt"), ("arch/oppenheim-domain", "failure-domain"), ("arch/figure-5-4", "failure-curves"), ("vault/dejong-a", "tilt"),
@@ -25,6 +29,7 @@ SHOWN = [
 FORD = """project: extrados
 summary: The Fortran core
 src_dir: {root}/fortran
+css: {root}/docs/fortran.css
 output_dir: {out}
 predocmark: >
 docmark: !
@@ -36,6 +41,11 @@ search: false
 preprocess: false
 parallel: 0
 """
+#: Of the pages of FORD: what they load from the network, and what then rests on it
+FROM_AFAR = re.compile(
+    r"<!-- Bootstrap -->.*?(?=<!-- Font Awesome)|<!-- MathJax -->.*?(?=<!-- Other scripts)|<script>\s*// Enable Bootstrap.*?</script>",
+    re.S,
+)
 
 
 def gallery() -> None:
@@ -70,14 +80,6 @@ def redrawn() -> None:
     """docs/dissertation/redrawn.md: the pictures that its pages name, by running their decks; slow cases are left out."""
     import extrados
 
-    pages = [file for file in sorted(DISSERTATION.glob("*.md")) if file != REDRAWN]
-    rows = [
-        (figure, shows, re.findall(r"`cases/([\w/-]+)`((?: `figures/[\w-]+\.png`)+)", by))
-        for page in sorted(pages, key=lambda file: (file.stem == "appendices", file.stem))
-        for figure, shows, by in re.findall(
-            r"^\| ([\dA-C]+-\d+) \| (.*?) \| (.*?) \|", page.read_text(encoding="utf-8"), re.M
-        )
-    ]
     runs: dict = {}
     slow: set[str] = set()
     lines = [
@@ -85,8 +87,10 @@ def redrawn() -> None:
         "",
         "Made by running the decks that the pages of the chapters name, as this site was built.",
     ]
-    for figure, shows, decks in rows:
-        for case, names in decks:
+    for figure, shows, by, *_ in dissertation.rows():
+        for case, names in dissertation.redrawn_by(by):
+            if not names:
+                continue
             deck = ROOT / "cases" / f"{case}.toml"
             if tomllib.loads(deck.with_suffix(".expect.toml").read_text(encoding="utf-8")).get("slow"):
                 slow.add(case)
@@ -96,7 +100,7 @@ def redrawn() -> None:
                 runs[case] = {
                     title: drawn[title] for row in run.analyses for drawn in [run.plot(row["name"])] for title in drawn
                 }
-            for name in re.findall(r"figures/([\w-]+)\.png", names):
+            for name in names:
                 if name not in runs[case]:
                     sys.exit(f"cases/{case}.toml draws no {name}, which docs/dissertation names for Fig. {figure}")
                 picture = GALLERY / f"{case.replace('/', '-')}-{name}.png"
@@ -104,8 +108,9 @@ def redrawn() -> None:
                 if f"## Fig. {figure}: {shows}" not in lines:
                     lines += ["", f"## Fig. {figure}: {shows}"]
                 lines += ["", f"`cases/{case}.toml`:", "", f"![Fig. {figure}](../_gallery/{picture.name})"]
-    left = ", ".join(f"`cases/{case}.toml`" for case in sorted(slow))
-    lines += ["", "## Left out", "", f"Decks that take minutes: {left}."]
+    if slow:
+        left = ", ".join(f"`cases/{case}.toml`" for case in sorted(slow))
+        lines += ["", "## Left out", "", f"Decks that take minutes: {left}."]
     REDRAWN.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
@@ -114,6 +119,30 @@ def fortran() -> None:
     project = ROOT / "build" / "ford.md"
     project.write_text(FORD.format(root=ROOT, out=SITE / "fortran"), encoding="utf-8")
     subprocess.run([sys.executable, "-m", "ford", project], check=True, stdout=subprocess.DEVNULL)
+    for page in (SITE / "fortran").rglob("*.html"):
+        page.write_text(FROM_AFAR.sub("", page.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+def broken(site: Path) -> list[str]:
+    """Links of a site's pages that lead nowhere, and what they would load from the network: each as "page: link"."""
+    wrong: list[str] = []
+    places: dict[Path, set[str]] = {}
+    pages = {page: page.read_text(encoding="utf-8") for page in sorted(site.resolve().rglob("*.html"))}
+    for page, text in pages.items():
+        places[page] = set(re.findall(r'\b(?:id|name)="([^"]+)"', text))
+    for page, text in pages.items():
+        for tag, link in re.findall(r"""<(\w+)\b[^>]*?\b(?:href|src)=["']([^"']+)["']""", text):
+            parts = urlsplit(html.unescape(link))
+            if parts.scheme or parts.netloc:
+                if tag != "a" and parts.scheme != "data":
+                    wrong.append(f"{page.relative_to(site.resolve())}: {link} is loaded from the network")
+                continue
+            to = (page.parent / unquote(parts.path)).resolve() if parts.path else page
+            to = to / "index.html" if to.is_dir() else to
+            mark = unquote(parts.fragment)
+            if not to.exists() or (mark not in ("", "top") and to in places and mark not in places[to]):
+                wrong.append(f"{page.relative_to(site.resolve())}: {link} leads nowhere")
+    return wrong
 
 
 def main() -> None:
@@ -133,6 +162,8 @@ def main() -> None:
     )
     if not quick:
         fortran()
+        if wrong := broken(SITE):
+            sys.exit("\n".join(wrong[:40]))
     print(f"Site: {SITE / 'index.html'}")
 
 

@@ -3,8 +3,9 @@
     python tools/verification_book.py [--pages | --trials]
 
 Runs what the cases of cases/ name, keeps what was found in build/verification.json, so that a run that was broken off
-goes on, and writes the book with a scatter plot for each quantity. `--pages` writes the book from what was kept;
-`--trials` writes its section of trials alone anew.
+goes on, and writes the book with a plot for each quantity. `--pages` writes the book from what was kept: values found
+before the program's last change are marked, those of another deck, of other data or of other rows are left out, and both are
+told. `--trials` writes the section of trials alone anew.
 """
 
 import argparse
@@ -14,6 +15,7 @@ import math
 import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from statistics import mean, stdev
 from typing import Any
@@ -26,6 +28,8 @@ sys.path[:0] = [str(ROOT / "tests" / "cases"), str(ROOT / "tools")]
 
 from expectations import KINDS, Case, Row, load_cases, pick, results_of  # noqa: E402
 from verification_quantities import QUANTITIES, quantity_of  # noqa: E402
+
+from extrados.schema.files import SHIPPED  # noqa: E402
 
 TRIALS = "## Trials"
 TITLES = {
@@ -44,6 +48,8 @@ MARKS = {"exact": "o", "peer": "s", "thesis": "^", "experiment": "D"}
 LOOSE = 0.15
 #: Measured numbers of one folder from which on bias and scatter are told
 ENOUGH = 5
+#: Mark of what was found before the program's last change
+OLDER = "*"
 #: What a row of a measured curve compares
 COMPARED = {
     "peak_ratio": "peak", "tail_ratios[0]": "tail at 75 % of the peak", "tail_ratios[1]": "tail at 50 %",
@@ -53,11 +59,12 @@ COMPARED = {
 
 @dataclass(frozen=True)
 class Found:
-    """A row of a case and what the program gave for it."""
+    """A row of a case and what the program gave for it; `older`: before the program's last change."""
 
     case: str
     row: Row
     value: Any
+    older: bool = False
 
     @property
     def quantity(self) -> str:
@@ -66,7 +73,7 @@ class Found:
     @property
     def ratio(self) -> float | None:
         """Found over expected; None for words, and where zero is expected."""
-        if isinstance(self.row.value, str) or isinstance(self.value, str) or not self.value or not self.row.value:
+        if isinstance(self.row.value, str) or not isinstance(self.value, int | float) or not self.row.value:
             return None
         return float(self.value) / float(self.row.value)
 
@@ -90,7 +97,7 @@ def line(found: Found) -> str:
     """One row of a table."""
     row = found.row
     change = ", ".join(f"{k} = {v}" for k, v in row.change)
-    verdict = "" if row.fits(found.value) else " **differs**"
+    verdict = f"{OLDER if found.older else ''}{'' if row.fits(found.value) else ' **differs**'}"
     allowed = "" if isinstance(row.value, str) else f" ± {row.allowed:.2g}"
     note = f" ({row.note})" if row.note else ""
     return (
@@ -147,14 +154,12 @@ def slug(quantity: str) -> str:
 
 
 def plotted(rows: Iterable[Found]) -> list[Found]:
-    """The rows that a scatter plot can show: of positive numbers that were compared with something else."""
-    return [
-        found for found in rows if found.row.kind in PROOFS and (found.ratio or 0.0) > 0.0 and found.row.value > 0.0
-    ]
+    """The rows that a plot can show: of numbers that were compared with something else."""
+    return [found for found in rows if found.row.kind in PROOFS and found.ratio is not None]
 
 
 def draw(rows: list[Found]) -> None:
-    """A scatter plot for each quantity, found over expected on both axes' logarithms."""
+    """A plot for each quantity: found over expected, row by row as the book's tables have them."""
     import matplotlib
 
     matplotlib.use("svg")
@@ -168,25 +173,25 @@ def draw(rows: list[Found]) -> None:
         shown_rows = plotted(found for found in rows if found.quantity == quantity)
         if not shown_rows:
             continue
-        figure, axes = plt.subplots(figsize=(4.2, 4.2), layout="constrained")
-        numbers = [float(value) for found in shown_rows for value in (found.row.value, found.value)]
-        low, high = min(numbers) / 1.5, max(numbers) * 1.5
-        axes.plot([low, high], [low, high], color="0.3", lw=0.8, label="equal")
-        axes.fill_between(
-            [low, high], [0.85 * low, 0.85 * high], [1.15 * low, 1.15 * high], color="0.9", label="within 15 %"
-        )
+        figure, axes = plt.subplots(figsize=(5.4, 3.6), layout="constrained")
+        axes.axhspan(1.0 - LOOSE, 1.0 + LOOSE, color="0.92", lw=0, label=f"within {100 * LOOSE:.0f} %")
+        axes.axhline(1.0, color="0.3", lw=0.8)
+        first = 1
         for proof in PROOFS:
-            of = [found for found in shown_rows if found.row.kind == proof]
-            if of:
+            ratios = [found.ratio for found in shown_rows if found.row.kind == proof]
+            if ratios:
                 axes.plot(
-                    [found.row.value for found in of], [found.value for found in of], MARKS[proof], ms=4.5, mew=0.8,
-                    mfc="none", color=COLOURS[proof], label=f"{proof} ({len(of)})",
+                    range(first, first + len(ratios)), ratios, MARKS[proof], ms=4.5, mew=0.8, mfc="none",
+                    color=COLOURS[proof], label=f"{proof} ({len(ratios)})",
                 )  # fmt: skip
+            first += len(ratios)
+        low, high = axes.get_ylim()
         axes.set(
-            xscale="log", yscale="log", xlim=(low, high), ylim=(low, high), xlabel="expected (units of each row)",
-            ylabel="found", title=quantity, aspect="equal",
+            xlim=(0.0, first), ylim=(min(low, 1.0 - 1.5 * LOOSE), max(high, 1.0 + 1.5 * LOOSE)), title=quantity,
+            xlabel="row, by what it was compared with", ylabel="found over expected",
         )  # fmt: skip
-        axes.legend(frameon=False, fontsize=8, loc="upper left")
+        axes.xaxis.get_major_locator().set_params(integer=True)
+        figure.legend(frameon=False, fontsize=8, loc="outside lower center", ncols=3)
         figure.savefig(PLOTS / f"{slug(quantity)}.svg", metadata={"Date": None})
         plt.close(figure)
 
@@ -255,6 +260,8 @@ def with_trials_alone(book: str) -> str:
 def pages(rows: list[Found], book: str) -> str:
     """The whole book; `book`: what stood there before."""
     parts = ["# Verification book", "", "Written by `make verify` from `cases/`; do not edit.", "", *by_quantity(rows)]
+    if older := sum(found.older for found in rows):
+        parts += [f"{older} values, marked {OLDER}, were found before the program's last change.", ""]
     loose = [found for found in rows if found.loose and found.row.kind in PROOFS]
     parts += [
         f"## Rows that allow more than {100 * LOOSE:.0f} %", "", f"{len(loose)} rows prove less than the others.", "",
@@ -270,28 +277,64 @@ def pages(rows: list[Found], book: str) -> str:
     return "\n".join([*parts, *trials(book)])
 
 
-def sources() -> str:
-    """A checksum of all that computes."""
+def checksum(paths: Iterable[Path]) -> str:
+    """Of the bytes of files, and of their names."""
     total = hashlib.sha256()
-    for root, ends in (("fortran", "*.f90"), ("c", "*.[ch]"), ("python/extrados", "*.py")):
-        for path in sorted((ROOT / root).rglob(ends)):
-            total.update(path.read_bytes())
+    for path in sorted(paths):
+        data = path.read_bytes()
+        total.update(f"{path.relative_to(ROOT)} {len(data)} ".encode() + data)
     return total.hexdigest()
 
 
+def program() -> str:
+    """A checksum of all that computes."""
+    trees = (("fortran", "*.f90"), ("c", "*.[ch]"), ("python/extrados", "*.py"))
+    return checksum(path for root, ends in trees for path in (ROOT / root).rglob(ends))
+
+
+@cache
+def data_beside(folder: Path) -> str:
+    """A checksum of what decks of a folder may read: its files that are no decks, and what is shipped."""
+    shipped = [ROOT / "python" / "extrados" / file for file in SHIPPED.values()]
+    shipped += [path for path in (ROOT / "python/extrados/motions/spectra").iterdir() if path.is_file()]
+    return checksum([*shipped, *(path for path in folder.rglob("*") if path.is_file() and path.suffix != ".toml")])
+
+
+def asked_of(case: Case) -> dict[str, Any]:
+    """What the kept values of a case must agree in to be values of its rows: what it reads, and the rows' quantities."""
+    return {
+        "read": checksum([case.deck]) + data_beside(case.deck.parent),
+        "rows": [repr((row.quantity, row.change)) for row in case.rows],
+    }
+
+
+def from_kept(case: Case, kept: dict[str, Any], computed_by: str) -> list[Found] | None:
+    """The rows of a case with the values that were kept; None where none were, or of another deck, data or rows.
+
+    Values, tolerances and words of the expectations may have changed since: they do not enter what is computed.
+    """
+    was = kept.get(case.name, {})
+    if any(was.get(key) != value for key, value in asked_of(case).items()):
+        return None
+    older = was["program"] != computed_by
+    return [Found(case.name, row, value, older) for row, value in zip(case.rows, was["values"], strict=True)]
+
+
 def find(case: Case, kept: dict[str, Any], computed_by: str) -> list[Found]:
-    """What the program gives for the rows of a case; taken from what was kept where nothing has changed since."""
-    expected = case.deck.with_name(case.deck.stem + ".expect.toml").read_bytes()
-    state = hashlib.sha256(computed_by.encode() + case.deck.read_bytes() + expected).hexdigest()
-    if kept.get(case.name, {}).get("state") != state:
-        values: dict[int, Any] = {}
-        for change in dict.fromkeys(row.change for row in case.rows):
-            results = results_of(case, change)
-            values |= {i: pick(results, row.quantity) for i, row in enumerate(case.rows) if row.change == change}
-        kept[case.name] = {"state": state, "values": [values[i] for i in range(len(case.rows))]}
-        KEPT.parent.mkdir(exist_ok=True)
-        KEPT.write_text(json.dumps(kept), encoding="utf-8")
-    return [Found(case.name, row, value) for row, value in zip(case.rows, kept[case.name]["values"], strict=True)]
+    """What the program gives for the rows of a case; taken from what was kept where neither what computes nor what is read
+    has changed since."""
+    found = from_kept(case, kept, computed_by)
+    if found is not None and not any(row.older for row in found):
+        return found
+    values: dict[int, Any] = {}
+    for change in dict.fromkeys(row.change for row in case.rows):
+        results = results_of(case, change)
+        values |= {i: pick(results, row.quantity) for i, row in enumerate(case.rows) if row.change == change}
+    ordered = [values[i] for i in range(len(case.rows))]
+    kept[case.name] = {"program": computed_by, **asked_of(case), "values": ordered}
+    KEPT.parent.mkdir(exist_ok=True)
+    KEPT.write_text(json.dumps(kept), encoding="utf-8")
+    return [Found(case.name, row, value) for row, value in zip(case.rows, ordered, strict=True)]
 
 
 def main() -> int:
@@ -305,13 +348,17 @@ def main() -> int:
         BOOK.write_text(with_trials_alone(before), encoding="utf-8")
         return 0
     kept: dict[str, Any] = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}
-    computed_by = sources()
+    computed_by = program()
     rows: list[Found] = []
     for case in load_cases():
-        if options.pages and len(kept.get(case.name, {}).get("values", [])) != len(case.rows):
-            print(f"{case.name}: not kept, left out", file=sys.stderr)
-        elif options.pages:
-            rows += [Found(case.name, row, v) for row, v in zip(case.rows, kept[case.name]["values"], strict=True)]
+        if options.pages:
+            found = from_kept(case, kept, computed_by)
+            if found is None:
+                why = "kept values are of another state" if case.name in kept else "not kept"
+                print(f"{case.name}: {why}, left out", file=sys.stderr)
+            elif any(row.older for row in found):
+                print(f"{case.name}: kept values are older than the program, marked {OLDER}", file=sys.stderr)
+            rows += found or []
         else:
             rows += find(case, kept, computed_by)
             print(case.name, flush=True)

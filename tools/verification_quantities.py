@@ -4,6 +4,8 @@ import re
 
 #: Quantity -> patterns of `analysis.key` (indices left out) that belong to it; the first that fits wins
 QUANTITIES: dict[str, tuple[str, ...]] = {
+    "code check": (r"(?:local-mechanism|code-checks)\S*\.", r"checks\."),
+    "ground motion and spectrum": (r"^motion", r"^shake-table"),
     "displacement": (r"displacement_m$", r"permanent_elongation"),
     "tail of a load curve": (r"measured\.tail_ratios", r"\.last_load_N$"),
     "event of sequentially linear analysis": (
@@ -28,7 +30,6 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
         r"line_residual",
         r"complementarity",
         r"violation_ratio",
-        r"rest_error",
     ),
     "hinge place": (r"hinges(?:\.joint|\.side|$)", r"worst_place", r"mechanisms\.", r"weakest", r"crack_height_ratio"),
     "friction": (r"required_friction", r"friction_threshold"),
@@ -39,11 +40,15 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
         r"thrust_at_rest",
         r"least_part_of_joints",
     ),
-    "force in a tie, a wall or a restraint": (r"ties(?:_opposite)?\.", r"bars\.", r"walls\.", r"restraints\."),
+    "force in a tie, a wall or a restraint": (
+        r"ties(?:_opposite)?\.",
+        r"bars\.",
+        r"pushover\S*\.walls\.",
+        r"restraints\.",
+    ),
     "movement of supports": (r"movement_at_fall", r"openings\."),
     "angle of tilt": (r"tilt_angle",),
     "capacity under live load": (r"moving-load\S*\.(?:safety_factor|adequacy_factor|collapse_load_N|status)",),
-    "code check": (r"(?:local-mechanism|code-checks)\S*\.", r"checks\."),
     "assessment": (r"^assess", r"cross_check", r"agreement$"),
     "failing amplitude or duration of a pulse": (
         r"durations_s",
@@ -74,7 +79,6 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
         r"margin",
     ),
     "restitution": (r"restitution", r"rebound$"),
-    "ground motion and spectrum": (r"^motion", r"^shake-table"),
     "frequency and period": (r"frequency_parameter", r"period_s$"),
     "damping and stiffness of contacts": (r"damping_ratio", r"critical_beta", r"joint_stiffness"),
     "time and number of impacts": (r"impact_times", r"impacts$", r"half_cycle", r"collapse_time"),

@@ -1,12 +1,12 @@
 !> Discrete elements of the plane: blocks behind a handle, built in steps, and what a run leaves of them.
 !>
-!> create, laws, joints, start, moves, surroundings, rigid; then api_dem_run; then bodies, contacts and effort tell more
-!> of the last run. Body numbers are 1-based; mass 0 marks a support.
+!> create, laws, joints, start, moves, surroundings; then api_dem_run; then bodies and contacts tell more of the last
+!> run. Body numbers are 1-based; mass 0 marks a support.
 module api_dem
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: create, laws, joints, start, moves, surroundings, rigid, bodies, contacts, effort
+   public :: create, laws, joints, start, moves, surroundings, bodies, contacts
 
 contains
 
@@ -141,29 +141,6 @@ contains
       call handle_leave(handle)
    end subroutine surroundings
 
-   !> Contacts without springs instead of the joints' stiffness and damping
-   subroutine rigid(handle, used, quasi_static, rebound, status)
-      use common_handles, only : handle_leave
-      use common_status, only : status_ok, status_invalid_argument
-      use dem_plane_handle, only : built_blocks, blocks_take
-      integer(c_int64_t), intent(in) :: handle
-      integer(c_int), intent(in) :: used                      !! 1: rigid contacts
-      integer(c_int), intent(in) :: quasi_static              !! 1: every step starts from rest
-      real(c_double), intent(in) :: rebound                   !! coefficient of restitution at a contact point, 0 to 1
-      integer(c_int), intent(out) :: status
-      type(built_blocks), pointer :: built
-      call blocks_take(handle, built, status)
-      if (status /= status_ok) return
-      if (.not. (rebound >= 0.0_c_double .and. rebound <= 1.0_c_double)) then
-         status = status_invalid_argument
-      else
-         built%rigid = used /= 0
-         built%quasi_static = used /= 0 .and. quasi_static /= 0
-         built%rebound = rebound
-      end if
-      call handle_leave(handle)
-   end subroutine rigid
-
    !> The bodies at the end of the last run
    subroutine bodies(handle, nb, settled, bounces, airborne, status)
       use common_handles, only : handle_leave
@@ -219,28 +196,5 @@ contains
       found = int(closed, c_int)
       call handle_leave(handle)
    end subroutine contacts
-
-   !> What rigid contacts took in the last run
-   subroutine effort(handle, counts, residual, status)
-      use common_handles, only : handle_leave
-      use common_status, only : status_ok
-      use dem_plane_handle, only : blocks_run_take
-      use dem_plane_run, only : block_simulation
-      integer(c_int64_t), intent(in) :: handle
-      !> Steps, factorisations, most rounds of a step, steps that did not converge
-      integer(c_int), intent(out) :: counts(4)
-      real(c_double), intent(out) :: residual                 !! greatest violation over gravity's velocity in a step
-      integer(c_int), intent(out) :: status
-      type(block_simulation), pointer :: run
-      counts = 0
-      residual = 0.0_c_double
-      call blocks_run_take(handle, run, status)
-      if (status /= status_ok) return
-      associate (used => run%model%rigid)
-         counts = int([used%steps, used%factors, used%most_rounds, used%open_steps], c_int)
-         residual = used%residual
-      end associate
-      call handle_leave(handle)
-   end subroutine effort
 
 end module api_dem

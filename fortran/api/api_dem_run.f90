@@ -1,12 +1,12 @@
 !> Runs of discrete elements, of the plane (built by api_dem) or of space (api_dem3).
 !>
-!> options; then start and run, as often as wanted; then summary and history tell the last run. A run that pauses goes
-!> on where run is called again; its state can be kept, and taken back by resume instead of start.
+!> options and rigid; then start and run, as often as wanted; then summary, effort and history tell the last run. A run
+!> that pauses goes on where run is called again; its state can be kept, and taken back by resume instead of start.
 module api_dem_run
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: options, start, run, state_size, state, resume, summary, history
+   public :: options, rigid, start, run, state_size, state, resume, summary, effort, history
 
 contains
 
@@ -31,6 +31,28 @@ contains
          int(settle_steps), stop_at_rest /= 0, int(threads)), status)
       call handle_leave(handle)
    end subroutine options
+
+   !> Contacts without springs instead of the joints' stiffness and damping
+   subroutine rigid(handle, used, quasi_static, rebound, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_invalid_argument
+      use dem_handle, only : built_model, model_take
+      use dem_rigid, only : rigid_setting
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: used                      !! 1: rigid contacts
+      integer(c_int), intent(in) :: quasi_static              !! 1: every step starts from rest
+      real(c_double), intent(in) :: rebound                   !! coefficient of restitution at a contact point, 0 to 1
+      integer(c_int), intent(out) :: status
+      class(built_model), pointer :: built
+      call model_take(handle, built, status)
+      if (status /= status_ok) return
+      if (.not. (rebound >= 0.0_c_double .and. rebound <= 1.0_c_double)) then
+         status = status_invalid_argument
+      else
+         built%rigid = rigid_setting(used /= 0, quasi_static /= 0, rebound)
+      end if
+      call handle_leave(handle)
+   end subroutine rigid
 
    !> A run that has not begun, instead of the last one
    subroutine start(handle, nt, wanted, status)
@@ -167,6 +189,31 @@ contains
       end associate
       call handle_leave(handle)
    end subroutine summary
+
+   !> What rigid contacts took in the last run
+   subroutine effort(handle, counts, measures, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use dem_handle, only : run_take
+      use dem_rigid, only : rigid_solver
+      use dem_run, only : simulation
+      integer(c_int64_t), intent(in) :: handle
+      !> Steps, factorisations, most rounds of a step, steps that did not converge
+      integer(c_int), intent(out) :: counts(4)
+      !> Greatest violation over gravity's velocity in a step, and when that was [s]
+      real(c_double), intent(out) :: measures(2)
+      integer(c_int), intent(out) :: status
+      class(simulation), pointer :: run
+      class(rigid_solver), pointer :: solver
+      counts = 0
+      measures = 0.0_c_double
+      call run_take(handle, run, status)
+      if (status /= status_ok) return
+      solver => run%solver()
+      counts = int([solver%steps, solver%factors, solver%most_rounds, solver%open_steps], c_int)
+      measures = [solver%residual, solver%worst]
+      call handle_leave(handle)
+   end subroutine effort
 
    !> What the last run recorded
    subroutine history(handle, nb, nrate, nt, time, place, rate, energy, status)

@@ -5,7 +5,7 @@ module api_shell
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: shells, axes_of
+   public :: shells, axes_of, layers_of
 
 contains
 
@@ -63,5 +63,19 @@ contains
          return
       end do
    end subroutine axes_of
+
+   !> Where the layers of a shell lie, in thicknesses over the middle, and their shares of the thickness
+   subroutine layers_of(through, layers, height, share, status)
+      use shell_layers, only : layers_new, most_layers
+      integer(c_int), intent(in) :: through                   !! of the list shell_through
+      integer(c_int), intent(in) :: layers                    !! 1 to 15
+      real(c_double), intent(out) :: height(15)               !! zero beyond `layers`
+      real(c_double), intent(out) :: share(15)
+      integer(c_int), intent(out) :: status
+      real(c_double) :: z(most_layers), w(most_layers)
+      call layers_new(through, layers, z, w, status)
+      height(:) = z
+      share(:) = w
+   end subroutine layers_of
 
 end module api_shell

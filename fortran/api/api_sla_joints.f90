@@ -5,17 +5,13 @@ module api_sla_joints
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: joints
+   public :: joints, joints_between_shells
 
 contains
 
-   !> Joints of no thickness; their tooth tables measure openings (band 1)
+   !> Joints of no thickness in the plane; their tooth tables measure openings (band 1)
    subroutine joints(handle, elements, connect, property, choice, ripple, bad, status)
-      use common_status, only : status_ok, status_bad_index, status_invalid_argument, status_out_of_memory
-      use sla_group, only : element_group
-      use sla_handle, only : group_added, group_begun
-      use sla_interface, only : interface_group, interface_group_new, joint_law, joint_law_new
-      use sla_model, only : element_model
+      use sla_joint_handle, only : joints_added
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: elements
       integer(c_int), intent(in) :: connect(4, elements)      !! along the lower, back along the upper side
@@ -27,41 +23,27 @@ contains
       real(c_double), intent(in) :: ripple                    !! half-width of the steps of friction over the friction
       integer(c_int), intent(out) :: bad                      !! element without area or normal
       integer(c_int), intent(out) :: status
-      type(element_model), pointer :: model
-      type(interface_group), allocatable :: new_joints
-      class(element_group), allocatable :: group
-      type(joint_law) :: strength
-      integer :: info
+      real(c_double) :: none(0, 3, 0)
       !f2py threadsafe
-      bad = 0
-      call group_begun(handle, connect, choice(1:3, :), model, status)
-      if (status /= status_ok) return
-      allocate (new_joints, stat=info)
-      if (any(choice(4, :) < 0)) then
-         status = status_bad_index
-      else if (.not. (all(property(3:4, :) > 0.0_c_double) .and. all(property(6, :) > 0.0_c_double) .and. &
-                      ripple > 0.0_c_double .and. ripple < 0.25_c_double)) then
-         status = status_invalid_argument
-      else if (info /= 0) then
-         status = status_out_of_memory
-      else
-         call joint_law_new(int(elements), strength, status)
-      end if
-      if (status == status_ok) then
-         strength%kn(:) = property(3, :)
-         strength%ks(:) = property(4, :)
-         strength%friction(:) = property(5, :)
-         strength%small(:) = property(6, :)
-         strength%table(:) = choice(1, :)
-         strength%crush_table(:) = choice(2, :)
-         strength%slip_table(:) = choice(3, :)
-         strength%dry(:) = choice(4, :)
-         strength%ripple = ripple
-         call interface_group_new(property(1:2, :), property(7:8, :), strength, model%teeth, model%options, &
-            new_joints, bad, status)
-      end if
-      call move_alloc(new_joints, group)
-      call group_added(handle, model, connect, 2, group, status)
+      call joints_added(handle, connect, property, choice, ripple, none, bad, status)
    end subroutine joints
+
+   !> Joints between shells; an element is one layer of a stretch, and arguments are those of `joints`
+   subroutine joints_between_shells(handle, elements, connect, property, choice, ripple, row, bad, status)
+      use sla_joint_handle, only : joints_added
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: elements
+      integer(c_int), intent(in) :: connect(4, elements)
+      real(c_double), intent(in) :: property(8, elements)     !! cosine and sine within the plane of the wall
+      integer(c_int), intent(in) :: choice(4, elements)
+      real(c_double), intent(in) :: ripple
+      !> Of the freedoms of an element the jumps across, along and out of the plane at its two points; the last stays
+      !> elastic, with the shear stiffness
+      real(c_double), intent(in) :: row(24, 3, 2 * elements)
+      integer(c_int), intent(out) :: bad
+      integer(c_int), intent(out) :: status
+      !f2py threadsafe
+      call joints_added(handle, connect, property, choice, ripple, row, bad, status)
+   end subroutine joints_between_shells
 
 end module api_sla_joints

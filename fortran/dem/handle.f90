@@ -10,6 +10,7 @@ module dem_handle
    use common_status, only : status_ok, status_invalid_argument, status_not_ready, status_out_of_memory
    use common_threads, only : threads_available
    use dem_clock, only : model_clock
+   use dem_rigid, only : rigid_setting
    use dem_run, only : run_begin, run_on, run_options, simulation
    use dem_state, only : state_load
    use, intrinsic :: iso_c_binding, only : c_f_pointer, c_funloc, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
@@ -20,6 +21,7 @@ module dem_handle
 
    type, abstract :: built_model
       type(run_options) :: options
+      type(rigid_setting) :: rigid                 !! contacts without springs
       logical :: ready = .false.                   !! the options were given
       class(simulation), allocatable :: run        !! the last one, as it was left
    contains

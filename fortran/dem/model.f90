@@ -7,26 +7,16 @@ module dem_model
    use dem_contacts, only : contact_pair, contact_set, overlap, measure, choose_edges
    use dem_law, only : joint_law, act
    use dem_loading, only : move_rate
-   use nonsmooth_impulses, only : impulse_problem
+   use dem_rigid, only : rigid_solver
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
    public :: block_model, rigid_contacts, advance, critical_step, prepare, predict, move, finish
 
    !> Contacts without springs, see dem_moreau
-   type :: rigid_contacts
-      logical :: used = .false.                !! instead of the joints' springs and dashpots
-      real(wp) :: rebound = 0.0_wp             !! Newton's coefficient of restitution at each contact point
-      integer :: pairs = -1                    !! for which the problem was made; -1: for none
-      type(impulse_problem) :: problem
-      integer, allocatable :: node(:)          !! (bodies) rank in the problem, 0 for supports
+   type, extends(rigid_solver) :: rigid_contacts
       real(wp), allocatable :: place(:, :)     !! (5, bodies) where the old velocities lead to
       integer, allocatable :: point(:, :)      !! (2, pairs) number of each contact point in the problem
-      integer :: steps = 0                     !! solved so far
-      integer :: factors = 0                   !! factorisations they took
-      integer :: most_rounds = 0               !! greatest number of rounds of one step
-      integer :: open_steps = 0                !! steps that did not converge
-      real(wp) :: residual = 0.0_wp            !! greatest violation, over the velocity that gravity gives in a step
    end type rigid_contacts
 
    type, extends(model_clock) :: block_model

@@ -1,19 +1,4 @@
-!> Steps without springs: rigid contacts that neither overlap nor pull, with Coulomb friction and Newton's restitution
-!> (Moreau 1988, Jean 1999: "Moreau-Jean" time stepping).
-!>
-!> Velocities live at half steps, as in the steps with springs. From v(n-1/2) and the places x(n), the impulses of all
-!> contacts in the step are found together (nonsmooth_impulses), such that no gap is negative at x(n+1):
-!>
-!>    g(x(n) + h v(n-1/2)) + h n.(v(n+1/2) - v(n-1/2)) >= 0,
-!>
-!> the gap at the place that the old velocity leads to, which knows how far corners have turned, and a linear step from
-!> there. Motion that stays on its contacts is so followed to second order (the SHAKE of molecular dynamics: Ryckaert,
-!> Ciccotti and Berendsen 1977); a contact that closes loses its parting velocity. With a rebound e a contact that
-!> closes faster than gravity would in a few steps leaves with e times its speed instead. An overlap that is there
-!> already is undone slowly.
-!>
-!> Quasi-static: every step starts from rest, so that nothing moves but what is moved or cannot stand, and time waits
-!> until what moves has come to rest.
+!> Steps of blocks of the plane without springs, see dem_rigid.
 module dem_moreau
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
@@ -21,37 +6,16 @@ module dem_moreau
    use dem_contacts, only : contact_pair, overlap, measure, choose_edges
    use dem_law, only : point_force, point_frame, frame_of, hand_over, relative
    use dem_model, only : block_model, finish, move, predict, prepare
-   use nonsmooth_impulses, only : along_normal, along_tangent, impulse_effort, impulse_problem, problem_new, &
-      problem_room, solve_impulses
+   use dem_rigid, only : number_bodies, parting, solve_step, wait_for_rest
+   use nonsmooth_impulses, only : along_normal, along_tangent, impulse_problem, in_plane, problem_room
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: advance_rigid, rigid_step
+   public :: advance_rigid, quickest
 
-   real(wp), parameter :: natural = 0.002_wp       !! of the time in which a block falls by its own size
-   real(wp), parameter :: unhurried = 0.1_wp       !! the same without inertia
-   real(wp), parameter :: tolerance = 1.0e-5_wp    !! of the velocity that gravity gives in a step
-   integer, parameter :: most_rounds = 200
-   real(wp), parameter :: at_rest = 1.0e-4_wp      !! of that velocity
-   integer, parameter :: most_waits = 5000
-   real(wp), parameter :: recovery = 2.0_wp        !! steps of gravity: velocity at which overlaps are undone
    real(wp), parameter :: closed_angle = 1.0e-4_wp !! at which a joint is closed [rad]
-   real(wp), parameter :: gentle = 5.0_wp          !! steps of gravity: slower contacts do not rebound
 
 contains
-
-   !> A step that resolves the motion of the smallest block [s]
-   pure function rigid_step(model) result(step)
-      type(block_model), intent(in) :: model
-      real(wp) :: step
-      step = merge(unhurried, natural, model%quasi_static) * sqrt(model%set%size / gravity_of(model))
-   end function rigid_step
-
-   pure function gravity_of(model) result(g)
-      type(block_model), intent(in) :: model
-      real(wp) :: g
-      g = max(hypot(model%gravity(1), model%gravity(2)), 1.0e-3_wp)
-   end function gravity_of
 
    !> Up to `count` steps; returns early where the contacts must be searched again
    subroutine advance_rigid(model, count, status)
@@ -63,12 +27,13 @@ contains
       if (model%rigid%pairs /= model%contacts%pairs) call make_ready(model, status)
       do n = 1, count
          if (status /= status_ok) return
-         call one_step(model)
+         call one_step(model, status)
+         if (status /= status_ok) return
          do k = 1, size(model%set%item)
             call move(model, model%set%item(k), model%stale)
          end do
          call finish(model)
-         if (model%quasi_static) call wait_for_rest(model)
+         if (model%quasi_static) call wait_for_rest(model%rigid, model%model_clock, quickest(model))
          if (model%stale) then
             model%rigid%pairs = -1
             return
@@ -76,11 +41,10 @@ contains
       end do
    end subroutine advance_rigid
 
-   !> Without inertia time stands still until all has come to rest, or fallen
-   pure subroutine wait_for_rest(model)
-      type(block_model), intent(inout) :: model
+   !> Greatest speed of a body [m/s]
+   pure function quickest(model) result(speed)
+      type(block_model), intent(in) :: model
       real(wp) :: speed
-      logical :: moves
       integer :: k
       speed = 0.0_wp
       do k = 1, size(model%set%item)
@@ -88,63 +52,43 @@ contains
             if (.not. b%fixed) speed = max(speed, abs(b%vx) + abs(b%vy) + b%radius * abs(b%spin))
          end associate
       end do
-      moves = speed > at_rest * model%step * gravity_of(model)
-      model%waits = merge(model%waits + 1, 0, &
-         model%shaking .and. moves .and. model%waits < most_waits)
-   end subroutine wait_for_rest
+   end function quickest
 
    !> Order of the unknowns and room for the contact points, after a search
    subroutine make_ready(model, status)
       type(block_model), intent(inout) :: model
       integer(c_int), intent(out) :: status
-      integer, allocatable :: link(:, :)
-      integer :: k, nodes, links, points, failed
+      integer, allocatable :: bodies(:, :)
+      integer :: k, failed
 
       status = status_out_of_memory
-      points = 2 * model%contacts%pairs
-      associate (rigid => model%rigid)
-         if (.not. allocated(rigid%node)) then
-            allocate (rigid%node(size(model%set%item)), rigid%place(5, size(model%set%item)), stat=failed)
+      associate (rigid => model%rigid, pairs => model%contacts%pairs)
+         if (.not. allocated(rigid%place)) then
+            allocate (rigid%place(5, size(model%set%item)), stat=failed)
             if (failed /= 0) return
          end if
-         allocate (link(2, model%contacts%pairs), stat=failed)
-         if (failed /= 0) return
          if (allocated(rigid%point)) deallocate (rigid%point)
-         allocate (rigid%point(2, model%contacts%pairs), stat=failed)
+         allocate (rigid%point(2, pairs), bodies(2, pairs), stat=failed)
          if (failed /= 0) return
-         nodes = 0
-         do k = 1, size(model%set%item)
-            rigid%node(k) = 0
-            if (model%set%item(k)%fixed) cycle
-            nodes = nodes + 1
-            rigid%node(k) = nodes
+         do k = 1, pairs
+            bodies(:, k) = model%contacts%pair(k)%bodies
          end do
-         links = 0
-         do k = 1, model%contacts%pairs
-            associate (bodies => model%contacts%pair(k)%bodies)
-               if (any(rigid%node(bodies) == 0)) cycle
-               links = links + 1
-               link(:, links) = rigid%node(bodies)
-            end associate
-         end do
-         call problem_new(nodes, link(:, :links), rigid%problem, status)
-         if (status == status_ok) call problem_room(rigid%problem, points, status)
+         call number_bodies(rigid, in_plane, model%set%item%fixed, bodies, status)
+         if (status == status_ok) call problem_room(rigid%problem, 2 * pairs, status)
          if (status /= status_ok) return
          do k = 1, size(model%set%item)
             if (rigid%node(k) == 0) cycle
-            rigid%node(k) = rigid%problem%matrix%rank(rigid%node(k))
             associate (b => model%set%item(k), at => 3 * rigid%node(k))
                rigid%problem%mass(at - 2:at) = [b%mass, b%mass, b%inertia]
             end associate
          end do
-         rigid%pairs = model%contacts%pairs
       end associate
    end subroutine make_ready
 
    !> Forces of all contacts in the next step, added to the bodies
-   subroutine one_step(model)
+   subroutine one_step(model, status)
       type(block_model), intent(inout) :: model
-      type(impulse_effort) :: effort
+      integer(c_int), intent(out) :: status         !! not_finite where a velocity is no number, else ok
       integer :: k
 
       call prepare(model)
@@ -178,12 +122,7 @@ contains
          do k = 1, model%contacts%pairs
             call gather(model, k)
          end do
-         call solve_impulses(problem, tolerance * model%step * gravity_of(model), most_rounds, effort)
-         rigid%steps = rigid%steps + 1
-         rigid%factors = rigid%factors + effort%factors
-         rigid%most_rounds = max(rigid%most_rounds, effort%rounds)
-         if (.not. effort%converged) rigid%open_steps = rigid%open_steps + 1
-         rigid%residual = max(rigid%residual, effort%residual / (model%step * gravity_of(model)))
+         call solve_step(rigid, model%model_clock, status)
          do k = 1, model%contacts%pairs
             call act_rigidly(model, model%contacts%pair(k), rigid%point(:, k))
          end do
@@ -245,7 +184,8 @@ contains
                      end if
                   end associate
                end do
-               problem%shift(along_normal, n) = still_n + parting(model, now%gap(i), next%gap(i), u_n + still_n)
+               problem%shift(along_normal, n) = still_n &
+                  + parting(rigid, model%step, now%gap(i), next%gap(i), u_n + still_n)
                problem%shift(along_tangent, n) = still_t
                problem%friction(n) = model%law(pair%law)%friction
                problem%impulse(:, n) = model%kick * [pair%point(i)%spring_n, pair%point(i)%spring_s]
@@ -265,23 +205,6 @@ contains
       problem%row(:, :, along_tangent, point(2)) = problem%row(:, :, along_tangent, point(1))
       problem%shift(along_tangent, point(2)) = problem%shift(along_tangent, point(1))
    end subroutine share_friction
-
-   !> What is added to the parting velocity of a contact: what remains must not be negative [m/s]
-   pure function parting(model, gap, next_gap, u_n) result(shift)
-      type(block_model), intent(in) :: model
-      real(wp), intent(in) :: gap                   !! at the start of the step [m]
-      real(wp), intent(in) :: next_gap              !! at the place that the old velocities lead to [m]
-      real(wp), intent(in) :: u_n                   !! parting velocity of the last step [m/s]
-      real(wp) :: shift
-      real(wp) :: speed
-      speed = model%step * gravity_of(model)
-      if (model%rigid%rebound > 0.0_wp .and. next_gap < 0.0_wp .and. u_n < -gentle * speed) then
-         shift = model%rigid%rebound * u_n
-         return
-      end if
-      shift = next_gap / model%step - u_n
-      if (gap < -recovery * speed * model%step) shift = shift - gap / model%step - recovery * speed
-   end function parting
 
    !> A body at another place, for `measure`
    pure subroutine place(at, b)

@@ -11,6 +11,7 @@ module dem_plane_handle
    use dem_loading, only : loading, support_move
    use dem_model, only : block_model
    use dem_plane_run, only : block_simulation
+   use dem_rigid, only : set_rigid
    use dem_run, only : run_record_new
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
@@ -28,9 +29,6 @@ module dem_plane_handle
       real(wp) :: gravity(2) = 0.0_wp               !! [m/s^2]
       real(wp) :: mass_damping = 0.0_wp             !! alpha [1/s]
       real(wp) :: domain(4) = 0.0_wp                !! left, right, bottom, top of the scene [m]
-      logical :: rigid = .false.                    !! contacts without springs, see dem_moreau
-      logical :: quasi_static = .false.
-      real(wp) :: rebound = 0.0_wp
    contains
       procedure :: new_run
    end type built_blocks
@@ -252,9 +250,8 @@ contains
       model%gravity = built%gravity
       model%load%moving_base = built%load%moving_base
       model%mass_damping = built%mass_damping
-      model%rigid%used = built%rigid
-      model%quasi_static = built%quasi_static
-      model%rigid%rebound = built%rebound
+      call set_rigid(model%rigid, model%model_clock, built%rigid, hypot(model%gravity(1), model%gravity(2)), &
+         model%set%size, sum(model%set%item%mass))
    end subroutine start_model
 
    !> Contact points that are closed at the end of the last run; counts them, writes as many as there is room for

@@ -1,19 +1,18 @@
 !> What a run of blocks of the plane is made of: the hooks of dem_run.
 module dem_plane_run
-   use common_cancel, only : cancel_requested
    use common_kinds, only : wp
    use common_lists, only : stop_end => dem_stop_end, stop_collapse => dem_stop_collapse, &
       stop_left => dem_stop_left, stop_overlap => dem_stop_overlap
-   use common_status, only : status_ok, status_cancelled, status_invalid_argument, status_not_finite, &
-      status_out_of_memory
+   use common_status, only : status_ok, status_invalid_argument, status_not_finite, status_out_of_memory
    use dem_bodies, only : body
    use dem_clock, only : model_clock
    use dem_contacts, only : contact_pair, overlap, measure
-   use dem_energy, only : energy_terms, energy_residual
+   use dem_energy, only : energy_terms
    use dem_law, only : elastic_energy
    use dem_model, only : block_model, advance, critical_step
-   use dem_moreau, only : advance_rigid, rigid_step
-   use dem_run, only : simulation, any_step, energy_from_nowhere, model_sizes, rest_by_damping, several
+   use dem_moreau, only : advance_rigid, quickest
+   use dem_rigid, only : rigid_solver, suitable_step
+   use dem_run, only : simulation, any_step, model_sizes
    use dem_search, only : search
    use dem_tape, only : tape
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
@@ -26,11 +25,13 @@ module dem_plane_run
       real(wp) :: domain(4) = 0.0_wp         !! left, right, bottom, top of the scene [m]
    contains
       procedure :: clock => clock_of
+      procedure :: solver => solver_of
       procedure :: search => find_pairs
       procedure :: stable_step
       procedure :: advance => take_steps
       procedure :: energy => energy_now
       procedure :: agitation
+      procedure :: speed => greatest_speed
       procedure :: unbalanced
       procedure :: least_balanced
       procedure :: fastest
@@ -42,8 +43,6 @@ module dem_plane_run
       procedure :: sizes
       procedure :: make_room
       procedure :: walk
-      procedure :: find_rest
-      procedure :: missing
    end type block_simulation
 
 contains
@@ -53,6 +52,12 @@ contains
       type(model_clock), pointer :: clock
       clock => run%model%model_clock
    end function clock_of
+
+   function solver_of(run) result(solver)
+      class(block_simulation), intent(inout), target :: run
+      class(rigid_solver), pointer :: solver
+      solver => run%model%rigid
+   end function solver_of
 
    subroutine find_pairs(run, first_time, status)
       class(block_simulation), intent(inout) :: run
@@ -74,10 +79,10 @@ contains
       real(wp), intent(out) :: stable           !! [s]
       real(wp), intent(out) :: suitable         !! [s]
       integer(c_int), intent(out) :: status
-      if (run%model%rigid%used) then
+      if (run%model%rigid%setting%used) then
          status = status_ok
          stable = any_step
-         suitable = rigid_step(run%model)
+         suitable = suitable_step(run%model%rigid, run%model%quasi_static)
       else
          call critical_step(run%model, stable, status)
          suitable = run%options%fraction * stable
@@ -89,7 +94,7 @@ contains
       integer, intent(in) :: count
       integer(c_int), intent(out) :: status
       status = status_ok
-      if (run%model%rigid%used) then
+      if (run%model%rigid%setting%used) then
          call advance_rigid(run%model, count, status)
       else
          call advance(run%model, count, run%options%threads)
@@ -130,7 +135,7 @@ contains
          now%work = now%work + model%contacts%support_work
          do k = 1, model%contacts%pairs
             associate (pair => model%contacts%pair(k))
-               if (.not. model%rigid%used) now%elastic = now%elastic + elastic_energy(model%law(pair%law), pair)
+               if (.not. model%rigid%setting%used) now%elastic = now%elastic + elastic_energy(model%law(pair%law), pair)
                now%friction = now%friction + pair%loss_before(1) + sum(pair%point%friction_loss)
                now%damping = now%damping + pair%loss_before(2) + sum(pair%point%damping_loss)
                now%work = now%work + pair%support_work
@@ -138,29 +143,6 @@ contains
          end do
       end associate
    end function energy_now
-
-   !> Energy that came from nowhere, over the energy that went round; what rigid contacts take they must not give back,
-   !> or it came from nowhere too. Without inertia there is no ledger
-   function missing(run, energy) result(ratio)
-      class(block_simulation), intent(inout) :: run
-      type(energy_terms), intent(in) :: energy
-      real(wp) :: ratio
-      real(wp) :: still
-      ratio = 0.0_wp
-      if (run%model%quasi_static) return
-      if (.not. run%model%rigid%used) then
-         ratio = energy_from_nowhere(run, energy)
-         return
-      end if
-      associate (record => run%record, model => run%model)
-         ! Energy below which rigid contacts do not move: a fall by a millionth of the smallest block
-         still = 1.0e-6_wp * model%set%size * hypot(model%gravity(1), model%gravity(2)) &
-            * sum(model%set%item%mass)
-         record%taken = max(record%taken, energy%damping)
-         ratio = (abs(energy_residual(energy, record%start)) + record%taken - energy%damping) &
-            / max(record%round, record%start%elastic, still, tiny(1.0_wp))
-      end associate
-   end function missing
 
    !> Twice the kinetic energy of the half step [J]
    function agitation(run) result(energy)
@@ -170,6 +152,13 @@ contains
          energy = sum(b%mass * (b%vx**2 + b%vy**2) + b%inertia * b%spin**2)
       end associate
    end function agitation
+
+   !> Greatest speed of a body [m/s]
+   function greatest_speed(run) result(speed)
+      class(block_simulation), intent(in) :: run
+      real(wp) :: speed
+      speed = quickest(run%model)
+   end function greatest_speed
 
    !> Greatest unbalanced force over weight, and moment over weight times radius
    function unbalanced(run) result(ratio)
@@ -270,7 +259,7 @@ contains
    subroutine forget_settling(run)
       class(block_simulation), intent(inout) :: run
       integer :: k, i
-      associate (contacts => run%model%contacts, b => run%model%set%item, rigid => run%model%rigid)
+      associate (contacts => run%model%contacts, b => run%model%set%item)
          do k = 1, contacts%pairs
             do i = 1, 2
                associate (point => contacts%pair(k)%point(i))
@@ -290,11 +279,6 @@ contains
          b%mass_loss = 0.0_wp
          b%bounces = 0
          b%airborne = 0.0_wp
-         rigid%steps = 0
-         rigid%factors = 0
-         rigid%most_rounds = 0
-         rigid%open_steps = 0
-         rigid%residual = 0.0_wp
       end associate
    end subroutine forget_settling
 
@@ -317,56 +301,6 @@ contains
          end do
       end associate
    end subroutine put_down
-
-   !> By kinetic damping on springs, or without inertia where contacts are rigid
-   subroutine find_rest(run, rests, status)
-      class(block_simulation), intent(inout), target :: run
-      logical, intent(out) :: rests
-      integer(c_int), intent(out) :: status
-      if (run%model%rigid%used) then
-         call rest_by_waiting(run, rests, status)
-      else
-         call rest_by_damping(run, rests, status)
-      end if
-   end subroutine find_rest
-
-   !> Steps without inertia, until gravity moves nothing any more; gaps close meanwhile
-   subroutine rest_by_waiting(run, rests, status)
-      class(block_simulation), intent(inout), target :: run
-      logical, intent(out) :: rests
-      integer(c_int), intent(out) :: status
-      integer, parameter :: most = 20000
-      logical :: quasi_static
-      real(wp) :: speed
-
-      rests = .false.
-      status = status_ok
-      quasi_static = run%model%quasi_static
-      run%model%quasi_static = .true.
-      do while (run%record%settling < min(most, run%options%settle_steps))
-         call several(run, 1, status)
-         if (status /= status_ok) return
-         run%record%settling = run%record%settling + 1
-         associate (b => run%model%set%item)
-            speed = maxval(abs(b%vx) + abs(b%vy) + b%radius * abs(b%spin))
-         end associate
-         if (.not. speed <= huge(speed)) then
-            status = status_not_finite
-            return
-         end if
-         rests = speed < run%options%settle_tolerance * run%model%kick &
-            * hypot(run%model%gravity(1), run%model%gravity(2))
-         if (rests) exit
-         call run%limits(run%options%settlement)
-         if (run%record%reason /= stop_end) exit
-         if (cancel_requested()) then
-            status = status_cancelled
-            return
-         end if
-      end do
-      run%model%quasi_static = quasi_static
-      call run%stop_all()
-   end subroutine rest_by_waiting
 
    function sizes(run) result(told)
       class(block_simulation), intent(in) :: run
@@ -401,17 +335,12 @@ contains
       type(tape), intent(inout) :: on
       integer(c_int), intent(out) :: status
       status = status_ok
-      associate (model => run%model, rigid => run%model%rigid, contacts => run%model%contacts)
+      associate (model => run%model, contacts => run%model%contacts)
          call on%pass(model%set%item, storage_size(model%set%item))
          call on%pass(model%pull, storage_size(model%pull))
          call on%pass(model%pull_before, storage_size(model%pull_before))
          call on%pass(model%base, storage_size(model%base))
          call on%pass(model%base_place, storage_size(model%base_place))
-         call on%pass(rigid%steps, storage_size(rigid%steps))
-         call on%pass(rigid%factors, storage_size(rigid%factors))
-         call on%pass(rigid%most_rounds, storage_size(rigid%most_rounds))
-         call on%pass(rigid%open_steps, storage_size(rigid%open_steps))
-         call on%pass(rigid%residual, storage_size(rigid%residual))
          call on%pass(contacts%pairs, storage_size(contacts%pairs))
          call on%pass(contacts%pair, storage_size(contacts%pair))
          call on%pass(contacts%row, storage_size(contacts%row))

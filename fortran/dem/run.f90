@@ -11,12 +11,12 @@ module dem_run
    use dem_clock, only : model_clock
    use dem_energy, only : energy_terms, energy_residual, energy_row
    use dem_loading, only : movement_end
+   use dem_rigid, only : forget_effort, rigid_solver
    use dem_tape, only : tape
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: run_options, run_record, run_record_new, simulation, run_begin, run_on, several, any_step, model_sizes, &
-      rest_by_damping, energy_from_nowhere
+   public :: run_options, run_record, run_record_new, simulation, run_begin, run_on, any_step, model_sizes
 
    !> Greatest stable step where any step is stable [s]
    real(wp), parameter :: any_step = huge(1.0_wp)
@@ -69,11 +69,13 @@ module dem_run
       type(run_record) :: record
    contains
       procedure(clock_of), deferred :: clock            !! of the model
+      procedure(solver_of), deferred :: solver          !! of its rigid contacts; not used where there are springs
       procedure(find_pairs), deferred :: search         !! who is near whom
       procedure(find_steps), deferred :: stable_step    !! and the one to take where the options name none
       procedure(take_steps), deferred :: advance        !! up to so many steps, fewer where pairs must be searched again
       procedure(tell_energy), deferred :: energy        !! at the time of the last forces
       procedure(tell_number), deferred :: agitation     !! what moves while it settles, like a kinetic energy [J]
+      procedure(tell_number), deferred :: speed         !! greatest of any body [m/s]
       procedure(tell_number), deferred :: unbalanced    !! greatest unbalanced force over weight, or moment
       procedure(tell_body), deferred :: least_balanced  !! the mobile body farthest from balance
       procedure(tell_body), deferred :: fastest         !! the mobile body of the greatest velocity
@@ -85,8 +87,6 @@ module dem_run
       procedure(lengths), deferred :: sizes             !! what a state has in common with the model; its lengths
       procedure(allocate_like), deferred :: make_room   !! for a state of such lengths
       procedure(walk_through), deferred :: walk         !! everything of the model that changes, always in this order
-      procedure :: find_rest => rest_by_damping
-      procedure :: missing => energy_from_nowhere
    end type simulation
 
    abstract interface
@@ -96,6 +96,13 @@ module dem_run
          class(simulation), intent(inout), target :: run
          type(model_clock), pointer :: clock
       end function clock_of
+
+      function solver_of(run) result(solver)
+         import :: simulation, rigid_solver
+         implicit none
+         class(simulation), intent(inout), target :: run
+         class(rigid_solver), pointer :: solver
+      end function solver_of
 
       subroutine find_pairs(run, first_time, status)
          import :: simulation, c_int
@@ -239,16 +246,23 @@ contains
       class(simulation), intent(inout), target :: run
       integer(c_int), intent(out) :: status
       type(model_clock), pointer :: clock
+      class(rigid_solver), pointer :: solver
       logical :: rests
       clock => run%clock()
+      solver => run%solver()
       clock%shaking = .false.
-      call run%find_rest(rests, status)
+      if (solver%setting%used) then
+         call rest_by_waiting(run, rests, status)
+      else
+         call rest_by_damping(run, rests, status)
+      end if
       if (status /= status_ok) return
       if (.not. rests) then
          run%record%reason = stop_unsettled
          if (run%record%blamed(1) == 0) run%record%blamed(1) = run%least_balanced()
       end if
       call run%forget_settling()
+      call forget_effort(solver)
       clock%t = 0.0_wp
       clock%drift = 0.0_wp
       clock%steps = 0
@@ -299,6 +313,45 @@ contains
       clock%step = min(clock%step, step)   ! the step may have been cut as contacts formed
       run%record%settling = n
    end subroutine rest_by_damping
+
+   !> Rest on rigid contacts: steps without inertia, until gravity moves nothing any more; gaps close meanwhile
+   subroutine rest_by_waiting(run, rests, status)
+      class(simulation), intent(inout), target :: run
+      logical, intent(out) :: rests
+      integer(c_int), intent(out) :: status
+      integer, parameter :: most = 20000
+      type(model_clock), pointer :: clock
+      class(rigid_solver), pointer :: solver
+      logical :: quasi_static
+      real(wp) :: speed
+
+      rests = .false.
+      status = status_ok
+      clock => run%clock()
+      solver => run%solver()
+      quasi_static = clock%quasi_static
+      clock%quasi_static = .true.
+      do while (run%record%settling < min(most, run%options%settle_steps))
+         call several(run, 1, status)
+         if (status /= status_ok) return
+         run%record%settling = run%record%settling + 1
+         speed = run%speed()
+         if (.not. speed <= huge(speed)) then
+            status = status_not_finite
+            return
+         end if
+         rests = speed < run%options%settle_tolerance * clock%kick * solver%gravity
+         if (rests) exit
+         call run%limits(run%options%settlement)
+         if (run%record%reason /= stop_end) exit
+         if (cancel_requested()) then
+            status = status_cancelled
+            return
+         end if
+      end do
+      clock%quasi_static = quasi_static
+      call run%stop_all()
+   end subroutine rest_by_waiting
 
    !> Exactly `count` steps, with searches in between
    subroutine several(run, count, status)
@@ -359,7 +412,7 @@ contains
             energy = run%energy()
             record%round = max(record%round, energy%kinetic + abs(energy%potential - record%start%potential) &
                + energy%friction + energy%damping + energy%mass_damping)
-            record%residual = max(record%residual, run%missing(energy))
+            record%residual = max(record%residual, energy_from_nowhere(run, energy))
             ! Time may have stood still meanwhile.
             if (due .and. clock%quasi_static) due = clock%t > record%wanted(record%points + 1)
             if (due) call write_down(run, energy)
@@ -383,13 +436,31 @@ contains
       end associate
    end subroutine run_on
 
-   !> Energy that came from nowhere, over the energy that went round
+   !> Energy that came from nowhere, over the energy that went round; what rigid contacts take they must not give back,
+   !> or it came from nowhere too. Without inertia there is no ledger
    function energy_from_nowhere(run, energy) result(ratio)
-      class(simulation), intent(inout) :: run
+      class(simulation), intent(inout), target :: run
       type(energy_terms), intent(in) :: energy       !! now
       real(wp) :: ratio
-      ratio = abs(energy_residual(energy, run%record%start)) &
-         / max(run%record%round, run%record%start%elastic, tiny(1.0_wp))
+      !> Of the fall of all blocks by the size of the smallest: energy below which rigid contacts do not move
+      real(wp), parameter :: still = 1.0e-6_wp
+      type(model_clock), pointer :: clock
+      class(rigid_solver), pointer :: solver
+      real(wp) :: nowhere, round
+      clock => run%clock()
+      solver => run%solver()
+      ratio = 0.0_wp
+      if (clock%quasi_static) return
+      associate (record => run%record)
+         nowhere = abs(energy_residual(energy, record%start))
+         round = max(record%round, record%start%elastic, tiny(1.0_wp))
+         if (solver%setting%used) then
+            record%taken = max(record%taken, energy%damping)
+            nowhere = nowhere + record%taken - energy%damping
+            round = max(round, still * solver%size * solver%gravity * solver%mass)
+         end if
+         ratio = nowhere / round
+      end associate
    end function energy_from_nowhere
 
    !> State at the time of the last forces: half a step before the velocities, a step before the places

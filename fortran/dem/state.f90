@@ -5,6 +5,7 @@
 module dem_state
    use common_status, only : status_ok, status_invalid_argument
    use dem_clock, only : model_clock
+   use dem_rigid, only : rigid_solver, walk_effort
    use dem_run, only : model_sizes, simulation
    use dem_tape, only : tape, loading, saving, per_word
    use, intrinsic :: iso_c_binding, only : c_f_pointer, c_int, c_int64_t, c_loc
@@ -87,6 +88,7 @@ contains
       class(simulation), intent(inout), target :: run
       integer(c_int), intent(out) :: status
       type(model_clock), pointer :: clock
+      class(rigid_solver), pointer :: solver
       integer :: n
       call run%walk(on, status)
       if (status /= status_ok) return
@@ -101,6 +103,8 @@ contains
       call on%pass(clock%waits, storage_size(clock%waits))
       call on%pass(clock%shaking, storage_size(clock%shaking))
       call on%pass(clock%stale, storage_size(clock%stale))
+      solver => run%solver()
+      call walk_effort(solver, on)
       associate (record => run%record)
          n = record%points
          call on%pass(record%wanted, storage_size(record%wanted))

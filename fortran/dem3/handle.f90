@@ -5,6 +5,7 @@ module dem3_handle
    use common_status, only : status_ok, status_bad_index, status_invalid_argument, status_not_ready, &
       status_out_of_memory, status_wrong_handle
    use dem_handle, only : built_model, model_register, model_take
+   use dem_rigid, only : set_rigid
    use dem_run, only : run_record_new
    use dem3_bodies, only : body_set, body_set_new, copy_bodies
    use dem3_law, only : joint_law
@@ -170,6 +171,8 @@ contains
          model%law_of(:, :) = built%law_of
          model%gravity = built%gravity
          model%way = built%way
+         call set_rigid(model%rigid, model%model_clock, built%rigid, norm2(model%gravity), model%set%size, &
+            sum(model%set%item%mass))
          do k = 1, size(model%set%item)
             associate (b => model%set%item(k))
                if (b%fixed) cycle

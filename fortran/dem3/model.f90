@@ -4,13 +4,21 @@ module dem3_model
    use common_status, only : status_ok, status_out_of_memory
    use dem_clock, only : model_clock, begin_step, end_step
    use dem_energy, only : energy_terms
+   use dem_rigid, only : rigid_solver
    use dem3_bodies, only : body, body_set, cross, place, spin_of, turn_freely
    use dem3_law, only : act, contact_pair, contact_point, drop_points, elastic_energy, find_points, joint_law
    use dem3_patch, only : measure
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: solid_model, set_distances, search, colour, advance, critical_step, energy_now
+   public :: solid_model, rigid_contacts, set_distances, search, colour, advance, critical_step, energy_now, prepare, &
+      predict, move, look_anew
+
+   !> Contacts without springs, see dem3_moreau
+   type, extends(rigid_solver) :: rigid_contacts
+      type(body), allocatable :: next(:)              !! (bodies) where the old velocities lead to
+      integer, allocatable :: number(:)               !! of each contact point in the problem, 0 where it cannot press
+   end type rigid_contacts
 
    type, extends(model_clock) :: solid_model
       type(body_set) :: set
@@ -32,6 +40,7 @@ module dem3_model
       real(wp) :: wander = 0.0_wp                     !! a body that has moved farther is asked for that [m]
       real(wp) :: lost(2) = 0.0_wp                    !! by friction and dashpots of pairs that are no more [J]
       real(wp) :: support_work = 0.0_wp               !! of them [J]
+      type(rigid_contacts) :: rigid
    end type solid_model
 
 contains
@@ -362,12 +371,21 @@ contains
       type(contact_pair), intent(inout) :: pair
       associate (a => model%set%item(model%set%parts(pair%part(1))%owner), &
                  b => model%set%item(model%set%parts(pair%part(2))%owner))
-         if (pair%marks(1) /= a%marks .or. pair%marks(2) /= b%marks) then
-            call find_points(model%set, model%far, model%margin, pair)
-         end if
+         call look_anew(model, pair)
          if (pair%points > 0) call act(model%law(pair%law), model%kick, model%drift, a, b, pair)
       end associate
    end subroutine touch
+
+   !> Geometry of a pair, where a body has moved far enough
+   pure subroutine look_anew(model, pair)
+      type(solid_model), intent(in) :: model
+      type(contact_pair), intent(inout) :: pair
+      associate (a => model%set%item(model%set%parts(pair%part(1))%owner), &
+                 b => model%set%item(model%set%parts(pair%part(2))%owner))
+         if (pair%marks(1) == a%marks .and. pair%marks(2) == b%marks) return
+      end associate
+      call find_points(model%set, model%far, model%margin, pair)
+   end subroutine look_anew
 
    !> Body force and velocity of the ground in this step
    subroutine prepare(model)

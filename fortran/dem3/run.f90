@@ -5,10 +5,12 @@ module dem3_run
    use common_status, only : status_ok, status_invalid_argument, status_not_finite, status_out_of_memory
    use dem_clock, only : model_clock
    use dem_energy, only : energy_terms
-   use dem_run, only : model_sizes, simulation
+   use dem_rigid, only : rigid_solver, suitable_step
+   use dem_run, only : any_step, model_sizes, simulation
    use dem_tape, only : tape, loading
    use dem3_bodies, only : body, spin_of, turn_freely
    use dem3_law, only : contact_point
+   use dem3_moreau, only : advance_rigid, quickest
    use dem3_model, only : advance, colour, critical_step, model_energy => energy_now, search, set_distances, solid_model
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
@@ -20,11 +22,13 @@ module dem3_run
       real(wp) :: domain = 0.0_wp               !! displacement by which a body has left the scene [m]; 0: none
    contains
       procedure :: clock => clock_of
+      procedure :: solver => solver_of
       procedure :: search => find_pairs
       procedure :: stable_step
       procedure :: advance => take_steps
       procedure :: energy => energy_now
       procedure :: agitation
+      procedure :: speed => greatest_speed
       procedure :: unbalanced
       procedure :: least_balanced
       procedure :: fastest
@@ -45,6 +49,12 @@ contains
       type(model_clock), pointer :: clock
       clock => run%model%model_clock
    end function clock_of
+
+   function solver_of(run) result(solver)
+      class(solid_simulation), intent(inout), target :: run
+      class(rigid_solver), pointer :: solver
+      solver => run%model%rigid
+   end function solver_of
 
    subroutine find_pairs(run, first_time, status)
       class(solid_simulation), intent(inout) :: run
@@ -67,16 +77,27 @@ contains
       real(wp), intent(out) :: stable           !! [s]
       real(wp), intent(out) :: suitable         !! [s]
       integer(c_int), intent(out) :: status
-      call critical_step(run%model, stable, status)
-      suitable = run%options%fraction * stable
+      if (run%model%rigid%setting%used) then
+         status = status_ok
+         stable = any_step
+         suitable = suitable_step(run%model%rigid, run%model%quasi_static)
+      else
+         call critical_step(run%model, stable, status)
+         suitable = run%options%fraction * stable
+      end if
    end subroutine stable_step
 
    subroutine take_steps(run, count, status)
       class(solid_simulation), intent(inout) :: run
       integer, intent(in) :: count
       integer(c_int), intent(out) :: status
-      call advance(run%model, count, run%options%threads)
-      status = merge(status_out_of_memory, status_ok, any(run%model%pair(:run%model%pairs)%lacks_memory))
+      status = status_ok
+      if (run%model%rigid%setting%used) then
+         call advance_rigid(run%model, count, status)
+      else
+         call advance(run%model, count, run%options%threads)
+      end if
+      if (any(run%model%pair(:run%model%pairs)%lacks_memory)) status = status_out_of_memory
    end subroutine take_steps
 
    function energy_now(run) result(now)
@@ -93,6 +114,13 @@ contains
       now = model_energy(run%model)
       energy = now%kinetic
    end function agitation
+
+   !> Greatest speed of a body [m/s]
+   function greatest_speed(run) result(speed)
+      class(solid_simulation), intent(in) :: run
+      real(wp) :: speed
+      speed = quickest(run%model)
+   end function greatest_speed
 
    !> Greatest unbalanced force over weight, and moment over weight times radius
    function unbalanced(run) result(ratio)

@@ -6,7 +6,7 @@
 module mechanism_blow
    use common_kinds, only : wp
    use common_status, only : status_ok, status_bad_index, status_no_pattern, status_out_of_memory
-   use nonsmooth_impulses, only : along_normal, along_tangent, impulse_effort, impulse_problem, no_sliding, &
+   use nonsmooth_impulses, only : along_normal, along_tangent, impulse_effort, impulse_problem, in_plane, no_sliding, &
       problem_new, problem_room, solve_impulses
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -50,7 +50,7 @@ contains
          links = links + 1
          link(:, links) = side(:, j)
       end do
-      call problem_new(size(mass), link(:, :links), problem, status)
+      call problem_new(size(mass), in_plane, link(:, :links), problem, status)
       if (status /= status_ok) return
       call problem_room(problem, 2 * size(side, 2), status)
       if (status /= status_ok) return

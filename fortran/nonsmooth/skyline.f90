@@ -1,5 +1,6 @@
-!> Symmetric positive definite systems of bodies with three freedoms each, coupled pair by pair: an order that keeps the
-!> couplings near the diagonal, and Cholesky factors within the envelope ("skyline") of the matrix.
+!> Symmetric positive definite systems of bodies with three freedoms each in the plane or six in space, coupled pair by
+!> pair: an order that keeps the couplings near the diagonal, and Cholesky factors within the envelope ("skyline") of
+!> the matrix.
 !>
 !> Order: reverse Cuthill-McKee (George and Liu 1981, ch. 4). A chain of blocks has an envelope of two bodies, a wall
 !> one of about its shorter side.
@@ -9,13 +10,12 @@ module nonsmooth_skyline
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: skyline, skyline_new, skyline_add, skyline_factor, skyline_solve, freedoms
-
-   integer, parameter :: freedoms = 3
+   public :: skyline, skyline_new, skyline_add, skyline_factor, skyline_solve
 
    !> Row i holds the entries (i, first(i)) to (i, i) of the lower triangle, at a(start(i) + column)
    type :: skyline
       integer :: n = 0
+      integer :: freedoms = 0               !! of a body
       integer, allocatable :: first(:)
       integer, allocatable :: start(:)
       real(wp), allocatable :: a(:)
@@ -25,8 +25,9 @@ module nonsmooth_skyline
 contains
 
    !> Room for a matrix of `nodes` bodies and links between them, empty
-   subroutine skyline_new(nodes, link, matrix, status)
+   subroutine skyline_new(nodes, freedoms, link, matrix, status)
       integer, intent(in) :: nodes
+      integer, intent(in) :: freedoms           !! of a body
       integer, intent(in) :: link(:, :)         !! (2, links) nodes that are coupled
       type(skyline), intent(out) :: matrix
       integer(c_int), intent(out) :: status
@@ -34,6 +35,7 @@ contains
 
       status = status_out_of_memory
       matrix%n = freedoms * nodes
+      matrix%freedoms = freedoms
       allocate (matrix%first(matrix%n), matrix%start(matrix%n), matrix%rank(nodes), stat=failed)
       if (failed /= 0) return
       call order(nodes, link, matrix%rank, status)
@@ -155,9 +157,10 @@ contains
       integer, intent(in) :: first_rank
       integer, intent(in) :: second_rank
       real(wp), intent(in) :: factor
-      real(wp), intent(in) :: one(freedoms)      !! of the first body
-      real(wp), intent(in) :: other(freedoms)    !! of the second
-      integer :: i, j, row, column
+      real(wp), intent(in) :: one(:)             !! (freedoms) of the first body
+      real(wp), intent(in) :: other(:)           !! (freedoms) of the second
+      integer :: i, j, row, column, freedoms
+      freedoms = matrix%freedoms
       if (first_rank < second_rank) then
          do i = 1, freedoms
             row = freedoms * (second_rank - 1) + i

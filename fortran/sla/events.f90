@@ -134,7 +134,8 @@ contains
          else if (equilibrium .and. found%hi%value < unbounded) then
             call choose(model, found%hi)
          else if (found%lo%value > -unbounded .and. .not. equilibrium) then
-            ! A load that is never taken back is not raised either for a point that passed its limit by rounding
+            ! Force release holds the load: what has its lower limit above it (a crack that closes, a point that touches
+            ! its strength) is damaged at the load reached
             if (rules%release .and. model%recorded) found%lo%value = model%lambda
             call choose(model, found%lo)
          else

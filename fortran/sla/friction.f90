@@ -279,7 +279,7 @@ contains
       type(slider), intent(in) :: point
       real(wp), intent(inout) :: force(:)
       integer :: i
-      do i = 1, size(entries)
+      do i = 1, point%entries
          associate (q => point%index(i))
             if (q > 0 .and. q <= size(force)) force(q) = force(q) + entries(i)
          end associate
@@ -294,7 +294,7 @@ contains
       real(wp) :: total
       integer :: i
       total = 0.0_wp
-      do i = 1, size(entries)
+      do i = 1, point%entries
          if (point%index(i) > 0 .and. point%index(i) <= size(u)) total = total + entries(i) * u(point%index(i))
       end do
    end function product_of

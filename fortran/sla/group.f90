@@ -38,7 +38,6 @@ module sla_group
 
    real(wp), parameter :: unbounded = huge(1.0_wp)
    integer, parameter :: most_entries = 24, most_rank = 5
-   integer, parameter :: most_slider = 8
    !> Rows of a point's report, see plane and bar
    integer, parameter :: report_rows = 19
 
@@ -76,9 +75,10 @@ module sla_group
    type :: slider
       integer :: group = 0
       integer :: point = 0
-      integer(c_int) :: index(most_slider) = 0       !! equations, 0 held
-      real(wp) :: across(most_slider) = 0.0_wp       !! across.u is the jump across the joint,
-      real(wp) :: slip(most_slider) = 0.0_wp         !! slip.u that along it
+      integer :: entries = 0
+      integer(c_int) :: index(most_entries) = 0      !! equations, 0 held
+      real(wp) :: across(most_entries) = 0.0_wp      !! across.u is the jump across the joint,
+      real(wp) :: slip(most_entries) = 0.0_wp        !! slip.u that along it
       real(wp) :: area = 0.0_wp                      !! h acts on the nodes by -area slip [m^2]
       real(wp) :: law(2) = 0.0_wp                    !! h = law(1) across.u + law(2) slip.u [Pa/m]
       real(wp) :: held(2) = 0.0_wp                   !! h as it is, constant and per unit multiplier [Pa]

@@ -9,7 +9,7 @@ module sla_interface
       code_close => sla_event_close, code_open => sla_event_open, code_wear => sla_event_wear, &
       code_slide => sla_event_slide
    use common_status, only : status_ok, status_out_of_memory, status_bad_geometry
-   use sla_group, only : scan_result, slider, event_vectors, material_options, admitted, unbounded
+   use sla_group, only : scan_result, slider, event_vectors, material_options, admitted, unbounded, most_entries
    use sla_joint_points, only : joint_points, joint_law, joint_law_new, line, sticks, slides_up, slides_down, soft, &
       jump, nodal, across, along, shear, bond, bond_of, modulus, slips, is_closed, is_sliding, &
       scan_point
@@ -17,7 +17,7 @@ module sla_interface
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: interface_group, interface_group_new, joint_law, joint_law_new
+   public :: interface_group, interface_group_new, interface_between_shells, joint_law, joint_law_new
 
    !> Loads that are the same
    real(wp), parameter :: same = 1.0e-9_wp
@@ -109,23 +109,43 @@ contains
       status = status_ok
    end subroutine interface_group_new
 
+   !> Make the elements of a new group layers of joints between shells, whose nodes have six freedoms
+   subroutine interface_between_shells(group, row, status)
+      type(interface_group), intent(inout) :: group
+      real(wp), intent(in) :: row(:, :, :)         !! (24, 3, points), see joint_points
+      integer(c_int), intent(out) :: status
+      integer :: info
+      allocate (group%row(size(row, 1), 3, group%points), stat=info)
+      status = merge(status_ok, status_out_of_memory, info == 0)
+      if (info /= 0) return
+      group%freedoms = size(row, 1)
+      group%row(:, :, :) = row
+   end subroutine interface_between_shells
+
    pure subroutine matrix(group, element, k)
       class(interface_group), intent(in) :: group
       integer, intent(in) :: element
       real(wp), intent(out) :: k(:, :)
-      real(wp) :: n(8), t(8), kn, kt
+      real(wp) :: n(most_entries), t(most_entries), kn, kt
       type(line) :: law
-      integer :: p, i
+      integer :: p, i, f
       k = 0.0_wp
+      f = group%freedoms
       do p = 2 * element - 1, 2 * element
          law = along(group, element, p)
          kn = group%area(p) * across(group, element, p)
          kt = group%area(p) * law%k
          n = nodal(group, element, p, [1.0_wp, 0.0_wp])
          t = nodal(group, element, p, [0.0_wp, 1.0_wp])
-         do i = 1, 8
-            k(1:8, i) = k(1:8, i) + kn * n * n(i) + kt * t * t(i)
+         do i = 1, f
+            k(1:f, i) = k(1:f, i) + kn * n(1:f) * n(i) + kt * t(1:f) * t(i)
          end do
+         if (.not. allocated(group%row)) cycle
+         associate (w => group%row(:, 3, p))
+            do i = 1, f
+               k(1:f, i) = k(1:f, i) + group%area(p) * group%law%ks(element) * w * w(i)
+            end do
+         end associate
       end do
    end subroutine matrix
 
@@ -133,15 +153,23 @@ contains
       class(interface_group), intent(in) :: group
       real(wp), intent(in) :: u(0:)
       real(wp), intent(inout) :: f(0:)
-      real(wp) :: local(8), d(2)
+      real(wp) :: local(most_entries), d(2), pull
       type(line) :: law
-      integer :: e, p
+      integer :: e, p, i, n
       do e = 1, group%elements
          call group%gather(e, u, local)
          do p = 2 * e - 1, 2 * e
             law = along(group, e, p)
             d = jump(group, e, p, local)
             call add(group, e, p, [across(group, e, p) * d(1), law%k * d(2)], f)
+            if (.not. allocated(group%row)) cycle
+            n = group%freedoms
+            associate (w => group%row(:, 3, p))
+               pull = group%area(p) * group%law%ks(e) * dot_product(w, local(1:n))
+               do i = 1, n
+                  f(group%equation(i, e)) = f(group%equation(i, e)) + pull * w(i) * group%factor(i, e)
+               end do
+            end associate
          end do
       end do
    end subroutine force
@@ -152,10 +180,10 @@ contains
       integer, intent(in) :: e, p
       real(wp), intent(in) :: s(2)      !! sigma, tau [Pa]
       real(wp), intent(inout) :: f(0:)
-      real(wp) :: part(8)
+      real(wp) :: part(most_entries)
       integer :: i
       part = nodal(group, e, p, group%area(p) * s)
-      do i = 1, 8
+      do i = 1, group%freedoms
          f(group%equation(i, e)) = f(group%equation(i, e)) + part(i) * group%factor(i, e)
       end do
    end subroutine add
@@ -231,13 +259,17 @@ contains
       class(interface_group), intent(in) :: group
       integer, intent(in) :: point
       type(slider), intent(inout) :: as
-      integer :: e, p
+      integer :: e, p, n
       p = point
       e = (p + 1) / 2
       as%point = p
-      as%index = group%equation(:, e)
-      as%across = nodal(group, e, p, [1.0_wp, 0.0_wp]) * group%factor(:, e)
-      as%slip = nodal(group, e, p, [0.0_wp, 1.0_wp]) * group%factor(:, e)
+      n = group%freedoms
+      as%entries = n
+      as%index(1:n) = group%equation(:, e)
+      as%across = nodal(group, e, p, [1.0_wp, 0.0_wp])
+      as%across(1:n) = as%across(1:n) * group%factor(:, e)
+      as%slip = nodal(group, e, p, [0.0_wp, 1.0_wp])
+      as%slip(1:n) = as%slip(1:n) * group%factor(:, e)
       as%area = group%area(p)
       as%strength = -group%law%friction(e) * across(group, e, p)
       as%elastic = shear(group, e, p) - bond(group, e, p)
@@ -271,7 +303,7 @@ contains
    pure function excess(group, u) result(energy)
       class(interface_group), intent(in) :: group
       real(wp), intent(in) :: u(0:)
-      real(wp) :: energy, local(8), d(2)
+      real(wp) :: energy, local(most_entries), d(2)
       integer :: e, p
       energy = 0.0_wp
       do p = 1, group%points
@@ -287,7 +319,7 @@ contains
       class(interface_group), intent(in) :: group
       real(wp), intent(in) :: lambda
       real(wp), intent(in) :: u(0:)
-      real(wp) :: energy, local(8), d(2), friction
+      real(wp) :: energy, local(most_entries), d(2), friction
       integer :: e, p
       energy = 0.0_wp
       do p = 1, group%points
@@ -305,7 +337,7 @@ contains
       real(wp), intent(in) :: lambda
       real(wp), intent(in) :: ua(0:)
       real(wp), intent(in) :: ub(0:)
-      real(wp) :: local(8), other(8), d(2), friction, slip
+      real(wp) :: local(most_entries), other(most_entries), d(2), friction, slip
       integer :: e, p
       do p = 1, group%points
          if (.not. is_sliding(group, p)) cycle
@@ -329,7 +361,7 @@ contains
       real(wp), intent(in) :: ub(0:)
       type(event_vectors), intent(out) :: event
       integer, intent(out) :: tooth
-      real(wp) :: local(8), other(8), d(2), moved(2), normal(2), strength, change, friction
+      real(wp) :: local(most_entries), other(most_entries), d(2), moved(2), normal(2), strength, change, friction
       type(line) :: old, new
       integer :: e, p
 
@@ -531,7 +563,7 @@ contains
       real(wp), intent(in) :: lambda
       real(wp), intent(in) :: noise
       real(wp), intent(out) :: values(:, :)     !! (report_rows, points)
-      real(wp) :: la(8), lb(8), da(2), db(2), k
+      real(wp) :: la(most_entries), lb(most_entries), da(2), db(2), k
       type(line) :: law
       type(scan_result) :: found
       integer :: e, p

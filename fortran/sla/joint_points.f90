@@ -18,13 +18,16 @@
 !>
 !> Cracked joints close again with their initial normal stiffness. What opens without strength, and what closes, does so
 !> at zero stress; a joint that closes slides on as it moved.
+!>
+!> In the plane the jumps are those of pairs of nodes with two freedoms. Of shells in space they are those of a layer,
+!> from the displacements and the rotations of a pair; an element then stands for one layer of a stretch.
 module sla_joint_points
    use common_kinds, only : wp
    use common_lists, only : code_tension => sla_event_tension, code_compression => sla_event_compression, &
       code_close => sla_event_close, code_open => sla_event_open, code_wear => sla_event_wear, &
       code_slide => sla_event_slide, code_stick => sla_event_stick
    use common_status, only : status_ok, status_out_of_memory
-   use sla_group, only : point_group, scan_result, unbounded, linear_bound, offer_hi
+   use sla_group, only : point_group, scan_result, unbounded, linear_bound, offer_hi, most_entries
    use sla_tables, only : tooth_tables
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -60,6 +63,9 @@ module sla_joint_points
       type(joint_law) :: law
       type(tooth_tables) :: teeth
       real(wp), allocatable :: normal(:, :)      !! (2, elements) from the lower to the upper side
+      !> Of joints between shells: vectors whose products with the displacements are the jumps across and along the
+      !> joint, and that out of the plane of the shell, which no joint follows
+      real(wp), allocatable :: row(:, :, :)      !! (freedoms, 3, points)
       real(wp), allocatable :: area(:)           !! (points) [m^2]
       ! The damage: everything else follows from it.
       integer(c_int), allocatable :: tooth(:)    !! of tension, 1 virgin
@@ -112,7 +118,14 @@ contains
       integer, intent(in) :: e, p
       real(wp), intent(in) :: local(:)
       real(wp) :: d(2), u(2)
-      integer :: at(4)
+      integer :: at(4), i
+      if (allocated(group%row)) then
+         d = 0.0_wp
+         do i = 1, group%freedoms
+            d = d + group%row(i, 1:2, p) * local(i)
+         end do
+         return
+      end if
       at = freedoms_of(p)
       u = local(at(3:4)) - local(at(1:2))
       associate (n => group%normal(:, e))
@@ -125,13 +138,18 @@ contains
       class(joint_points), intent(in) :: group
       integer, intent(in) :: e, p
       real(wp), intent(in) :: v(2)
-      real(wp) :: local(8), u(2)
-      integer :: at(4)
+      real(wp) :: local(most_entries), u(2)
+      integer :: at(4), n
+      local = 0.0_wp
+      if (allocated(group%row)) then
+         n = group%freedoms
+         local(1:n) = v(1) * group%row(1:n, 1, p) + v(2) * group%row(1:n, 2, p)
+         return
+      end if
       at = freedoms_of(p)
       associate (n => group%normal(:, e))
          u = [n(1) * v(1) + n(2) * v(2), n(2) * v(1) - n(1) * v(2)]
       end associate
-      local = 0.0_wp
       local(at(1:2)) = -u
       local(at(3:4)) = u
    end function nodal
@@ -247,7 +265,7 @@ contains
       real(wp), intent(in) :: lambda
       real(wp), intent(in) :: noise
       type(scan_result), intent(inout) :: found
-      real(wp) :: la(8), lb(8)
+      real(wp) :: la(most_entries), lb(most_entries)
       integer :: e, p
       do e = first, last
          call group%gather(e, ua, la)
@@ -330,7 +348,7 @@ contains
       real(wp), intent(in) :: ub(0:)
       real(wp), intent(in) :: lambda(:)
       real(wp), intent(inout) :: least(:)
-      real(wp) :: la(8), lb(8), da(2), db(2), k, f, w, mu, part, bonded, spring
+      real(wp) :: la(most_entries), lb(most_entries), da(2), db(2), k, f, w, mu, part, bonded, spring
       integer :: e, p
       do e = first, last
          call group%gather(e, ua, la)

@@ -28,8 +28,9 @@ ERRORS = ("DeckError", "Refused", "StoreError")
 def deck(structure: Any = None, analysis: Any = None, *, folder: str | Path | None = None, **tables: Any) -> "Deck":
     """A checked deck from objects: `extrados.deck(extrados.Arch(...), [extrados.Tilt()], motion=..., joints=...)`.
 
-    Each table is an object (`extrados.Arch`, `extrados.Rocking`, `extrados.Joints` ...) or a dictionary of the same keys;
-    `analysis` may be a list of them, as may `ties`, `dampers` and `hinges`. folder: where files that the deck names are
+    structure, analysis and the other tables are objects (`extrados.Arch`, `extrados.Rocking`, `extrados.Joints` ...) or
+    dictionaries of the same keys, numbers in SI, angles in degrees, or text with a unit: "20 cm"; `analysis` may be a list
+    of them, as may `ties`, `dampers` and `hinges`. folder: where files that the deck names are
     looked for; default the current one. DeckError lists all that is wrong.
     """
     from extrados import objects
@@ -46,7 +47,7 @@ def run(
 ) -> "Run":
     """Run a deck (a file, a dictionary of the same shape, or what `extrados.deck` made) in memory and return its results.
 
-    With `out` they are also written there, on request with figures and report, and a long sweep keeps its finished
+    With `out`, a folder, they are also written there, with figures and report where `figures` asks for them, and a long sweep keeps its finished
     batches beside that folder; `Run.write` does the same later. threads: of the core, default all that this process may
     use. DeckError lists what is wrong with the deck, StoreError says why `out` cannot be written.
     """
@@ -60,7 +61,7 @@ def run(
 def live(deck: "str | Path | dict[str, Any] | Deck", *, threads: int | None = None) -> "Live":
     """A model of the deck (as `run` takes it) that answers anew when a value changes.
 
-    DeckError lists what is wrong with the deck.
+    threads: of the core, default all that this process may use. DeckError lists what is wrong with the deck.
     """
     from extrados.running.live import Live
 
@@ -70,11 +71,15 @@ def live(deck: "str | Path | dict[str, Any] | Deck", *, threads: int | None = No
 def sweep(deck: "str | Path | dict[str, Any] | Deck", over: Any, **how: Any) -> "Sweep":
     """Run a deck for many values of its keys, in memory: `extrados.sweep("deck.toml", over={"structure.thickness": [1.2, 1.5]})`.
 
-    over: keys as `Live.update` takes them, each with its values: every value with every other. Or rows that belong
-    together: a list of dictionaries, or a pandas.DataFrame whose columns are keys.
-    workers: 1; a number of processes of this machine; or the address of a dask scheduler ("tcp://...").
+    over: keys as `Live.update` takes them, each with its values (n) in SI or as text with a unit: every value with every
+    other. Or rows that belong together: a list of dictionaries, or a pandas.DataFrame whose columns are keys.
+
+    workers: 1; a number of processes of this machine; or the address of a dask scheduler, `"tcp://..."`.
+
     threads: of the core within each process, default all of one process, 1 where there are several.
+
     progress: a bar, by default on a terminal; or a function of (done, total, text).
+
     resume: a folder beside which finished batches are kept, so that the same call goes on where it was stopped.
 
     Returns a `Sweep`: `.frame()` for pandas, `.dataset()` for xarray, with units. DeckError lists what is wrong with the
@@ -86,9 +91,9 @@ def sweep(deck: "str | Path | dict[str, Any] | Deck", over: Any, **how: Any) -> 
 
 
 def export(deck: "str | Path | dict[str, Any] | Deck", form: str, path: str | Path | None = None) -> str:
-    """The building of a deck for another program: "compas", "udec", "3dec", "opensees"; also written to `path`, where one is given.
+    """The building of a deck for another program; also written to `path`, where one is given.
 
-    Lengths in m, forces in N. Returns the text; DeckError where the building has no such view.
+    form: "compas", "udec", "3dec" or "opensees". Lengths in m, forces in N. Returns the text; DeckError where the building has no such view.
     """
     from extrados.bridges import forms
 
@@ -106,7 +111,7 @@ def scene(deck: "str | Path | dict[str, Any] | Deck") -> Any:
 
 
 def load(folder: str | Path) -> "Run":
-    """The results of an earlier run, from its folder; StoreError where it holds none."""
+    """The results of an earlier run, from its `folder`; StoreError where it holds none."""
     from extrados.running.run import Run
 
     return Run.read(folder)
@@ -115,7 +120,7 @@ def load(folder: str | Path) -> "Run":
 def widget(deck: str | Path | None = None, *, height: int = 680) -> "Page":
     """The interactive page as a widget of a notebook (needs anywidget: pip install "extrados[notebook]"), `height` in pixels.
 
-    `widget(...).deck` is the text of the deck as it stands in the page.
+    deck: a file, default a new arch. `widget(...).deck` is the text of the deck as it stands in the page.
     """
     from extrados.explore.widget import Page
 

@@ -116,14 +116,15 @@ def joints(connect, normal, area, stiffness, shear, friction, cohesion, energy, 
 
 
 def blocks(centroid, mass, inertia, part, owner, outer, depth, joint, law, end_time, output_step, step, fraction, settle, domain,
-           gravity, shift, rate, mover, travel, begin, lasts, times, scale, number, samples, dt, threads) -> Any:  # fmt: skip
+           gravity, rigid, quasi, rebound, shift, rate, mover, travel, begin, lasts, times, scale, number, samples, dt, threads) -> Any:  # fmt: skip
     """A block on a support that moves, shaken."""
     bodies = dem.Bodies(
         centroid, mass, inertia, [part, BOX - [0.0, 1.0]], owner, [outer, np.ones(4, bool)], depth, [LAW], {joint: law}
     )
     options = dem.Options(
-        end_time, output_step, step, fraction, settle, domain=domain, gravity=gravity, threads=threads, mass_damping=0.1
-    )
+        end_time, output_step, step, fraction, settle, domain=domain, gravity=gravity, threads=threads,
+        mass_damping=0.0 if rigid else 0.1, rigid=rigid, quasi_static=quasi, rebound=rebound,
+    )  # fmt: skip
     moves = (dem.SupportMove(mover, travel, 0.0, 0.0, begin, lasts),)
     with (
         dem.Model(bodies, options, shift=shift, rate=rate, moves=moves) as model,
@@ -293,13 +294,18 @@ def small(
     force,
     band,
     right,
+    rows,
+    least,
+    cost,
+    low,
+    high,
 ) -> Any:
     """The functions that keep nothing."""
     return (
         arch.restitution(mass, centroid, inertia, joint, hinge, opposite), mechanism.restitution(mass, inertia, before, after),
         sla.intervals(alpha, beta, a, b), sla.body_force(kind, points, BOX, connect, force),
         sla.teeth(sla.Softening(1e5, 50.0), alpha, beta), sla.largest_band(sla.Softening(1e5, 50.0), alpha),
-        limit.BandFactor(np.array(band)).solve(right),
+        limit.BandFactor(np.array(band)).solve(right), limit.least_vertex(rows, least, cost, low, high),
     )  # fmt: skip
 
 
@@ -359,12 +365,12 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
             places=stones.centroid, inertias=stones.inertia, intrados=stones.p, extrados=stones.q, q=[0.0, 0.02], v=[0.0, 0.1],
             a=[0.0, 1.0], horizontal=[1.0, -2.0], vertical=[0.0, 0.5], restitution=0.8, samples=shaken, dt=0.05,
         )),
-        (blocks, dict(
+        *((blocks, dict(
             centroid=np.array([[0.5, 0.5], [0.5, -0.5]]), mass=np.array([2000.0, 0.0]), inertia=np.array([300.0, 0.0]), part=BOX,
             owner=[0, 1], outer=np.ones(4, bool), depth=1.0, joint=(0, 1), law=0, end_time=0.02, output_step=0.01, step=0.0, fraction=0.3,
-            settle=5000, domain=(-9.0, 9.0, -9.0, 9.0), gravity=(0.0, -9.8), shift=np.zeros((2, 3)), rate=np.full((2, 3), 1e-3), mover=1, travel=0.001, begin=0.0,
+            settle=5000, domain=(-9.0, 9.0, -9.0, 9.0), gravity=(0.0, -9.8), rigid=rigid, quasi=False, rebound=0.1, shift=np.zeros((2, 3)), rate=np.full((2, 3), 1e-3), mover=1, travel=0.001, begin=0.0,
             lasts=0.01, times=np.array([0.0, 0.01]), scale=1.0, number=0, samples=np.ones((1, 5)), dt=0.01, threads=2,
-        )),
+        )) for rigid in (False, True)),
         (solids, dict(
             centroid=np.array([[0.5, 0.5, 0.5], [0.5, 0.5, -0.5]]), mass=np.array([2000.0, 0.0]), inertia=np.tile(300.0 * np.eye(3), (2, 1, 1)),
             vertices=CUBE, faces=CUBE_FACES, owner=[0, 1], joint=(0, 1), law=0, end_time=0.02, output_step=0.01, step=0.0, fraction=0.3,
@@ -388,7 +394,8 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
             mass=np.ones(3), centroid=rng.normal(size=(3, 2)), inertia=np.ones(3), joint=np.array([0, 1, 2, 3]), hinge=rng.normal(size=(4, 2)),
             opposite=rng.normal(size=(4, 2)), before=rng.normal(size=(3, 3)), after=rng.normal(size=(3, 3)), alpha=1e9, beta=0.5,
             a=np.ones((2, 3)), b=np.ones((2, 3)), kind="Q4", points=(2, 2), connect=[[0, 1, 2, 3]], force=[[0.0, 1.0]],
-            band=np.tile([4.0, 1.0, 0.5], (12, 1)), right=np.ones(12),
+            band=np.tile([4.0, 1.0, 0.5], (12, 1)), right=np.ones(12), rows=np.array([[1.0, 2.0], [3.0, 1.0]]), least=np.array([2.0, 3.0]),
+            cost=np.array([1.0, 1.0]), low=np.zeros(2), high=np.full(2, 9.0),
         )),
     ]  # fmt: skip
 

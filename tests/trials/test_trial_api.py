@@ -37,7 +37,7 @@ def test_the_core_is_abused() -> None:
     trial = trials.Trial(
         "api-abused", "wrong calls of the core's Python API that end the process or change later results"
     )
-    abuse(trial, least := trials.count_of(20_000, 250), [sys.executable])
+    abuse(trial, least := trials.count_of(20_000, 120), [sys.executable])
     trial.close(least)
 
 

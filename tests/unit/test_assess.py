@@ -1,6 +1,7 @@
 """assess: every strategy by its own driver, one table, and reasons that speak only where their numbers show it."""
 
 import json
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -33,6 +34,14 @@ TIE = {"start": [-0.6, 5.0], "ground": [-4.6, 5.0], "stiffness": "8 MN/m", "yiel
 def deck(**more) -> dict:
     keys = {"kind": "assess", "budget": 5, **more.pop("assess", {})}
     return {"structure": COLUMN, "motion": PULSE, **more, "analysis": [keys]}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def patient() -> Iterator[None]:
+    """On a busy machine the clock would stop what is looked for here."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(driver, "STOPPED_AFTER", 1e6)
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -164,12 +173,11 @@ def test_a_building_on_a_plan_is_pushed_along_both_axes_and_its_walls_are_checke
     assert run["pushover"].direction_deg == 0.0 and run["pushover-2"].direction_deg == 90.0
     assert run["local-mechanism"].walls[0].wall in ("left", "right"), "the thin ones"
     assert any("building on a plan" in text for text in r.not_done)
-    pushed = r.verdicts[1]
-    if run["pushover"].peak_load_N is None or run["pushover"].minus.peak_load_N is None:
-        assert pushed.margin is None, "without a peak it bears so much at least"
+    assert run["pushover"].peak_load_N is None, "300 events are few"
+    assert r.verdicts[1].margin is None and r.verdicts[1].margin_at_least is not None
     run.write(tmp_path / "out", figures=False)
     saved, caption = draw_building(Run.read(tmp_path / "out"), _figures(tmp_path))
-    assert saved == "building" and "Storeys of 2.8 m" in caption
+    assert saved == "building" and "Storey: 2.8 m" in caption
 
 
 def _figures(folder: Path) -> Path:

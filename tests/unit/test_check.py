@@ -55,10 +55,10 @@ WRONG = {
         "there is no joint 'sole'", ARCH + PULSE + '[[hinges]]\ndamping = 1e3\njoints = ["sole"] # here\n' + ROCKING,
     ),
     "dampers with tilt": (
-        "does not reckon with [[dampers]]",
+        "cannot take [[dampers]] into account",
         BLOCK + "[[dampers]] # here\nstart = [0.2, 2.0]\nground = [3.0, 0.0]\ndamping = 1e3\n" + TILT,
     ),
-    "wall with tilt": ("does not reckon with [supports]", BLOCK + '[supports]\nabutting_wall = "left" # here\n' + TILT),
+    "wall with tilt": ("cannot take [supports] abutting_wall into account", BLOCK + '[supports]\nabutting_wall = "left" # here\n' + TILT),
     "start against a wall": (
         "cannot start turned to the left",
         BLOCK + PULSE + '[supports]\nabutting_wall = "left"\n[initial]\nrotation_ratio = -0.1 # here\n' + ROCKING,
@@ -142,13 +142,13 @@ WRONG = {
     "opening as wide as a hair": ("expected more than", WALL + "openings = [{ x = [1, 1.0000001], z = [0, 2] }] # here\n" + PUSH),
     "opening in no storey": ("has no storey 2", WALL + "openings = [{ storey = 2, x = [1, 2], z = [0, 2] }] # here\n" + PUSH),
     "opening through a whole wall": (
-        "hangs on nothing", WALL.replace("[[structure.walls]]", "[[structure.walls]] # here") + "openings = [{ x = [0, 3], z = [1, 2] }]\n" + PUSH,
+        "is not supported", WALL.replace("[[structure.walls]]", "[[structure.walls]] # here") + "openings = [{ x = [0, 3], z = [1, 2] }]\n" + PUSH,
     ),
     "lintel over the top": (
         "under 1 m of wall", WALL + "openings = [{ x = [1, 2], z = [0, 2], lintel = { depth = 1.5 } }] # here\n" + PUSH,
     ),
     "lintel in an opening": (
-        "is all in openings", WALL.replace("[[structure.walls]]", "[[structure.walls]] # here")
+        "lies entirely within openings", WALL.replace("[[structure.walls]]", "[[structure.walls]] # here")
         + "openings = [{ x = [1, 2], z = [0, 1], lintel = { depth = 0.3 } }, { x = [1, 2], z = [1, 2] }]\n" + PUSH,
     ),
     "wall without thickness": ("greater than 0", WALL.replace("thickness = 0.3", "thickness = 0.0 # here") + PUSH),
@@ -156,7 +156,7 @@ WRONG = {
     "wall that is nowhere": ("finite number", WALL.replace("start = [0, 0]", "start = [0, nan] # here") + PUSH),
     "wall of no length": ("the same point", WALL.replace("[[structure.walls]]", "[[structure.walls]] # here").replace("[3, 0]", "[0, 0]") + PUSH),
     "wall in the air": (
-        "hangs on nothing", WALL.replace("[3.0]", "[3.0, 3.0]")
+        "is not supported", WALL.replace("[3.0]", "[3.0, 3.0]")
         + '[[structure.walls]] # here\nname = "b"\nstart = [0, 5]\nend = [3, 5]\nthickness = 0.3\nstoreys = [2, 2]\n' + PUSH,
     ),
     "two walls of one name": (
@@ -250,6 +250,14 @@ WRONG = {
     ),
     "springs under rigid contacts": (
         "know no springs", ARCH + PULSE + "[supports]\nstiffness = 1e9 # here\n" + DEM + 'solver = "nonsmooth"\n',
+    ),
+    "first swings of solids": (
+        "dem of solids does not reckon with mode_II", BLOCK + '[[analysis]]\nkind = "dem-domain"\ndirection = 10\nmode_II = true # here\n'
+        'amplitudes = ["0.5 g"]\ndurations = [0.1, 0.2]\n',
+    ),
+    "movements of rigid solids": (
+        "dem of solids does not reckon with [[initial.movements]]", ARCH + "[[initial.movements]] # here\njoint = 'joint 1'\ndx = 0.1\n"
+        + DEM + 'solver = "nonsmooth"\nquasi_static = true\ndirection = 10\n',
     ),
     "restitution of many blocks": ("of a single block", ARCH + PULSE + '[joints]\ndamping = "restitution" # here\n' + DEM),
     "facade without its thickness": ("needs thickness", '[[analysis]] # here\nkind = "local-mechanism"\nmechanism = "facade"\nheight = 6\n'),

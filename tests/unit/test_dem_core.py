@@ -25,6 +25,25 @@ def test_free_fall_is_exact() -> None:
     assert run.residual < 1e-12
 
 
+def test_mass_damping_slows_a_fall_and_loses_what_the_ledger_says() -> None:
+    """v' = g - alpha v; what is lost is the integral of alpha (m v^2 + I w^2)."""
+    bodies = model([rectangle(0.0, 1.0, 5.0, 6.0)], [rectangle(-5.0, 5.0, -1.0, 0.0)], STIFF)
+    alpha, start = 3.0, np.array([0.3, 1.0, 0.7])
+    options = dem.Options(0.5, 0.05, step=1e-4, mass_damping=alpha)
+    run = dem.run(bodies, options, shift=np.zeros((2, 3)), rate=np.stack([start, np.zeros(3)]))
+    terminal = np.array([0.0, -G / alpha, 0.0])
+
+    def rate(t: np.ndarray) -> np.ndarray:
+        return terminal + (start - terminal) * np.exp(-alpha * t[:, None])
+
+    moved = terminal * run.time[:, None] + (start - terminal) * (1.0 - np.exp(-alpha * run.time[:, None])) / alpha
+    assert np.abs(run.place[:, 0] - [0.5, 5.5, 0.0] - moved).max() < 1e-7
+    t = np.linspace(0.0, run.time[-1], 2001)
+    power = alpha * (rate(t) ** 2 @ [bodies.mass[0], bodies.mass[0], bodies.inertia[0]])
+    assert run.energy["mass_damping"][-1] == pytest.approx(np.trapezoid(power, t), rel=1e-6)
+    assert run.residual < 1e-7
+
+
 def test_newmark_sliding_block() -> None:
     """A flat block under a pulse a > mu g slides a t^2 / 2 (a / (mu g) - 1) (Newmark 1965)."""
     friction, a, t = 0.3, 0.5 * G, 0.2
@@ -196,6 +215,9 @@ def test_support_settles() -> None:
     run = dem.run(bodies, dem.Options(1.5, 0.1), moves=(dem.SupportMove(1, 0.0, -0.05, 0.0, 0.1, 1.0),))
     assert run.place[-1, 0, 1] - run.settled[0, 1] == pytest.approx(-0.05, abs=1e-5)
     assert run.residual < 0.01
+    phase = np.clip((run.time - 0.1) / 1.0, 0.0, 1.0)
+    way = -0.05 * (phase - np.sin(2.0 * np.pi * phase) / (2.0 * np.pi))
+    assert np.abs(run.place[:, 1, 1] - run.settled[1, 1] - way).max() < 1e-8
 
 
 def test_step_above_the_critical_one_is_told() -> None:

@@ -10,6 +10,7 @@ import extrados
 from extrados.building.geometry.solids.assembly import Stone, assemble
 from extrados.building.geometry.solids.polyhedra import box
 from extrados.building.geometry.solids.supports import supports_of
+from extrados.decks.reader import DeckError
 
 COLUMN = """
 [structure]
@@ -75,6 +76,7 @@ def test_both_horizontal_components_of_a_record_act_at_once(tmp_path) -> None:
 
 
 @pytest.mark.verify
+@pytest.mark.parametrize("solver", ["compliant", "nonsmooth"])
 @pytest.mark.parametrize(
     ("structure", "direction"),
     [
@@ -83,12 +85,13 @@ def test_both_horizontal_components_of_a_record_act_at_once(tmp_path) -> None:
         ('kind = "arch"\nradius = 5.0\nthickness = 1.0\nembrace = 150.0\nvoussoirs = 7', 0.0),
     ],
 )  # fmt: skip
-def test_tilt_is_that_of_limit_analysis(tmp_path, structure: str, direction: float) -> None:
-    """Within 1 % on stiff joints: a column, a wall out of its plane, an arch with depth."""
+def test_tilt_is_that_of_limit_analysis(tmp_path, structure: str, direction: float, solver: str) -> None:
+    """Within 1 % on stiff joints and on rigid contacts: a column, a wall out of its plane, an arch with depth."""
     text = (
         f"[structure]\n{structure}\n[joints]\nnormal_stiffness = 1e11\n"
         f'[[analysis]]\nkind = "tilt"\ndirection = {direction}\nrose = 4\n'
         f'[[analysis]]\nkind = "dem"\ntest = "tilt"\ndirection = {direction}\ntilt_limit = "0.8 g"\ntilt_accuracy = 5e-4\n'
+        f'solver = "{solver}"\n'
     )
     deck = tmp_path / "deck.toml"
     deck.write_text(text)
@@ -115,7 +118,6 @@ def test_solids_of_a_file_stand_or_fall(tmp_path) -> None:
 @pytest.mark.parametrize(
     ("more", "of_dem", "told"),
     [
-        ("", 'solver = "nonsmooth"', 'solver = "nonsmooth"'),
         ("", "mass_damping = 1.0", "mass_damping"),
         ("", "vary_damping = [0.5]", "vary_damping"),
         ("[initial]\nrotation_ratio = 0.5\n", "", "rotation_ratio"),
@@ -127,6 +129,71 @@ def test_solids_of_a_file_stand_or_fall(tmp_path) -> None:
 def test_what_solids_do_not_know_is_refused_by_name(tmp_path, more: str, of_dem: str, told: str) -> None:
     found = answered(tmp_path, f'{COLUMN}{more}[[analysis]]\nkind = "dem"\n{of_dem}\n')
     assert found.status == "refused" and told in found.reason
+
+
+RIGID = 'solver = "nonsmooth"\n'
+
+
+def test_a_column_rocks_on_rigid_contacts(tmp_path) -> None:
+    """Along and against: mirrored; the answer says how far the contacts converged and has no stiffness."""
+    there, back = (
+        answered(tmp_path, f'{COLUMN}{PULSE}[[analysis]]\nkind = "dem"\nend_time = 0.8\ndirection = {d}\n{RIGID}')
+        for d in (90.0, -90.0)
+    )
+    r = there.results
+    assert there.status == "ok" and r.outcome == "recovery" and r.energy_residual_ratio < 1e-2
+    assert r.solver == "nonsmooth" and r.beta_s is None and r.critical_step_s is None
+    assert r.convergence.open_steps == 0 and r.convergence.steps == pytest.approx(r.steps, abs=2)
+    assert "rigid contacts converged in all" in there.answer and not any("damped" in text for text in there.warnings)
+    shift, other = (found.arrays["shift"].data for found in (there, back))
+    assert np.abs(shift[..., 1]).max() > 0.02
+    assert shift[..., 1] == pytest.approx(-other[..., 1], abs=5e-3 * np.abs(shift).max())
+
+
+DOMAIN = (
+    '[structure]\nkind = "block"\nwidth = 0.5\nheight = 2.0\n[joints]\nfriction = 2.0\n[[analysis]]\nkind = "dem-domain"\n'
+    f'{RIGID}amplitudes = ["0.5 g", "0.8 g"]\ndurations = [0.1, 0.2, 0.3, 0.4, 0.5]\naccuracy = 0.02\n'
+)
+
+
+def test_the_map_of_a_section_drawn_out_is_that_of_the_plane(tmp_path) -> None:
+    """By both solvers, which agree in most cells."""
+    plane = answered(tmp_path, DOMAIN).results
+    space = answered(tmp_path, f"{DOMAIN}direction = 0.0\ncross_check = true\n").results
+    assert plane.direction_deg is None and space.direction_deg == 0.0
+    assert space.shortest_durations_s == pytest.approx(plane.shortest_durations_s, abs=0.02)
+    assert [c.solver for c in space.curves] == ["nonsmooth", "compliant"] and space.curves[0].beta_s is None
+    assert space.cross_check.cells == 10 and space.cross_check.agreement_ratio >= 0.9
+    assert space.convergence.open_steps == 0
+
+
+@pytest.mark.parametrize("key", ["mode_II = true", "vary_friction = [0.5]"])
+def test_what_maps_of_solids_do_not_know_is_refused(tmp_path, key: str) -> None:
+    found = answered(tmp_path, f"{DOMAIN}direction = 0.0\n{key}\n")
+    assert found.status == "refused" and key.split(" ")[0] in found.reason
+
+
+def test_rigid_contacts_find_what_falls(tmp_path) -> None:
+    """Under its own weight; and a push without inertia ends as limit analysis says."""
+    (tmp_path / "stones.obj").write_text(f"o cube\n{OBJ}\n{CUBE}")
+    text = f'[structure]\nkind = "blocks"\nfile = "stones.obj"\nunit = "m"\n[[analysis]]\nkind = "dem"\n{RIGID}'
+    assert answered(tmp_path, text).answer.startswith("It stands under its own weight; nothing moves it.")
+    leaning = "\n".join(f"v {x + 1.1 * z} {y} {z}" for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)))
+    (tmp_path / "stones.obj").write_text(f"o slab\n{leaning}\n{CUBE}")
+    falls = answered(tmp_path, text)
+    assert falls.status == "refused" and "slab falls" in falls.reason and "limit analysis agrees" in falls.reason
+
+
+@pytest.mark.parametrize(
+    ("of_dem", "told"),
+    [
+        ("fraction = 0.1", "rigid contacts have no stiffness"),
+        ("vary_stiffness = [2.0]", "rigid contacts have no stiffness"),
+    ],
+)
+def test_what_only_springs_know_is_refused_of_rigid_contacts(tmp_path, of_dem: str, told: str) -> None:
+    with pytest.raises(DeckError, match=told):
+        answered(tmp_path, f'{COLUMN}[[analysis]]\nkind = "dem"\n{RIGID}{of_dem}\n')
 
 
 def test_footings_are_no_floor() -> None:

@@ -1,6 +1,7 @@
 """The pages on the dissertation's figures list every figure once, and name decks, tests and pictures that exist."""
 
 import re
+import sys
 import tomllib
 from pathlib import Path
 
@@ -10,21 +11,14 @@ import extrados
 from extrados import kinds
 
 ROOT = Path(__file__).resolve().parents[2]
-PLACE = ROOT / "docs" / "dissertation"
-PAGES = [PLACE / f"{name}.md" for name in ("index", *(f"chapter-{n}" for n in "34567"), "appendices")]
+sys.path.append(str(ROOT / "tools"))
+
+from dissertation import PLACE, redrawn_by, rows  # noqa: E402
+
 #: Chapter or appendix -> number of its last figure
 LAST = {"2": 8, "3": 8, "4": 17, "5": 15, "6": 10, "7": 22, "B": 4, "C": 12}
-ROW = re.compile(r"^\| ([\dA-C]+)-(\d+) \|")
-
-
-def rows(page: Path) -> list[list[str]]:
-    """The cells of each figure's row: number, what it shows, what redraws it, printed, here, what differs."""
-    lines = [line for line in page.read_text(encoding="utf-8").splitlines() if ROW.match(line)]
-    return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
-
-
-ALL = [row for page in PAGES for row in rows(page)]
-DECKS = sorted({name for row in ALL for name in re.findall(r"`cases/([\w/-]+)`", row[2])})
+ALL = rows()
+DECKS = sorted({case for row in ALL for case, _ in redrawn_by(row[2])})
 
 
 def pictures(kind: str, name: str) -> list[str]:
@@ -58,8 +52,8 @@ def test_pictures_are_those_of_the_deck(deck: str) -> None:
         count[kind] = count.get(kind, 0) + 1
         may += pictures(kind, kind if count[kind] == 1 else f"{kind}-{count[kind]}")
     for row in ALL:
-        for named, rest in re.findall(r"`cases/([\w/-]+)`((?: `figures/[\w-]+\.png`)*)", row[2]):
-            for picture in re.findall(r"figures/([\w-]+)\.png", rest) if named == deck else []:
+        for named, names in redrawn_by(row[2]):
+            for picture in names if named == deck else []:
                 assert any(re.fullmatch(pattern, picture) for pattern in may), (row[0], picture)
 
 
@@ -74,10 +68,13 @@ def test_the_count_of_each_chapter() -> None:
 
 
 def test_optimal_motion_and_single_impulses() -> None:
-    """Figs 6-2 and 6-4: steps that lengthen as the rotation grows, and the share of starts from which an impulse adds energy."""
+    """Figs 6-2 and 6-4: steps that lengthen as the rotation grows, and the share of starts from which an impulse adds energy;
+    this program's own numbers, whose keys have dots that a row of the case could not name."""
     found = extrados.run(ROOT / "cases" / "rocking" / "figure-6-4.toml")["resonance"]
     spacing = found.switch_spacing_s
     assert spacing == sorted(spacing)
     assert [spacing[0], spacing[-1]] == pytest.approx([0.1604, 0.3317], abs=0.0005)
     share = found.share_of_starts_that_add
-    assert [share[key] for key in ("0.125", "0.25", "0.5", "1")] == pytest.approx([0.43, 0.55, 0.76, 0.88], abs=0.01)
+    assert [share[key] for key in ("0.125", "0.25", "0.5", "1", "2")] == pytest.approx(
+        [0.43, 0.55, 0.76, 0.88, 0.71], abs=0.01
+    )

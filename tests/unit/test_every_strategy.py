@@ -111,7 +111,13 @@ def quick_save(fig, folder: Path, name: str) -> str:
     return name
 
 
-@pytest.mark.parametrize("building", BUILDINGS)
+#: Each sort of building once, in the quick suite; all of them in `make verify`
+QUICK = ("arch", "viaduct", "aisled vault", "blocks of a drawing", "column", "stack", "frame", "brickwork with a door", "panel of unknown units")  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "building", [b if b in QUICK else pytest.param(b, marks=pytest.mark.verify) for b in BUILDINGS]
+)
 def test_a_building_under_every_strategy(
     building: str, stones: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

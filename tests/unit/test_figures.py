@@ -19,7 +19,6 @@ SOME = (
     "dem/column",
     "limit/tied-frame",
     "codes/facade",
-    "assess/column",
 )
 
 

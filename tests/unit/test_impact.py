@@ -233,3 +233,10 @@ def test_another_rule_in_place_of_the_thesis_is_told() -> None:
         for s in (pointed, round_arch)
     ]
     assert told == [True, False]
+
+
+def test_arch1_keeps_all_by_the_printed_equations() -> None:
+    """Arch1 of the dissertation's tests at 80 % of its thickness: Eqs B.3 would speed it up, so it keeps its rate and no more."""
+    model = ArchModel(make_arch(0.2, 0.024, 162, 16), "thesis")
+    assert model.impacts.thesis == pytest.approx(1.105, abs=0.001)
+    assert model.restitution == 1.0 > model.impacts.inelastic > model.impacts.energy_safe > 0.5

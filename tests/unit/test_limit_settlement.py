@@ -21,14 +21,20 @@ def moved(assembly: Assembly, joint: str, dx: float = 0.0, dy: float = 0.0, turn
     return movement
 
 
-@pytest.mark.parametrize("form", ["reduced", "sparse"])
-def test_arch_as_its_first_three_hinges(form: str) -> None:
-    """A spreading arch opens where the finite way of three hinges begins, by what their kinematics give."""
+@pytest.fixture(scope="module")
+def spreading() -> tuple[Assembly, list]:
+    """An arch, and the states of its finite way when its right support moves outward."""
     arch = make_arch(10.0, 1.5, 157.5, 16)
+    return arch, support_movement(arch, (1.0, 0.0), 20000)
+
+
+@pytest.mark.parametrize("form", ["reduced", "sparse"])
+def test_arch_as_its_first_three_hinges(form: str, spreading: tuple[Assembly, list]) -> None:
+    """A spreading arch opens where the finite way of three hinges begins, by what their kinematics give."""
+    arch, (rest, first, *_) = spreading
     last = arch.joint_names[arch.chains["arch"][-1]]
     small = 1e-4
     found = settle(LimitAnalysis(arch, form=form), moved(arch, last, dx=small))
-    (rest, first, *_) = support_movement(arch, (1.0, 0.0), 20000)
     joints = arch.chains["arch"]
     opens = np.flatnonzero(found.motion.max(axis=1) > 1e-9)
     assert opens.tolist() == [joints[k] for k, _ in rest.hinges]

@@ -170,9 +170,66 @@ def test_walls_that_are_all_held_are_refused_and_the_crushing_hinge_is_set_back(
         "analysis": {"kind": "local-mechanism", "mechanism": "facade", "height": 6.0, "thickness": 0.5},
     }
     own, alone = (extrados.run(d)["local-mechanism"] for d in (whole, table))
-    assert own.walls[-1].multiplier == pytest.approx(alone.multiplier) or own.multiplier == pytest.approx(
-        alone.multiplier
+    found = {(w.wall, w.storey): w.multiplier for w in own.walls}
+    assert [found[name, 1] for name in ("front", "right", "back", "left")] == pytest.approx([alone.multiplier] * 4)
+
+
+def test_what_openings_share_is_left_out_once() -> None:
+    """Two that overlap, and one that leaves nothing but what the other leaves, are one opening."""
+    whole = {"storey": 1, "x": [1.0, 4.0], "z": [1.0, 2.5]}
+    parts = [{**whole, "x": [1.0, 3.0]}, {**whole, "x": [2.0, 4.0]}, {**whole, "x": [2.5, 2.8], "z": [1.5, 2.0]}]
+    soft = {"density": 2000.0, "compressive_strength": "1 MPa"}
+    found = []
+    for openings in ([whole], parts):
+        structure = house({"openings": [*openings, {"storey": 1, "x": [0.2, 0.9], "z": [0.0, 2.0]}]})
+        deck = {
+            "structure": structure,
+            "material": soft,
+            "analysis": {"kind": "local-mechanism", "mechanism": "building"},
+        }
+        found.append(extrados.run(deck)["local-mechanism"].as_json())
+    assert found[0] == found[1]
+
+
+def test_what_a_wall_on_a_plan_cannot_be_asked_is_refused_with_its_key() -> None:
+    def refused(structure: dict, more: dict | None = None, **keys: object) -> str:
+        analysis = {"kind": "local-mechanism", "mechanism": "building", **keys}
+        (told,) = extrados.run({"structure": structure, "analysis": analysis, **(more or {})}).analyses
+        assert told["status"] == "refused"
+        return told["reason"]
+
+    whole = [{"storey": 1, "x": [0.0, 5.0], "z": [0.0, 2.0]}]
+    assert "structure.walls.openings: wall 'front' has no masonry at the foot of storey 1" in refused(
+        house({"openings": whole})
     )
+    inner = {"name": "inner", "start": [2.0, 1.0], "end": [2.0, 4.0], "thickness": 0.5}
+    floor = {
+        "storey": 1,
+        "kind": "none",
+        "load": "2 kPa",
+        "walls": ["front", "right", "back", "left"],
+        "bears_on": ["inner"],
+    }
+    apart = house(floors=[floor])
+    apart["walls"].append(inner)
+    assert "none of the walls that bear its load lies beside it" in refused(apart)
+    for name, value in {
+        "height": 5.0,
+        "width": 2.0,
+        "ties": [{"height": 2.0, "force": 1e3}],
+        "storeys": 3,
+        "building_height": 9.0,
+    }.items():
+        assert f"leave {name} out" in refused(house(), **{name: value})
+    tie = {"ties": [{"from": "front", "to": "back", "area": 1e-3}]}
+    abutting = {"supports": {"abutting_wall": "left"}}
+    assert "supports.abutting_wall" in refused(house(), abutting), tie
+
+
+def test_what_goes_for_every_wall_is_said_once() -> None:
+    _, run = walls_of(house(), peak_acceleration="0.1 g")
+    told = run.results[0].warnings
+    assert len(told) == len(set(told)) and any("without a spectrum" in text for text in told)
 
 
 def test_the_worked_example_of_a_pier() -> None:

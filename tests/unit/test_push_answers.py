@@ -47,6 +47,32 @@ DECK = """
     events = 60
 """
 
+WALL = """
+    [structure]
+    kind = "panel"
+    width = 1.0
+    height = 1.0
+    thickness = 0.2
+    [material]
+    young = 3e9
+    tensile_strength = 1e5
+    fracture_energy = 60
+    [[analysis]]
+    kind = "sla"
+    mesh.size = 0.25
+    reference = [{ kind = "displacement", direction = "x", parts = [{ edge = "top" }] }]
+    directions = ["+", "-"]
+    ripple = 0.3
+    target_displacement = "0.2 mm"
+    [[analysis]]
+    kind = "sla"
+    solution = "incremental"
+    mesh.size = 0.25
+    reference = [{ kind = "displacement", direction = "x", parts = [{ edge = "top" }] }]
+    ripple = 0.3
+    target_displacement = "0.2 mm"
+"""
+
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
@@ -151,3 +177,48 @@ def test_one_picture_has_the_curves_of_all_analyses(run, monkeypatch, tmp_path):
     figures._curves(stored, "pushover", tmp_path)
     assert any(label.startswith("bilinear") for label in seen[0])
     assert any(label == "analysis pushover-2" for label in seen[0])
+
+
+def test_curves_of_several_runs_stand_in_one_picture(run, tmp_path) -> None:
+    """A push of shells, a wall of plane stress and its incremental solution, each curve as it is stored."""
+    from typer.testing import CliRunner
+
+    from extrados.cli import app
+    from extrados.plots import style
+    from extrados.plots.together import draw, pushes
+
+    found, pushed = run
+    wall = tmp_path / "wall.toml"
+    wall.write_text(textwrap.dedent(WALL))
+    extrados.run(wall).write(tmp_path / "wall", figures=False)
+    stored = [("house", read(pushed)), ("wall", read(tmp_path / "wall"))]
+    curves = pushes(stored)
+    assert [(c.analysis, c.sense, c.incremental) for c in curves] == [
+        ("house, pushover", "+", False), ("house, pushover-2", "+", False), ("wall, sla", "+", False),
+        ("wall, sla", "-", False), ("wall, sla-2", "+", True),
+    ]  # fmt: skip
+    assert curves[0].greatest()[0] == pytest.approx(found["pushover"].greatest_load_N, rel=1e-12)
+    with style.kept() as pictures:
+        draw(curves, tmp_path / "together.png")
+    lines = [line for line in pictures["together"].axes[0].lines if len(line.get_xdata()) > 2]
+    assert len(lines) == len(curves)
+    for line, curve in zip(lines, curves, strict=True):
+        np.testing.assert_allclose(line.get_ydata(), curve.load / 1e3)
+        assert (line.get_linestyle() == "--") == (curve.sense == "-")
+    legend = [text.get_text() for text in pictures["together"].legends[0].get_texts()]
+    assert legend[:2] == ["house, pushover", "house, pushover-2"] and "load to -" in legend
+
+    def call(*words):
+        return CliRunner().invoke(app, ["plot", *map(str, words)], env={"COLUMNS": "150"})
+
+    told = call(pushed, tmp_path / "wall", "--together", tmp_path / "new" / "curves.svg")
+    assert told.exit_code == 0, told.output
+    assert "greatest load [kN]" in told.output and "wall, sla-2" in told.output
+    assert {path.name for path in (tmp_path / "new").iterdir()} == {"curves.png", "curves.svg"}
+    arch = tmp_path / "arch.toml"
+    arch.write_text(
+        '[structure]\nkind = "arch"\nradius = 10\nthickness = 1.5\nembrace = 157.5\nvoussoirs = 7\n[analysis]\nkind = "tilt"\n'
+    )
+    extrados.run(arch).write(tmp_path / "arch", figures=False)
+    refused = call(tmp_path / "arch", "--together", tmp_path / "none.png")
+    assert refused.exit_code == 3 and "no analysis of it has a load curve" in refused.output

@@ -243,9 +243,10 @@ def test_what_a_strategy_cannot_honour_is_refused_by_name() -> None:
     damper = "[[dampers]]\nstart = [-0.3, 5.0]\nstart_stone = 'block'\nground = [-3.0, 5.0]\ndamping = 100.0\n"
     for kind in ("tilt", "dem", "assessment", "rocking-spectrum"):
         ((status, reason),) = told(DECK.replace("rocking", kind))
-        assert status == "refused" and f"supports.abutting_wall: {kind} does not reckon with [supports]" in reason, (
-            reason
-        )
+        assert (
+            status == "refused"
+            and f"supports.abutting_wall: {kind} cannot take [supports] abutting_wall into account" in reason
+        ), reason
         ((status, reason),) = told(
             damper + DECK.replace('[supports]\nabutting_wall = "left"\n', "").replace("rocking", kind)
         )

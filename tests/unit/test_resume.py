@@ -281,7 +281,11 @@ def run(deck: Path, out: Path, **context) -> None:
     run_to(Context(read_deck(deck), **context), out, figures=False)
 
 
-@pytest.mark.parametrize("kind", DECKS)
+#: One of each way to keep members, in the quick suite; all of them in `make verify`
+QUICK = ("dem-domain", "dem, one run", "sla in stages", "sweep, its changes and optimum", "failure-domain at amplitudes", "generated motions", "survey")  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", [k if k in QUICK else pytest.param(k, marks=pytest.mark.verify) for k in DECKS])
 def test_killed_and_resumed(kind: str, tmp_path: Path) -> None:
     deck, one, two = written(kind, tmp_path), tmp_path / "a", tmp_path / "b"
     keeps = KEEPS.get(kind, 2)

@@ -68,6 +68,63 @@ def test_a_shell_loaded_in_its_plane_is_the_plane_model(cracking):
     assert found.ledger_error < 1e-9
 
 
+def couplet(n=4, side=0.4):
+    """Two squares upon each other, each of n x n quadrilaterals, and the pairs of nodes of the joint between them."""
+    x, y = (a.ravel() for a in np.meshgrid(*2 * [np.linspace(0, side, n + 1)], indexing="ij"))
+    i, j = (a.ravel() for a in np.meshgrid(*2 * [np.arange(n)], indexing="ij"))
+    lower, first = np.column_stack([x, y]), i * (n + 1) + j
+    quads = np.column_stack([first, first + n + 1, first + n + 2, first + 1])
+    count = len(lower)
+    xy, quads = np.concatenate([lower, lower + np.array([0.0, side])]), np.concatenate([quads, quads + count])
+    below = np.arange(n + 1) * (n + 1) + n
+    above = count + np.arange(n + 1) * (n + 1)
+    return xy, quads, np.column_stack([below[:-1], below[1:], above[1:], above[:-1]])
+
+
+MORTAR = {
+    "normal_stiffness": 8e10, "shear_stiffness": 3.6e10, "friction": 0.7,
+    "tension": core.Softening(0.1e6, 10.0, "exponential", 0.2), "cohesion": core.Softening(0.15e6, 60.0, "exponential", 0.2),
+    "compression": core.Softening(2e6, 3000.0, "linear", 0.2),
+}  # fmt: skip
+
+
+def test_a_joint_of_shells_loaded_in_its_plane_is_that_of_the_plane_model():
+    """A joint that slides and opens between stones that crack: event by event the same."""
+    xy, quads, stretches = couplet()
+    n, side, events = len(stretches), 0.4, 400
+    area = np.column_stack([np.full(n, 0.5), np.full(n, 0.5)]) * WIDTH * side / n
+    top, bottom = np.flatnonzero(xy[:, 1] > 2 * side - 1e-9), np.flatnonzero(xy[:, 1] < 1e-9)
+    constant, reference = np.zeros_like(xy), np.zeros_like(xy)
+    pushed = np.unique(stretches[:, 2:])  # near the joint, which slides before it turns over
+    constant[top, 1], reference[pushed, 0] = -0.3e6 * WIDTH * side / len(top), 1e3 / len(pushed)
+    watch, behaviour = [core.Monitor.of(len(xy) - 1, 0)], core.Behaviour("rotating")
+    held = [(k, d) for k in bottom.tolist() for d in (0, 1)]
+    firm = core.Softening(0.4e6, 60.0, "linear", 0.2)
+    stone = core.Plane("Q4", quads, WIDTH, YOUNG, 0.2, 0.1, firm)
+    joint = core.Joints(stretches, np.tile([0.0, 1.0], (n, 1)), area, **MORTAR)
+    with core.Model(xy, core.Freedoms.make(len(xy), held), [stone, joint], behaviour) as model:
+        model.loads(constant, reference)
+        expected, displaced = model.run(events, watch), model.displacement(1.0)
+    assert {"cohesion", "tension n", "opening n"} <= {core.EVENTS[code] for code in expected.code}
+    xyz = np.column_stack([xy[:, 0], 0.0 * xy[:, 0], xy[:, 1]])
+    frames, flat = node_frames(xyz, [quads])
+    held = [(k, d) for k in bottom.tolist() for d in (0, 2)] + [(k, d) for k in range(len(xyz)) for d in (1, 3, 4, 5)]
+    shells = core.Shells("Q4", quads, WIDTH, YOUNG, 0.2, 0.1, firm, frames=frames, flat=flat, layers=1, through="gauss")
+    axes = [np.tile(axis, (n, 1)).astype(float) for axis in ([0, 0, 1], [1, 0, 0], [0, -1, 0])]
+    row = core.ShellJoints.rows(*axes, np.zeros(n), frames[stretches])
+    between = core.ShellJoints(stretches, np.tile([0.0, 1.0], (n, 1)), area, **MORTAR, row=row)
+    with core.Model(xyz, core.Freedoms.make(len(xyz), held, of_node=6), [shells, between], behaviour) as model:
+        model.loads(in_space(xy, constant), in_space(xy, reference))
+        found, moved = model.run(events, watch), model.displacement(1.0)
+        assert model.residual() < 1e-8
+    assert len(found) == len(expected) > 100
+    assert (found.point == expected.point).all() and (found.code == expected.code).all()
+    fine = expected.equilibrium.astype(bool)
+    assert fine.sum() > 100
+    assert found.load[fine] == pytest.approx(expected.load[fine], rel=1e-8)
+    assert moved[:, [0, 2]] == pytest.approx(displaced, rel=1e-7, abs=1e-8 * np.abs(displaced).max())
+
+
 def strip(layers, through, push, nu=0.0):
     """A clamped piece of wall, one element, whose other end moves so that its curvature is the same everywhere: two
     unknowns, the strain of the middle and the curvature. Model and loads: `push` [N] along, a unit moment."""

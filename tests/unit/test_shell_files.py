@@ -122,7 +122,7 @@ def test_a_file_bears_as_the_plan_does(tmp_path):
         ripple = 0.2
         events = 60
     """
-    file = '[structure]\nkind = "mesh"\nfile = "corner.msh"\nthickness = 0.3\ngroups = [{ name = "ground", support = "fixed" }]\n'
+    file = '[structure]\nkind = "mesh"\nfile = "corner.msh"\nthickness = 0.3\ngroups = [{ name = "ground", support = "fixed" }, { name = "side", thickness = 0.3 }]\n'
     plan = """
         [structure]
         kind = "building"
@@ -139,7 +139,10 @@ def test_a_file_bears_as_the_plan_does(tmp_path):
     ):
         path = tmp_path / f"{name}.toml"
         path.write_text(textwrap.dedent(text) + textwrap.dedent(material) + more)
-        found.append(extrados.run(path).results[0].results)
+        result = extrados.run(path).results[0]
+        found.append(result.results)
+        where = {"file": "it cracks first in group side at x", "plan": "it cracks first in wall"}[name]
+        assert where in result.answer
     of_file, of_plan = found
     assert of_file.weight_N == pytest.approx(of_plan.weight_N, rel=1e-12) == pytest.approx(2 * 4 * 0.3 * 2000 * GRAVITY)
     assert of_file.first_event_load_N == pytest.approx(of_plan.first_event_load_N, rel=1e-9)
@@ -173,7 +176,9 @@ def test_a_thicker_variant_is_thicker_in_all_groups(tmp_path):
     ):
         path = tmp_path / f"{name}.toml"
         path.write_text(textwrap.dedent(deck).format(default=default, front=front, more=more))
-        found.append(extrados.run(path).results[0].results)
+        result = extrados.run(path).results[0]
+        found.append(result.results)
+        assert "it cracks first in the shell at x" in result.answer  # in no group
     told, varied = found
     (thick,) = varied.variants
     assert thick.greatest_base_shear_N == pytest.approx(told.greatest_load_N, rel=1e-9)
@@ -269,7 +274,7 @@ WRONG = {
     "a corner inward": ("nodes 7, 12, 13, 8, .* at a corner; expected its corners in order, all convex .2 such", {12: [0.2, 0, 0.6]}, [], []),
     "an element twice": ("two elements lie on each other at the edge of nodes 1, 6, .* expected each place covered once", {}, [], [[1, 6, 5, 0]]),
     "a triangle on a quadrilateral": ("two elements lie on each other", {}, [], [[0, 5, 6]]),
-    "an island": ("4 nodes around x 5.5, y 0, z 1 m hang on nothing", {}, [[5, 0, 0], [6, 0, 0], [6, 0, 2], [5, 0, 2]], [[45, 46, 47, 48]]),
+    "an island": ("4 nodes around x 5.5, y 0, z 1 m are not supported", {}, [[5, 0, 0], [6, 0, 0], [6, 0, 2], [5, 0, 2]], [[45, 46, 47, 48]]),
     "solids": ("cells of kind 'tetra'; expected triangle and quad", {}, [], [TETRAHEDRON]),
     "curved sides": ("cells of kind 'quad8'; expected triangle and quad", {}, [], [[0, 1, 2, 3, 4, 5, 6, 7]]),
 }  # fmt: skip
@@ -351,7 +356,7 @@ def test_damaged_files_are_told(tmp_path, change, capfd):
     before = path.read_text()
     path.write_text(change(before))
     assert path.read_text() != before
-    with pytest.raises(BadGeometry, match=r"corner\.msh: is not a mesh that meshio reads.*; expected a whole file"):
+    with pytest.raises(BadGeometry, match=r"corner\.msh: is not a mesh that meshio reads.*; expected a complete file"):
         read(path, [{"name": "ground", "support": "fixed"}])
     assert capfd.readouterr() == ("", "")
 

@@ -6,6 +6,7 @@ import pytest
 from extrados.building.mesh.shells import nodal_areas, spread
 from extrados.core import sla as core
 from extrados.core.shell import node_frames
+from extrados.schema.constants import GRAVITY
 
 WEIGHT, RADIUS, THICKNESS = 20e3, 5.0, 0.2
 LAW = core.Softening(5e3, 5.0, "linear", 0.2)
@@ -114,3 +115,60 @@ def test_a_barrel_vault_on_spreading_springings_opens_in_three_hinge_lines():
     intrados, extrados = middle[free & cracked[:, 6 - top]], middle[free & cracked[:, top]]
     assert len(intrados) and np.abs(intrados - 90.0).max() < 35.0
     assert (extrados < 60.0).any() and (extrados > 120.0).any() and (np.abs(extrados - 90.0) > 30.0).all()
+
+
+def lune(n, out):
+    """Thrust over weight of a slice of a dome between two meridians, with hardly any tensile strength, whose springing has gone
+    outward by `out` [m]: n elements up, one across, planes of symmetry on both sides."""
+    radius, thick, density, half, width = 5.0, 0.5, 2000.0, np.radians(75.0), np.radians(7.5)
+    polar = np.linspace(np.radians(2.0), half, n + 1)
+    m = n + 1
+    xyz = np.concatenate(
+        [
+            radius * np.column_stack([np.sin(polar) * np.cos(a), np.sin(polar) * np.sin(a), np.cos(polar)])
+            for a in (0.0, width)
+        ]
+    )
+    k = np.arange(n)
+    quads = np.column_stack([k + 1, k + 1 + m, k + m, k])
+    held, ties = {(n, 1)}, [[(n, 0, 1.0), (n + m, 0, np.cos(width)), (n + m, 1, np.sin(width))]]
+    for first, a in ((0, 0.0), (m, width)):
+        held |= {(first + i, 5) for i in range(m)} | {(first + n, d) for d in (2, 3, 4)}
+        for q in range(first, first + n):  # along the radius, and about the hoop
+            ways = [[(q, 0, np.cos(a)), (q, 1, np.sin(a))], [(q, 3, -np.sin(a)), (q, 4, np.cos(a))]]
+            ties += [[term for term in way if term[2] != 0.0] for way in ways]
+        if a == 0.0:
+            held |= {(first + i, d) for i in range(n) for d in (1, 3)}
+    freedoms = core.Freedoms.make(2 * m, sorted(held), ties, of_node=6)
+    count, number = int(freedoms.equation.max()) + 1, freedoms.equation
+    freedoms = core.Freedoms(np.where(number < 0, -1, (number - 1) % count), freedoms.factor, 1)
+    load = spread(2 * m, quads, nodal_areas(xyz, quads), np.tile([0, 0, -density * GRAVITY * thick], (n, 1)))
+    shells = core.Shells(
+        "Q4", quads, thick, 5e9, 0.0, radius * (half - polar[0]) / n, core.Softening(1e3, 0.02, "linear", 0.4),
+        frames=np.tile(np.eye(3), (2 * m, 1, 1)), flat=np.zeros(2 * m, dtype=bool), layers=5,
+    )  # fmt: skip
+    with core.Model(xyz, freedoms, [shells], core.Behaviour("orthotropic")) as model:
+        watch = [core.Monitor.of(0, 2)]
+        model.loads(np.zeros_like(load), load)
+        assert model.run(1000, watch, core.Stop(load=1.0)).reason == "target load"
+        model.supports([0.0], [1.0])
+        model.loads(load, np.zeros_like(load), carried=True)
+        events = model.run(10_000, watch, core.Stop(load=out))
+        assert events.reason == "target load" and events.equilibrium.all()
+        thrust = model.reactions() @ [1.0, events.load[-1]]
+    return -thrust[0] / -load[:, 2].sum()
+
+
+def test_a_lune_that_spreads_comes_down_to_its_least_thrust():
+    """What holds a dome up when its springing gives way: the least thrust of a lune, by moments about the intrados at the joint
+    where it is greatest and the extrados at the crown. Nothing slides in it, so that a shell must come to it; and it does on
+    any mesh."""
+    outer, inner, polar = 5.25, 4.75, np.radians(np.linspace(2.0, 75.0, 2000))
+    weight = (outer**3 - inner**3) / 3.0 * (1.0 - np.cos(polar))  # per radian, over density and gravity
+    about_crown = (outer**4 - inner**4) / 4.0 * (0.5 * polar - 0.25 * np.sin(2.0 * polar))
+    least = ((weight * inner * np.sin(polar) - about_crown) / (outer - inner * np.cos(polar))).max() / weight[-1]
+    assert least == pytest.approx(0.2539, abs=1e-4)
+    coarse, fine = [lune(8, out) for out in (0.01, 0.03)], [lune(16, out) for out in (0.01, 0.03)]
+    assert coarse == pytest.approx(fine, rel=0.01)
+    assert fine[1] == pytest.approx(least, rel=0.01)
+    assert fine[0] == pytest.approx(least, rel=0.04) and fine[0] > fine[1]

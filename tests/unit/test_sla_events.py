@@ -166,7 +166,7 @@ CRUSHING = {"compressive_strength": 1e6, "crushing_energy": 2e3}
         ({}, {"mesh": {"size": 0.1}, "control": [{"x": 3.0, "y": 3.0}, {"x": 3.0, "y": 1.5, "direction": "y"}]}),
     ],
 )  # fmt: skip
-@pytest.mark.parametrize("events", [120, pytest.param(400, marks=pytest.mark.verify)])
+@pytest.mark.parametrize("events", [60, pytest.param(400, marks=pytest.mark.verify)])
 def test_what_is_left_out_holds_no_event(material, analysis, events) -> None:
     """A changed factor and the regions that an event concerns give the events of a new factor and of all points."""
     found = []

@@ -43,7 +43,7 @@ MEANT = {
     "FOLDER": "decks", "DIR": "results/my", "A": "results/my", "B": "results/my", "KIND": "rocking", "FILE": "extrados:el-centro-1940",
     "DECK": "my.toml", "ADDRESS": "", "results/a": "results/my", "results/b": "results/my", "PATH": "my.toml",
 }  # fmt: skip
-AWAY = ("explore", "--scheduler", "--install-completion", "my-vault.toml", "--to compas")
+AWAY = ("explore", "--scheduler", "--install-completion", "my-vault.toml", "--to compas", "--together")
 
 
 def text_of(page: Path) -> str:

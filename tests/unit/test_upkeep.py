@@ -86,10 +86,11 @@ def test_benchmarks_have_a_history(tmp_path: Path) -> None:
 def test_the_forge_calls_what_is_there() -> None:
     recipe = (ROOT / ".github" / "workflows" / "ci.yml").read_text(encoding="utf-8")
     targets = set(re.findall(r"^([\w-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.M))
-    called = re.findall(r"run: (?:sudo )?(\S+)(?: (\S+))?$", recipe, re.M)
-    assert len(called) >= 4
+    called = re.findall(r"run: (?:sudo )?(\S+)(?: (\S+).*)?$", recipe, re.M)
+    assert len(called) == recipe.count("run: ") >= 8
     for command, word in called:
-        assert word in targets if command == "make" else (ROOT / command).exists() or command == "git", (command, word)
+        there = (ROOT / command).exists() or command in ("git", "apt-get", "pipx")
+        assert word in targets if command == "make" else there, (command, word)
     assert sys.version_info >= (3, 11)
 
 
@@ -119,3 +120,43 @@ def test_every_room_of_the_core_has_tests_that_seeded_faults_run(monkeypatch: py
     for native, python, _ in rooms.values():
         assert all((ROOT / "tests" / name).exists() for name in python)
         assert all(any((ROOT / "tests").glob(f"*/{name}.*")) for name in native)
+
+
+def test_a_site_with_a_broken_link_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "tools"))
+    broken = tool("tools/site.py").broken
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub" / "index.html").write_text('<a href="../a.html#here">a</a> <a href="https://afar">b</a>')
+    (tmp_path / "a.html").write_text(
+        '<h1 id="here">a</h1> <a href="sub/">b</a> <a href="#here">c</a> <img src="data:,">'
+    )
+    assert broken(tmp_path) == []
+    (tmp_path / "b.html").write_text(
+        '<a href="gone.html">a</a> <a href="a.html#gone">b</a> <script src="https://afar/x.js"></script>'
+    )
+    assert broken(tmp_path) == [
+        "b.html: gone.html leads nowhere",
+        "b.html: a.html#gone leads nowhere",
+        "b.html: https://afar/x.js is loaded from the network",
+    ]
+
+
+def test_what_the_fortran_reference_loads_from_afar_is_taken_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "tools"))
+    page = '<a><!-- Bootstrap -->\n<link href="https://x">\n<!-- Font Awesome --><b><!-- MathJax --><script src="https://y"></script><!-- Other scripts --><c>'
+    assert tool("tools/site.py").FROM_AFAR.sub("", page) == "<a><!-- Font Awesome --><b><!-- Other scripts --><c>"
+
+
+def test_coverage_is_noted_where_contributors_read_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "tools"))
+    coverage, page = tool("tools/coverage.py"), (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    [told] = coverage.NOTE.findall(page)
+    found = [float(number) for number in re.findall(r"\d+\.\d", told)]
+    assert len(found) == 3 and all(50.0 < share <= 100.0 for share in found)
+    made = coverage.noted(page, {"Python": 91.23, "Fortran": 92.0, "C": 93.0}, "2026-12-01")
+    assert (
+        "At the last whole run (2026-12-01) they were 91.2, 92.0 and 93.0 %" in made
+        and len(coverage.NOTE.findall(made)) == 1
+    )
+    with pytest.raises(SystemExit, match="no place"):
+        coverage.noted("nothing", {"Python": 1.0, "Fortran": 1.0, "C": 1.0}, "2026-12-01")

@@ -7,6 +7,7 @@ import pytest
 
 import extrados
 from extrados.analyses.context import Refused
+from extrados.analyses.shell import pushover
 from extrados.analyses.shell.model import build
 from extrados.analyses.shell.tables import Pushover
 from extrados.building.building import Building
@@ -237,12 +238,29 @@ def test_what_a_vault_cannot_do_is_told(tmp_path, stages, change, words):
         ({"stages": [{"settlements": [{"foot": "left", "out": 0.01}], "sense": "-"}]}, "take two stages"),
         ({"stages": [{"name": "a"}, {"name": "a"}]}, "stands twice"),
         ({"stages": [{}], "directions": ["+", "-"]}, "beside stages"),
+        (
+            {"stages": [{}], "without_equilibrium": "proportional"},
+            'without_equilibrium = "proportional" cannot stand beside',
+        ),
         ({"main_stage": "a"}, "there are none"),
     ],
 )
 def test_wrong_stages_are_told(keys, words):
     with pytest.raises(ValueError, match=words):
         Pushover(kind="pushover", **keys)
+
+
+@pytest.mark.parametrize(
+    "thrust, vertical, words",
+    [
+        (2e3, 5e3, "presses outward with 2 kN and down with 5 kN"),
+        (-1.2e-11, 5e3, "presses down with 5 kN"),  # rounding
+        (-3e3, -1e3, "presses inward with 3 kN and up with 1 kN"),
+        (0.0, 1e-9, "bears nothing"),
+    ],
+)
+def test_what_a_foot_presses_with_is_told_in_words(thrust, vertical, words):
+    assert pushover._pressing({"thrust_N": thrust, "vertical_N": vertical}, 1e5) == words
 
 
 def test_thick_walls_are_no_shells():
@@ -290,3 +308,31 @@ def test_a_released_load_is_never_raised_on_the_way(tmp_path):
     on_the_way = ~held[1:]
     assert on_the_way.sum() > 1000 and held.sum() > 1000
     assert np.abs(np.diff(load))[on_the_way].max() <= 1e-9 * np.abs(load).max()
+
+
+@pytest.mark.verify
+def test_the_limit_of_a_dome_of_stones_hangs_on_their_friction(tmp_path):
+    """Pushed, its stones slide; where they cannot, no push brings it down. A shell, which does not slide, is no other view of the
+    same limit."""
+
+    def limit(friction):
+        text = """
+            [structure]
+            kind = "dome"
+            radius = 5.0
+            thickness = 0.5
+            embrace = 150.0
+            rings = 4
+            lunes = 8
+            [joints]
+            friction = FRICTION
+            [analysis]
+            kind = "tilt"
+            direction = 0
+        """
+        (tmp_path / "dome.toml").write_text(textwrap.dedent(text).replace("FRICTION", friction))
+        return extrados.run(tmp_path / "dome.toml").results[0]
+
+    low, high, none = limit("0.7"), limit("2.0"), limit('"no-sliding"')
+    assert high.results.collapse_acceleration_g > 1.5 * low.results.collapse_acceleration_g
+    assert none.status == "refused" and "hold it from all sides" in none.reason

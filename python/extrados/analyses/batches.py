@@ -35,7 +35,10 @@ IN_MEMORY, PIECE = 200_000, 100_000
 
 
 class Job(Protocol):
-    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]: ...
+    """What a sweep does for its members, told from 0."""
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        """The rows of members first .. first + count - 1: arrays (count, ...) by name, which depend on neither batch nor threads."""
 
 
 class Unfinished(Exception):
@@ -68,6 +71,7 @@ class Swept:
 
     @property
     def complete(self) -> bool:
+        """Whether every member is there."""
         return self.finished == self.count
 
     @cached_property

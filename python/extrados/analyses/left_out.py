@@ -1,4 +1,4 @@
-"""What a deck says of its building and an analysis does not reckon with: told by `check` and beside the first answer."""
+"""What a deck says of its building and an analysis does not use: told by `check` and beside the first answer."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -19,19 +19,19 @@ SHARED = frozenset(
 
 
 @dataclass(frozen=True)
-class LeftOut:
+class Remark:
     """A remark with file and line, and the number of the first analysis of the deck that it is about."""
 
     text: str
     analysis: int
 
 
-def left_out(deck: Deck) -> list[LeftOut]:
+def left_out(deck: Deck) -> list[Remark]:
     """Keys of the building that the deck itself gives and that none of its analyses reckons with, or, of what bears on
     whether stones stand, not all; each key once. A value that is the default says nothing, and is not asked for."""
-    asked = [options.reckons_with(building) for options, building in zip(deck.analyses, deck.buildings, strict=True)]
+    asked = [_reckoned_with(*each) for each in zip(deck.analyses, deck.buildings, strict=True)]
     names = _names(deck.analyses)
-    found: dict[tuple[str, str], LeftOut] = {}
+    found: dict[tuple[str, str], Remark] = {}
     for name, at in _said(deck.building):
         # who overrides a key for itself does not hear what the deck says of it
         hears = [k for k in range(len(asked)) if not _overrides(deck.analyses[k], name)]
@@ -40,19 +40,25 @@ def left_out(deck: Deck) -> list[LeftOut]:
             continue
         who, able = ", ".join(names[k] for k in without), [names[k] for k in hears if k not in without]
         if not able:
-            text = f"{who} {'does' if len(without) == 1 else 'do'} not reckon with it{_known_to(name)}"
+            text = f"{who} {'does' if len(without) == 1 else 'do'} not use it{_known_to(name)}"
         elif name in SHARED:
-            text = f"{', '.join(able)} {'reckons' if len(able) == 1 else 'reckon'} with it, {who} {'does' if len(without) == 1 else 'do'} not"
+            text = f"{', '.join(able)} {'uses' if len(able) == 1 else 'use'} it, {who} {'does' if len(without) == 1 else 'do'} not"
         else:
             continue
-        found["", name] = LeftOut(deck.complaint(None, at, text), without[0])
+        found["", name] = Remark(deck.complaint(None, at, text), without[0])
     for k, options in enumerate(deck.analyses):
         for table in OVERRIDES:
             for name, at in _given(table, getattr(options, table, None)):
                 if name not in asked[k] and (names[k], name) not in found:
-                    words = f"{names[k]} does not reckon with it{_known_to(name)}"
-                    found[names[k], name] = LeftOut(deck.complaint(options, ("analysis", *at), words), k)
+                    words = f"{names[k]} does not use it{_known_to(name)}"
+                    found[names[k], name] = Remark(deck.complaint(options, ("analysis", *at), words), k)
     return list(found.values())
+
+
+def _reckoned_with(options: Analysis, building: Building) -> set[str]:
+    if options.kind == "assess":
+        return kinds.load("analyses.assess.strategies:reckon_with")(options, building)
+    return options.reckons_with(building)
 
 
 def _said(building: Building) -> Iterator[tuple[str, Key]]:
@@ -101,4 +107,4 @@ def _known_to(name: str) -> str:
     """Analyses that reckon with a key, as words."""
     tables = {kind: kinds.load(parts.table) for kind, parts in kinds.ANALYSES.items()}
     able = [kind for kind, table in tables.items() if name in (*table.uses, *table.beside) and name not in table.method]
-    return f"; {', '.join(able[:3])}{' and others' if len(able) > 3 else ''} may" if able else ""
+    return f"; {', '.join(able[:3])}{' and others' if len(able) > 3 else ''} can use it" if able else ""

@@ -22,7 +22,8 @@ MOST_NOTES = 10  # of a suite, shown with the result
 class Source(Protocol):
     """Motions 0 .. of a deck."""
 
-    def grounds(self, first: int, count: int, threads: int) -> list[Ground | str]: ...
+    def grounds(self, first: int, count: int, threads: int) -> list[Ground | str]:
+        """Motions first .. first + count - 1; text says why one is missing."""
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from extrados import interrupts, kinds
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import concluded, faulty
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.left_out import LeftOut, left_out
+from extrados.analyses.left_out import Remark, left_out
 from extrados.analyses.needs import complaints
 from extrados.analyses.table import Analysis
 from extrados.building.building import Building
@@ -46,11 +46,11 @@ def run_analyses(context: Context) -> list[Result]:
     return results
 
 
-def _ignored(deck: Deck) -> list[LeftOut]:
-    """What no analysis reckons with; nothing where the building cannot be made, which the analysis that looks at it says."""
+def _ignored(deck: Deck) -> list[Remark]:
+    """What none of the analyses uses; nothing where the building cannot be made, which the analysis that looks at it says."""
     try:
         return left_out(deck)
-    except Exception:
+    except (BadGeometry, CoreError, MemoryError):
         return []
 
 

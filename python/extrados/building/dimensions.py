@@ -19,6 +19,7 @@ class Dimension:
 
     @property
     def length(self) -> float:
+        """Length [m]."""
         return float(np.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1]))
 
 

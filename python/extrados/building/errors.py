@@ -29,7 +29,7 @@ class NoView(BadGeometry):
 
 @contextmanager
 def blaming(*key: str | int) -> Iterator[None]:
-    """BadGeometry that names no key but the structure's table is told of this key of it."""
+    """A BadGeometry that blames [structure] as a whole is made to blame this key of it."""
     try:
         yield
     except BadGeometry as error:

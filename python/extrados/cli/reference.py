@@ -133,4 +133,4 @@ def version() -> None:
     from extrados.running.provenance import provenance
 
     made = provenance()
-    print(f"extrados {VERSION} {made['commit']} ({made['compiler']}, {made['build_type']})")
+    print(" ".join(filter(None, ("extrados", VERSION, made["commit"], f"({made['compiler']}, {made['build_type']})"))))

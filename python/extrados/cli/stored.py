@@ -21,14 +21,47 @@ def report(
         out_console.say(f"Report:  {write_report(folder, pdf)[0]}")
 
 
-def plot(folder: Annotated[Path, typer.Argument(help="a results folder")]) -> None:
-    """Draw the figures and the report anew, and list the figures."""
+def plot(
+    folders: Annotated[list[Path], typer.Argument(help="results folders")],
+    together: Annotated[
+        Path | None,
+        typer.Option(help="draw the capacity curves of all of them into this one picture (.png, and .svg beside it)"),
+    ] = None,
+) -> None:
+    """Draw the figures and the report anew, and list the figures; or the capacity curves of several runs in one picture."""
     from extrados.plots.report import write_report
 
     with errors():
-        for figures in write_report(folder)[1].values():
-            for name, caption in figures:
-                out_console.say(f"{folder / 'figures' / name}.png: {caption}")
+        if together is not None:
+            _together(folders, together)
+            return
+        for folder in folders:
+            for figures in write_report(folder)[1].values():
+                for name, caption in figures:
+                    out_console.say(f"{folder / 'figures' / name}.png: {caption}")
+
+
+def _together(folders: list[Path], picture: Path) -> None:
+    """One picture of all load curves, and the greatest load of each beside that of the first."""
+    from rich.table import Table
+    from rich.text import Text
+
+    from extrados.plots.together import draw, pushes
+    from extrados.results.store import read
+
+    curves = pushes([(str(folder), read(folder)) for folder in folders])
+    table = Table(box=None, pad_edge=False)
+    for head in ("run", "load to", "greatest load [kN]", "at [mm]", "over its weight", "over the first"):
+        table.add_column(Text(head), overflow="fold")
+    first, _ = curves[0].greatest()
+    for curve in curves:
+        load, at = curve.greatest()
+        share = "" if curve.weight is None else f"{load / curve.weight:.3g}"
+        ratio = f"{load / first:.3g}" if first > 0.0 else ""
+        row = (curve.analysis, curve.sense, f"{load / 1e3:.4g}", f"{1e3 * at:.3g}", share, ratio)
+        table.add_row(*(Text(printable(text)) for text in row))
+    out_console.print(table)
+    out_console.say(f"Curves:  {draw(curves, picture)}")
 
 
 def compare(

@@ -149,7 +149,8 @@ def thrust_line(
 ) -> ThrustLine:
     """Dynamic thrust line (thesis 5.2.3) of the mechanism that rocks to +x.
 
-    Rotation q [rad], its rate and acceleration, and the ground acceleration to +x and up [m/s^2] at each state.
+    At each of the states: rotation q (states) [rad], its rate v [rad/s] and acceleration a [rad/s^2], and the acceleration
+    of the ground (states) [m/s^2], horizontal to +x and vertical up.
     """
     n = len(arch.mass)
     faces = np.stack([np.transpose(arch.intrados), np.transpose(arch.extrados)], axis=1)

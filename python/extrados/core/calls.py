@@ -24,7 +24,7 @@ _MOST_THREADS = max(64, os.cpu_count() or 1)
 
 
 def real(name: str, value: npt.ArrayLike, shape: tuple[int | None, ...]) -> npt.NDArray[np.float64]:
-    """`value` as a finite float64 array in Fortran order; None in `shape` leaves a length open."""
+    """`value` as a finite float64 array of a shape in Fortran order; None in `shape`, as in (None, 2), leaves a length open."""
     array = np.asfortranarray(value, dtype=np.float64)
     if array.ndim != len(shape) or any(
         want is not None and have != want for have, want in zip(array.shape, shape, strict=True)
@@ -37,7 +37,7 @@ def real(name: str, value: npt.ArrayLike, shape: tuple[int | None, ...]) -> npt.
 
 
 def integers(name: str, value: npt.ArrayLike, length: int | None = None) -> npt.NDArray[np.int32]:
-    """`value` as an int32 vector; refuses fractions, which f2py would cut off silently."""
+    """`value` as a vector (length) of int32; refuses fractions, which f2py would cut off silently."""
     array = np.asarray(value)
     if array.ndim != 1 or (length is not None and array.size != length):
         raise ValueError(f"{name} has shape {array.shape}, expected ({length},)")
@@ -45,7 +45,10 @@ def integers(name: str, value: npt.ArrayLike, length: int | None = None) -> npt.
 
 
 def indices(name: str, value: npt.ArrayLike, end: int, shape: tuple[int | None, ...]) -> npt.NDArray[np.int32]:
-    """0-based indices below `end` as the core counts them, from 1, in Fortran order; IndexError for others."""
+    """`value`, 0-based indices below `end`, as the core counts them, from 1, in Fortran order; IndexError for others.
+
+    None in `shape`, as in (None, 2), leaves a length open.
+    """
     array = np.asarray(value)
     if array.ndim != len(shape) or any(
         want is not None and have != want for have, want in zip(array.shape, shape, strict=True)
@@ -105,6 +108,7 @@ class Deadline:
 
     @property
     def passed(self) -> bool:
+        """Whether it has run out."""
         return self.over.is_set()
 
 

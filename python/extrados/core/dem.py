@@ -69,16 +69,11 @@ class SupportMove:
 
 @dataclass(frozen=True)
 class Options(RunOptions):
-    """How to run; see also RunOptions. domain: left, right, bottom, top [m]. rigid: contacts without springs (the joints'
-    stiffness and damping play no part, `step` 0 takes one that suits the smallest block), with Newton's coefficient `rebound`
-    at each point; quasi_static: without inertia."""
+    """How to run; see also RunOptions. domain: left, right, bottom, top [m]."""
 
     domain: tuple[float, float, float, float] = (-1e30, 1e30, -1e30, 1e30)
     moving_base: bool = False
     mass_damping: float = 0.0
-    rigid: bool = False
-    quasi_static: bool = False
-    rebound: float = 0.0
     gravity: tuple[float, float] = (0.0, -GRAVITY)
 
 
@@ -94,31 +89,11 @@ class Contacts:
     shear: np.ndarray
 
 
-@dataclass(frozen=True)
-class Effort:
-    """What rigid contacts took: steps, factorisations, most rounds of a step, steps that did not converge, and the greatest
-    violation of the law over the velocity that gravity gives in a step."""
-
-    steps: int
-    factors: int
-    most_rounds: int
-    open_steps: int
-    residual: float
-
-    def with_(self, other: "Effort") -> "Effort":
-        """Both runs together."""
-        return Effort(
-            self.steps + other.steps, self.factors + other.factors, max(self.most_rounds, other.most_rounds),
-            self.open_steps + other.open_steps, max(self.residual, other.residual),
-        )  # fmt: skip
-
-
 @dataclass(frozen=True, kw_only=True)
 class Run(FoundRun):
     """A run, and what holds the blocks at its end."""
 
     contacts: Contacts
-    effort: Effort
 
 
 class Model(BodyModel[Run]):
@@ -208,8 +183,6 @@ class Model(BodyModel[Run]):
             real("domain", o.domain, (4,)),
         )  # fmt: skip
         check(status, "surroundings of the blocks")
-        status = _core.api_dem.rigid(self.handle, int(o.rigid), int(o.quasi_static), float(o.rebound))
-        check(status, "rebound of rigid contacts")
 
     def _last_run(self, interrupted: bool) -> Run:
         recorded = self._recorded(interrupted)
@@ -219,18 +192,10 @@ class Model(BodyModel[Run]):
         check(status, "contacts after the run")
         touching, contact, _, status = _core.api_dem.contacts(self.handle, int(closed))
         check(status, "contacts after the run")
-        effort, violation, status = _core.api_dem.effort(self.handle)
-        check(status, "effort of the run")
         return Run(
             **recorded, settled=settled.T, bounces=bounces, airborne=airborne,
             contacts=Contacts(touching.T - 1, contact.T[:, :2], contact.T[:, 2:4], contact[4], contact[5]),
-            effort=_effort(effort, violation),
         )  # fmt: skip
-
-
-def _effort(counts: np.ndarray, violation: float) -> Effort:
-    steps, factors, rounds, open_steps = (int(n) for n in counts)
-    return Effort(steps, factors, rounds, open_steps, float(violation))
 
 
 def run(
@@ -244,7 +209,11 @@ def run(
     moves: tuple[SupportMove, ...] = (),
     times: np.ndarray | None = None,
 ) -> Run:
-    """One run of a model that is made for it; see Model and Model.run. No ground: it stands still."""
+    """One run of a model that is made for it; see Model and Model.run. No ground: it stands still.
+
+    shift (n, 3): displacements of the bodies at the start [m], [m], [rad]; rate (n, 3): their velocities; times (frames):
+    of output [s].
+    """
     with (
         Model(bodies, options, shift=shift, rate=rate, moves=moves) as model,
         as_motion_set([ground or STILL]) as motions,

@@ -159,8 +159,11 @@ def run(
     rate: np.ndarray | None = None,
     times: np.ndarray | None = None,
 ) -> Run:
-    """One run of a model that is made for it; see Model and Model.run. No ground: it stands still. across: its other
-    horizontal component, along z x way."""
+    """One run of a model that is made for it; see Model and Model.run. No ground: it stands still.
+
+    across: its other horizontal component, along z x way. rate (n, 6): velocities [m/s] and spins [rad/s] of the bodies at
+    the start; times (frames): of output [s].
+    """
     grounds = [ground or STILL, *([] if across is None else [across])]
     with Model(solids, options, rate=rate) as model, as_motion_set(grounds) as motions:
         return model.run(motions, across=None if across is None else 1, scale=scale, times=times)

@@ -35,7 +35,8 @@ class RunOptions:
     """How to run. step [s]: 0 takes `fraction` of the critical step. settle_steps 0 starts without settling under gravity;
     settlement: displacement by which a body falls instead of settling [m], 0 none. collapse: displacement that counts as
     collapse [m], 0 none. residual_limit: of the energy that went round, above it the run is stopped. stop_at_rest: end once
-    all rests and the ground is still."""
+    all rests and the ground is still. rigid: contacts without springs (the joints' stiffness and damping play no part, `step` 0
+    takes one that suits the smallest block), with Newton's coefficient `rebound` at each point; quasi_static: without inertia."""
 
     end_time: float
     output_step: float = 0.01
@@ -48,6 +49,33 @@ class RunOptions:
     residual_limit: float = 0.1
     stop_at_rest: bool = False
     threads: int = 1
+    rigid: bool = False
+    quasi_static: bool = False
+    rebound: float = 0.0
+
+
+@dataclass(frozen=True)
+class Effort:
+    """What rigid contacts took: steps, factorisations, most rounds of a step, steps that did not converge, the greatest
+    violation of the law over the velocity that gravity gives in a step, and when that was [s]."""
+
+    steps: int
+    factors: int
+    most_rounds: int
+    open_steps: int
+    residual: float
+    worst: float
+
+    def with_(self, other: "Effort") -> "Effort":
+        """Both runs together."""
+        return Effort(
+            self.steps + other.steps, self.factors + other.factors, max(self.most_rounds, other.most_rounds),
+            self.open_steps + other.open_steps, *max((self.residual, self.worst), (other.residual, other.worst)),
+        )  # fmt: skip
+
+
+#: Before any run, and of springs
+NO_EFFORT = Effort(0, 0, 0, 0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,7 +84,7 @@ class FoundRun:
 
     time (t) [s]; place (t, n, 3): x, y [m] and rotation [rad] relative to the ground, or in space the centroids [m]; rate
     (t, n, 3 or 6); energy: see ENERGIES, each (t) [J]; settled (n, 3): place after settling; residual: greatest energy from
-    nowhere over the energy that went round; bounces and airborne time [s] of each body.
+    nowhere over the energy that went round; bounces and airborne time [s] of each body; effort: of rigid contacts.
     """
 
     reason: str
@@ -76,6 +104,7 @@ class FoundRun:
     residual: float
     bounces: np.ndarray
     airborne: np.ndarray
+    effort: Effort
     interrupted: bool = False
 
 
@@ -103,6 +132,8 @@ class BodyModel(Owner, ABC, Generic[Found]):
             thread_count(o.threads),
         )  # fmt: skip
         check(status, "options of the run")
+        status = _core.api_dem_run.rigid(self.handle, int(o.rigid), int(o.quasi_static), float(o.rebound))
+        check(status, "rebound of rigid contacts")
 
     def run(
         self,
@@ -118,7 +149,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
         """Settle under gravity, then move the ground by `scale` times a motion of the set.
 
         across: motion of the set whose horizontal part is the other component, in space a quarter turn from `way` seen from
-        above; of the plane none. times: ascending output times [s] instead of every output_step. state: goes on where a run of this model, these
+        above; of the plane none. times (frames): ascending output times [s] instead of every output_step. state: goes on where a run of this model, these
         times and this motion had paused. watch: the run pauses now and then, and when it is interrupted, tells the time
         it has come to [s], and may be asked for its `state`. Neither changes a bit of the result.
         """
@@ -159,7 +190,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
         return self._last_run(interrupted)
 
     def state(self) -> np.ndarray:
-        """The whole state of a run that has paused, for `run` of this build alone; HandleError where none has."""
+        """The whole state (words) of a run that has paused, for `run` of this build alone; HandleError where none has."""
         words, status = _core.api_dem_run.state_size(self.handle)
         check(status, "state of a run that has paused")
         state, status = _core.api_dem_run.state(self.handle, int(words))
@@ -186,16 +217,19 @@ class BodyModel(Owner, ABC, Generic[Found]):
         when, place, rate, energy, status = _core.api_dem_run.history(self.handle, self.count, self.rates, points)
         check(status, "history of the run")
         least_step, critical_step, stop_time, residual = (float(value) for value in measures)
+        took, measures, status = _core.api_dem_run.effort(self.handle)
+        check(status, "effort of the run")
         return {
             "reason": REASONS[reason], "blamed": [k - 1 for k in (first, second) if k > 0], "time": when, "place": place.T,
             "rate": rate.T, "energy": dict(zip(ENERGIES, energy, strict=True)), "stop_time": stop_time, "steps": steps,
             "settling_steps": settling, "searches": searches, "most_pairs": pairs, "step": least_step,
             "critical_step": critical_step, "residual": residual, "interrupted": interrupted,
+            "effort": Effort(*(int(n) for n in took), *(float(value) for value in measures)),
         }  # fmt: skip
 
 
 def state_words(state: np.ndarray) -> np.ndarray:
-    """The words of a state that was kept with its digest; ValueError where they are damaged."""
+    """The words (words) of a state that was kept with its digest; ValueError where they are damaged."""
     state = np.ascontiguousarray(state, dtype=np.int64)
     words = state[:-_DIGEST]
     if state.ndim != 1 or not np.array_equal(state[-_DIGEST:], state_digest(words)):
@@ -204,5 +238,5 @@ def state_words(state: np.ndarray) -> np.ndarray:
 
 
 def state_digest(words: np.ndarray) -> np.ndarray:
-    """What tells a damaged state."""
+    """What tells damaged words: four more (4)."""
     return np.frombuffer(hashlib.sha256(words.tobytes()).digest(), dtype=np.int64)

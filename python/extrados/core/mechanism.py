@@ -17,7 +17,11 @@ from extrados.core.rocking import Body
 
 
 class Links(Protocol):
-    """What the core needs of a linkage, see limit.linkage.Linkage."""
+    """What the core needs of a linkage, see limit.linkage.Linkage.
+
+    mass (parts) [kg], centroid (parts, 2) [m], inertia (parts) [kg m^2]; point (hinges, 2) [m], joined (hinges, 2);
+    row (3 parts - 1, 2).
+    """
 
     @property
     def side(self) -> int: ...
@@ -95,7 +99,7 @@ class Coefficients:
 
 
 def coefficients(side: Table, q: npt.ArrayLike) -> Coefficients:
-    """What the integrator sees of one side at rotations q [rad]."""
+    """What the integrator sees of one side at rotations q (n) [rad]."""
     values, inside, status = _core.api_mechanism.evaluate(side.numbers, real("q", np.atleast_1d(q), (None,)))
     check(status, "table of the mechanism")
     return Coefficients(*np.where(inside != 0, values, np.nan))

@@ -44,7 +44,10 @@ def envelope(kind: str, parameters: npt.ArrayLike, points: int, step: float) -> 
 def line_spectrum(
     intensity: npt.ArrayLike, frequency: npt.ArrayLike, amplitude: npt.ArrayLike, wanted: float, lines: npt.ArrayLike
 ) -> np.ndarray:
-    """Fourier amplitudes at `lines` [Hz]; amplitude (intensities, frequencies), log-log in between."""
+    """Fourier amplitudes (n) at `lines` (n) [Hz] for an intensity that is wanted.
+
+    amplitude (intensities, frequencies): known at each intensity and frequency [Hz]; log-log in between.
+    """
     intensity, frequency = real("intensity", intensity, (None,)), real("frequency", frequency, (None,))
     table = real("amplitude", np.asarray(amplitude).T, (frequency.size, intensity.size))
     value, status = _core.api_motion.line_spectrum(
@@ -55,7 +58,7 @@ def line_spectrum(
 
 
 def line_widths(lines: npt.ArrayLike, spacing: str) -> np.ndarray:
-    """Share of the band each line stands for [Hz]; bin edges at geometric (log) or arithmetic (uniform) means."""
+    """Share of the band (n) that each of the lines (n) stands for [Hz]; bin edges at geometric (log) or arithmetic (uniform) means."""
     width, status = _core.api_motion.line_widths(SPACINGS[spacing], real("lines", lines, (None,)))
     check(status, "widths of the lines")
     return width
@@ -64,7 +67,8 @@ def line_widths(lines: npt.ArrayLike, spacing: str) -> np.ndarray:
 def line_amplitudes(
     value: npt.ArrayLike, width: npt.ArrayLike, scaling: str, factor: float, duration: float
 ) -> np.ndarray:
-    """Amplitudes of the sines [unit of value / s]; duration: integral of the squared envelope [s]. Thesis Eq. 6.6."""
+    """Amplitudes (n) of the sines [unit of value / s] from value and width (n) [Hz] of each line; duration: integral of
+    the squared envelope [s]. Thesis Eq. 6.6."""
     value = real("value", value, (None,))
     amplitude, status = _core.api_motion.line_amplitudes(
         SCALINGS[scaling], float(factor), float(duration), value, real("width", width, value.shape)
@@ -74,7 +78,7 @@ def line_amplitudes(
 
 
 def phases(seed: int, index: int, count: int) -> np.ndarray:
-    """Random phases in [0, 2 pi) of motion `index` of the set `seed`."""
+    """Random phases (count) in [0, 2 pi) of motion `index` of the set `seed`."""
     phase, status = _core.api_motion.phases(int(seed), int(index), int(count))
     check(status, "random phases")
     return phase
@@ -92,8 +96,8 @@ def generate(
 ) -> np.ndarray:
     """Motions first .. first + count - 1 of the set `seed` (count, points), thesis Eqs 6.6 to 6.8.
 
-    lines [Hz] and their amplitudes [m/s^2]; window: envelope at 0, step, ... The bits of motion k depend on
-    neither count, first nor threads.
+    lines (n) [Hz] and the amplitude (n) of each [m/s^2]; window (points): envelope at 0, step [s], ... The bits of motion
+    k depend on neither count, first nor threads.
     """
     lines, window = real("lines", lines, (None,)), real("window", window, (None,))
     if not (-_I64 <= seed <= _I64 and first >= 0 and count >= 1):
@@ -141,6 +145,7 @@ def response_spectra(
 ) -> Spectra:
     """Response spectra of one motion (points) or several (count, points) [m/s^2], from rest.
 
+    motions: samples every `step` [s]; periods [s] and dampings (share of the critical) of the oscillators.
     Exact for samples joined by straight lines (Nigam and Jennings 1969); free vibration after the end counts.
     """
     batch = _batch(motions)
@@ -161,7 +166,8 @@ def response_spectra(
 
 
 def oscillator(motion: npt.ArrayLike, step: float, period: float, damping: float) -> tuple[np.ndarray, np.ndarray]:
-    """Displacement [m] and velocity [m/s] of one oscillator relative to the ground at the samples, from rest."""
+    """Displacement (points) [m] and velocity [m/s] of one oscillator relative to the ground at the samples of a motion
+    (points) [m/s^2], from rest; step and period [s], damping as share of the critical."""
     u, v, status = _core.api_motion.oscillator(
         real("motion", motion, (None,)), _step(step), float(period), float(damping), POINTS_PER_CYCLE
     )
@@ -185,29 +191,29 @@ class Measures:
 
     @property
     def duration(self) -> np.ndarray:
-        """Significant duration 5-95 % [s]."""
+        """Significant duration 5-95 % (count) [s]."""
         return self.t95 - self.t05
 
     @property
     def duration_75(self) -> np.ndarray:
-        """Significant duration 5-75 % [s]."""
+        """Significant duration 5-75 % (count) [s]."""
         return self.t75 - self.t05
 
 
 def measures(motions: npt.ArrayLike, step: float, threads: int = 1) -> Measures:
-    """Measures of one motion (points) or several (count, points) [m/s^2]; exact for straight lines between samples."""
+    """Measures of motions, one (points) or several (count, points) [m/s^2]; exact for straight lines between samples."""
     value, status = long_call(_core.api_motion.motion_measure, _batch(motions), _step(step), thread_count(threads))
     check(status, "intensity measures")
     return Measures(*value)
 
 
 def kinematics(motion: npt.ArrayLike, step: float) -> tuple[np.ndarray, np.ndarray]:
-    """Velocity [m/s] and displacement [m] at the samples of an acceleration [m/s^2], from rest."""
+    """Velocity (points) [m/s] and displacement [m] at the samples of a motion (points) [m/s^2] every `step` [s], from rest."""
     return _core.api_motion.kinematics(real("motion", motion, (None,)), _step(step))
 
 
 def fourier(series: npt.ArrayLike, length: int | None = None) -> np.ndarray:
-    """Transform (length // 2 + 1) complex of a real series padded with zeros to `length`; GSL, not scaled."""
+    """Transform (length // 2 + 1,) complex of a real series (n) padded with zeros to `length`; GSL, not scaled."""
     series = real("series", series, (None,))
     length = int(length or series.size)
     if length < max(2, series.size):

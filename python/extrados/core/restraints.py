@@ -75,7 +75,7 @@ def restrained_body(
 ) -> Body:
     """A rocking structure with restraints, and with a wall on a side that is not open.
 
-    tables: paths rocking to +x and to -x, of all laws; rebound: rate after over before where it is thrown back to +x, -x.
+    tables: paths rocking to +x (n) and to -x (m), of all laws in the core's order; rebound: rate after over before where it is thrown back to +x, -x.
     """
     if not any(open_sides) or not all(0.0 <= r <= 1.0 for r in rebound):
         raise ValueError(f"open sides {open_sides}, rebound {rebound}: expected an open side and 0 to 1")

@@ -260,7 +260,9 @@ def ensemble(
 ) -> Ensemble:
     """Run pairs of bodies and motions (0-based indices); results do not depend on `threads`.
 
-    bodies and grounds may be sets made before: they are then not handed over again. run_scale, end_time [s] and start_rotation (> 0 to +x) [rad] are one number or one for each run.
+    run_body, run_motion (runs): which body moves under which motion. bodies and grounds may be sets made before: they are
+    then not handed over again. run_scale, end_time [s] and start_rotation (> 0 to +x) [rad] are one number or one for each
+    run (runs).
 
     With `stop_when_safe` a run ends once the motion is over and the energy left is below the barrier:
     outcome and peak are known then, the number of impacts is not.

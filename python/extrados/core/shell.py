@@ -4,7 +4,10 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from extrados import _core
+from extrados.core.errors import check
 from extrados.core.sla import shell_axes
+from extrados.core.sla_parts import THROUGH
 
 #: Normals that differ by less than this angle are those of one plane [rad]
 FLAT = 1e-5
@@ -13,7 +16,7 @@ FLAT = 1e-5
 def node_frames(xyz: np.ndarray, groups: Iterable[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     """Axes of the rotations of each node (nodes, 3, 3), columns, and whether the shell is flat there (nodes).
 
-    groups: the nodes (elements, 3 or 4) of all shells that bend. Where they lie in one plane at a node, its axes are
+    xyz (nodes, 3) [m]. groups: the nodes (elements, 3 or 4) of all shells that bend. Where they lie in one plane at a node, its axes are
     those of the plane, the third its normal; elsewhere they are x, y, z.
     """
     frames, flat = np.tile(np.eye(3), (len(xyz), 1, 1)), np.ones(len(xyz), dtype=bool)
@@ -29,3 +32,10 @@ def node_frames(xyz: np.ndarray, groups: Iterable[np.ndarray]) -> tuple[np.ndarr
             flat[corner[away > FLAT]] = False
     frames[~flat | ~seen] = np.eye(3)
     return frames, flat & seen
+
+
+def layers_of(count: int, through: str) -> tuple[np.ndarray, np.ndarray]:
+    """Heights of the layers of a shell over its middle, in thicknesses, and their shares of the thickness."""
+    height, share, status = _core.api_shell.layers_of(THROUGH[through], count)
+    check(status, f"{count} layers by {through}")
+    return np.array(height[:count]), np.array(share[:count])

@@ -29,6 +29,7 @@ from extrados.core.sla_parts import (
     Joints,
     Monitor,
     Plane,
+    ShellJoints,
     Shells,
     Softening,
     Springs,
@@ -58,6 +59,7 @@ __all__ = [
     "Model",
     "Monitor",
     "Plane",
+    "ShellJoints",
     "Shells",
     "Softening",
     "Springs",
@@ -101,7 +103,7 @@ class BadElement(ValueError):
 
 
 def teeth(softening: Softening, young: float, band: float) -> tuple[np.ndarray, np.ndarray]:
-    """Secant moduli [Pa] and peak stresses [Pa] of the teeth of a crack band `band` [m] wide."""
+    """Secant moduli (teeth) [Pa] and peak stresses (teeth) [Pa] of a crack band `band` [m] wide; young [Pa]."""
     s = softening
     n, modulus, strength, status = _core.api_sla_laws.teeth(
         LAWS[s.law], young, s.strength, s.energy, band, s.ripple, int(s.exact), int(s.overshoot), MOST_TEETH
@@ -125,7 +127,10 @@ def intervals(alpha: float, beta: float, a: npt.ArrayLike, b: npt.ArrayLike) -> 
 def body_force(
     kind: str, points: tuple[int, int], xy: npt.ArrayLike, connect: npt.ArrayLike, density: npt.ArrayLike
 ) -> np.ndarray:
-    """Consistent nodal forces (nodes, 2) [N] of a force per wall area (elements, 2) [N/m^2]."""
+    """Consistent nodal forces (nodes, 2) [N] of a density (elements, 2): force per wall area [N/m^2].
+
+    xy (nodes, 2) [m]; connect (elements, nodes of one), from 0.
+    """
     place = real("xy", np.transpose(xy), (2, None))
     nodes = indices("connect", np.transpose(connect), place.shape[1], (ELEMENTS[kind], None))
     force, bad, status = _core.api_sla_model.body_force(
@@ -138,7 +143,10 @@ def body_force(
 
 
 def shell_axes(xyz: npt.ArrayLike, connect: npt.ArrayLike) -> np.ndarray:
-    """Axes (elements, 3, 3) of flat shells, rows x, y, normal: x is horizontal, y goes up; of horizontal ones x is x."""
+    """Axes (elements, 3, 3) of flat shells, rows x, y, normal: x is horizontal, y goes up; of horizontal ones x is x.
+
+    xyz (nodes, 3) [m]; connect (elements, 3 or 4), from 0.
+    """
     place = real("xyz", np.transpose(xyz), (3, None))
     nodes = indices("connect", np.transpose(connect), place.shape[1], (None, None))
     axes, bad, status = _core.api_shell.axes_of(place, nodes)
@@ -328,7 +336,11 @@ class Model(Owner):
             _each("small", group.small, count), *real("normal", np.transpose(group.normal), (2, count)),
         )  # fmt: skip
         dry = np.broadcast_to(np.asarray(group.dry, dtype=np.int32), (count,))
-        return _core.api_sla_joints.joints(self.handle, connect, properties, _rows(*tables, dry), float(group.ripple))
+        choices, ripple = _rows(*tables, dry), float(group.ripple)
+        if isinstance(group, ShellJoints):
+            row = real("row", group.row.reshape(2 * count, 3, 24).transpose(2, 1, 0), (24, 3, 2 * count))
+            return _core.api_sla_joints.joints_between_shells(self.handle, connect, properties, choices, ripple, row)
+        return _core.api_sla_joints.joints(self.handle, connect, properties, choices, ripple)
 
     def _add_springs(self, group: Springs) -> None:
         count = len(group.stiffness)
@@ -358,7 +370,10 @@ class Model(Owner):
         events: int = 0,
         ledger: npt.ArrayLike = (0.0, 0.0, 0.0),
     ) -> None:
-        """Start a stage under nodal forces (nodes, 2) [N], of shells (nodes, 6) [N], [N m]: constant + lambda reference."""
+        """Start a stage under nodal forces (nodes, 2) [N], of shells (nodes, 6) [N], [N m]: constant + lambda reference.
+
+        ledger (3,): external work, energy dissipated and energy of cracks so far [J].
+        """
         status = long_call(
             _core.api_sla.loads,
             self.handle,
@@ -371,7 +386,7 @@ class Model(Owner):
         check(status, "loads")
 
     def supports(self, constant: npt.ArrayLike, rate: npt.ArrayLike) -> None:
-        """Displacements (moved) [m] of the supports that move, constant and per multiplier; before the loads."""
+        """Displacements (moved) [m] of the supports that move, constant and their rate per multiplier; before the loads."""
         moved = np.asfortranarray(
             np.column_stack([real("constant", constant, (self.moved,)), real("rate", rate, (self.moved,))])
         )
@@ -464,7 +479,7 @@ class Model(Owner):
         return np.array(values, order="F")
 
     def set_damage(self, damage: npt.ArrayLike) -> None:
-        """Go on from a stored damage: the factor is made anew."""
+        """Go on from a stored damage (11, points): the factor is made anew."""
         status = _core.api_sla.set_damage(self.handle, real("damage", damage, (11, self.points)))
         check(status, "stored damage")
         self.factorise()
@@ -496,8 +511,9 @@ class Model(Owner):
         return standing
 
     def renew(self, damage: npt.ArrayLike, standing: npt.ArrayLike) -> None:
-        """Go on from a damage and where the loop stood, under the loads of the stage, with a new factor.
+        """Go on from a damage (11, points) and where the loop stood, under the loads of the stage, with a new factor.
 
+        standing (31,): as the method of that name gave it.
         Whoever goes on from the same two gets the same bits, after whatever history. Raises FreeNode.
         """
         self.set_damage(damage)

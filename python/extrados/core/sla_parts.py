@@ -53,6 +53,7 @@ class Monitor:
 
     @staticmethod
     def of(node: int, direction: int) -> "Monitor":
+        """The displacement of one node in one direction."""
         return Monitor(np.array([node]), np.array([direction]), np.array([1.0]))
 
 
@@ -250,6 +251,35 @@ class Joints:
     def band(self) -> np.ndarray:
         """1 m by element."""
         return np.ones(len(self.connect))
+
+
+@dataclass(frozen=True)
+class ShellJoints(Joints):
+    """Joints between shells: an element is one layer of a stretch between two pairs of nodes with six freedoms.
+
+    row (elements, 2, 3, 24): at each of its two points the vectors whose products with the displacements of its nodes are
+    the jump across the joint, that along it in the plane of the wall, and that out of this plane. What goes out of the plane
+    stays elastic. normal: within the plane of the wall, along and up.
+    """
+
+    row: np.ndarray = field(default_factory=lambda: np.empty((0, 2, 3, 24)))
+
+    @staticmethod
+    def rows(
+        normal: np.ndarray, along: np.ndarray, out: np.ndarray, height: np.ndarray, frames: np.ndarray
+    ) -> np.ndarray:
+        """The vectors (elements, 2, 3, 24). normal, along, out: (elements, 3) unit vectors across the joint, along it in the
+        plane of the wall, and of the wall's normal; height (elements) of the layer over the middle [m]; frames (elements, 4,
+        3, 3) axes of the rotations of its nodes, columns."""
+        found = np.zeros((len(normal), 2, 3, 4, 6))
+        for point, (lower, upper) in enumerate(((0, 3), (1, 2))):
+            for k, way in enumerate((normal, along, out)):
+                for node, sign in ((lower, -1.0), (upper, 1.0)):
+                    found[:, point, k, node, :3] = sign * way
+                    if k < 2:  # of a rotation w the layer goes by w x height out
+                        turn = height[:, None] * np.cross(out, way)
+                        found[:, point, k, node, 3:] = sign * np.einsum("ex,exr->er", turn, frames[:, node])
+        return found.reshape(len(normal), 2, 3, 24)
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,7 @@ class SoftBase:
 
     @property
     def numbers(self) -> np.ndarray:
-        """The flat list of the core."""
+        """The flat list (9,) of the core, SI."""
         return np.array(
             [self.mass, self.inertia, self.height, self.toe_left, self.toe_right, self.stiffness, self.damping,
              float(self.edges), float(self.linear)]
@@ -121,7 +121,7 @@ def base_contact(
 
 
 def base_held(base: SoftBase, rotation: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """The block held at rotations [rad] and free to sink under its weight: how far it sinks [m], the energy of weight and
+    """The block held at each rotation (n) [rad] and free to sink under its weight: how far it sinks [m], the energy of weight and
     springs [J], and the moment that turns it back from a rotation to +x [N m]."""
     values, status = _core.api_soft_base.held(
         real("base", base.numbers, (9,)), real("rotation", np.atleast_1d(rotation), (None,))
@@ -139,7 +139,7 @@ def soft_base_history(
     base: SoftBase, ground: Ground, end_time: float, output_step: float, *, scale: float = 1.0, tolerance: float = 1e-8,
     start: npt.ArrayLike = (0.0, 0.0, 0.0, 0.0), room: int = 20000,
 ) -> SoftBaseResponse:  # fmt: skip
-    """Rock the block under `ground` times `scale` until collapse or `end_time` [s]; start: rotation [rad], sinking [m]
+    """Rock the block under `ground` times `scale` until collapse or `end_time` [s]; start (4,): rotation [rad], sinking [m]
     and their rates; output_step [s]; room: most events that are kept."""
     if not (0.0 < end_time < np.inf and 0.0 < output_step < np.inf and 0.0 < tolerance < 1.0 and np.isfinite(scale)):
         raise ValueError("end time, output step and tolerance must be positive, the scale a number")

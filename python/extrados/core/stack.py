@@ -26,7 +26,7 @@ class Stack:
 
     @property
     def numbers(self) -> np.ndarray:
-        """The flat list of the core."""
+        """The flat list (9,) of the core, SI."""
         rows = [v for pair in zip(self.mass, self.inertia, self.centre, strict=True) for v in pair]
         return np.array([*rows, self.half_foot, self.height, self.half_contact])
 
@@ -66,7 +66,7 @@ def stack_history(
     stack: Stack, ground: Ground, end_time: float, output_step: float, *, scale: float = 1.0, tolerance: float = 1e-8,
     start: npt.ArrayLike = (0.0, 0.0, 0.0, 0.0), room: int = 20000,
 ) -> StackResponse:  # fmt: skip
-    """Rock the stack under `ground` times `scale` until collapse or `end_time` [s]; start: rotations [rad]
+    """Rock the stack under `ground` times `scale` until collapse or `end_time` [s]; start (4,): rotations [rad]
     of the lower and the upper block, then their rates [rad/s]; output_step [s]; room: most events that are kept."""
     if not (0.0 < end_time < np.inf and 0.0 < output_step < np.inf and 0.0 < tolerance < 1.0 and np.isfinite(scale)):
         raise ValueError("end time, output step and tolerance must be positive, the scale a number")
@@ -100,7 +100,11 @@ def stack_history(
 def stack_impact(
     stack: Stack, pivots: npt.ArrayLike, rotation: npt.ArrayLike, rate: npt.ArrayLike, closing: npt.ArrayLike
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Pivots and rates after contacts close without rebound; pivots (2): 1, -1, or 0 shut, on the ground and between."""
+    """Pivots (2) and rates (2) [rad/s] after contacts close without rebound.
+
+    pivots (2): 1, -1, or 0 shut, on the ground and between; rotation (2) [rad] and rate (2) [rad/s] of both blocks;
+    closing (2): 1 where the contact closes.
+    """
     after, rates, status = _core.api_stack.impact(
         real("stack", stack.numbers, (9,)), np.asarray(pivots, dtype=np.int32), real("rotation", rotation, (2,)),
         real("rate", rate, (2,)), np.asarray(closing, dtype=np.int32),

@@ -1,7 +1,7 @@
 """What the deck models say of themselves: their facts, JSON Schema, starter decks."""
 
 import difflib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from extrados import kinds
@@ -105,12 +105,11 @@ def _keys(
 
 
 def _facts(about: dict[str, Any]) -> str:
-    """Type, unit, choices, bounds and default of one key in a few words."""
+    """Type, length of a list, unit, choices, bounds and default of one key in a few words."""
     facts = []
-    branches = [about, *about.get("anyOf", []), about.get("items", {})]
+    branches = list(_branches(about))
     unit = next((b["unit"] for b in branches if "unit" in b), None)
-    if unit:
-        facts.append(unit)
+    facts += [word for word in (_length(about), unit) if word]
     for branch in branches:
         if "enum" in branch:
             facts.append(" | ".join(f'"{c}"' for c in branch["enum"]))
@@ -128,6 +127,29 @@ def _facts(about: dict[str, Any]) -> str:
     if about.get("default") not in (None, []) and not isinstance(about["default"], dict):
         facts.append(f"default {_toml(about['default'])}")
     return ", ".join(facts)
+
+
+def _branches(about: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """A key, the types that it may have, and those of the values of its lists."""
+    yield about
+    for branch in (*about.get("anyOf", []), *([about["items"]] if "items" in about else [])):
+        yield from _branches(branch)
+
+
+def _length(about: dict[str, Any]) -> str:
+    """How many values a list holds, as "list of 2 to 40" or "list of lists of 4"; "" for a single value and for tables."""
+    ways = [about, *about.get("anyOf", [])]
+    found = next((way for way in ways if way.get("type") == "array" and "$ref" not in way.get("items", {})), None)
+    if found is None:
+        return ""
+    least, most = found.get("minItems", 0), found.get("maxItems")
+    inner = _length(found.get("items", {}))
+    if inner:
+        return f"list of {inner.replace('list', 'lists', 1)}"
+    count = f" of {least}" if least == most else f" of {least} to {most}" if least and most else ""
+    count = count or (f" of {least} or more" if least > 1 else f" of at most {most}" if most else "")
+    single = any(way.get("type") in ("number", "integer") for way in ways)
+    return f"{'number or ' if single else ''}list{count}"
 
 
 def facts() -> list[TableFacts]:

@@ -31,7 +31,7 @@ MOST_COMPLAINTS = 50
 PROPERTIES: dict[str, type[Table]] = {"material": Material, "joints": Joints, "supports": Supports, "initial": Initial}
 #: What the report says of a deck in words
 WORDS = ("title", "note", "project", "author", "date")
-#: Words that one kind of structure has for what another calls otherwise
+#: What one kind of structure calls by one word and another kind by another
 ALIKE = {"thickness": {"depth"}, "depth": {"thickness"}, "length": {"width", "span"}, "span": {"width", "radius"}}
 TOP_LEVEL = {*WORDS, "structure", *PROPERTIES, "materials", *PLURAL, "motion", "analysis"}
 

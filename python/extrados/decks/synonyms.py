@@ -9,6 +9,8 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Synonym:
+    """A line of the table: words of one meaning, what they mean here, where the thing is found, a page of docs/ or ""."""
+
     words: tuple[str, ...]
     about: str
     see: tuple[str, ...]

@@ -13,6 +13,8 @@ from typing import Any
 
 #: Bytes of an address, of the heads of a request, of a message of a page, and of what may be sent to be filmed
 LONGEST_PATH, LARGEST_HEADS, LARGEST_MESSAGE, LARGEST_BODY = 1024, 16_384, 16_000_000, 64_000_000
+#: Digits of the length of a body: more than one that is taken needs, and far fewer than int() raises on (4300)
+MOST_DIGITS = 12
 #: Pages at a time
 MOST_PAGES = 12
 #: Messages a page may send in a burst, and in a second from then on: a hand moves 120 times a second at most
@@ -107,7 +109,12 @@ class Guard:
         if sum(len(name) + len(value) for name, value in scope["headers"]) > LARGEST_HEADS:
             return 431, "the heads of the request are too long"
         lengths = heads.get(b"content-length", [b"0"])
-        if len(lengths) != 1 or not lengths[0].isdigit() or len(lengths[0]) > 12 or int(lengths[0]) > LARGEST_BODY:
+        if (
+            len(lengths) != 1
+            or not lengths[0].isdigit()
+            or len(lengths[0]) > MOST_DIGITS
+            or int(lengths[0]) > LARGEST_BODY
+        ):
             return 413, "too much is sent"
         parts = scope["path"].split("/", 2)
         if len(parts) != 3 or not hmac.compare_digest(parts[1].encode("utf-8", "replace"), self.token):

@@ -15,7 +15,7 @@ import socket
 import threading
 import time
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -92,6 +92,19 @@ def _next(work: Iterator[Reply]) -> bytes | None:
     return None if reply is None else reply.pack()
 
 
+def _end(works: list[Iterator[Reply]], session: Session) -> None:
+    """Close what a page has asked for, and its session also where that fails."""
+    with contextlib.ExitStack() as stack:
+        for close in (session.close, *(work.close for work in works)):  # the session last
+            stack.callback(close)
+
+
+def _log_failure(ended: Future[None]) -> None:
+    """Tell on the log what went wrong at the end of a page, which nobody waits for."""
+    if (error := ended.exception()) is not None:
+        log.error("the end of a page failed", exc_info=error)
+
+
 async def _serve(page: WebSocket, session: Session, inbox: Inbox) -> None:
     """Answer the messages of a page, oldest first; long work goes on, step by step, while nothing waits."""
     loop = asyncio.get_running_loop()
@@ -120,14 +133,12 @@ async def _serve(page: WebSocket, session: Session, inbox: Inbox) -> None:
                 going.pop(lane, None)
                 going[lane] = work
     finally:  # by the thread, once it has done what it is at: other pages do not wait for that
-        for work in going.values():
-            thread.submit(work.close)
-        thread.submit(session.close)
+        thread.submit(context.run, _end, list(going.values()), session).add_done_callback(_log_failure)
         thread.shutdown(wait=False)
 
 
 async def _read(page: WebSocket, inbox: Inbox) -> None:
-    """Put what a page sends into the inbox until it goes, or is sent away for what it sends."""
+    """Put the messages of a page into the inbox until it closes, or is closed for sending nonsense or too much."""
     messages, volume = Bucket(BURST, RATE), Bucket(BURST_BYTES, RATE_BYTES)
     while (message := await page.receive())["type"] != "websocket.disconnect":
         text = message.get("text")
@@ -239,8 +250,8 @@ def new_token() -> str:
 
 
 def _socket_protocol() -> type[asyncio.Protocol]:
-    """Sockets by uvicorn, but that one ends whose page has not taken for UNREAD what it is sent: uvicorn waits for ever to send
-    it, so that the page would keep its place among those that may be open."""
+    """uvicorn's WebSocket protocol, which also drops a connection whose page has not read what it was sent for UNREAD
+    seconds: uvicorn itself would wait for ever, and the page would keep its place among those that may be open."""
     from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
     class Protocol(WebSocketsSansIOProtocol):

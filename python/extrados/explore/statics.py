@@ -92,7 +92,7 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
     words["abutting_wall"] = building.supports.abutting_wall
     words["head_mass_kg"] = getattr(building.structure, "head_mass", None) or None
     if ignored := [what for what in building.special_keys if what not in options.bears]:
-        words |= {"stands": None, "unknown": f"{options.kind} does not reckon with {' and '.join(ignored)}."}
+        words |= {"stands": None, "unknown": f"{options.kind} cannot take {' and '.join(ignored)} into account."}
         return made
     try:
         limit = limit_of(building, options)

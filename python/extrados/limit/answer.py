@@ -55,6 +55,7 @@ class Answer:
 
     @property
     def gamma(self) -> float:
+        """Multiplier at collapse."""
         return self.collapse_state.gamma
 
     @property
@@ -75,6 +76,7 @@ class Answer:
 
     @property
     def touching(self) -> list[int]:
+        """Joints that the line of the collapse state reaches without a hinge there."""
         moving = {j for j, _ in self.mechanism.hinges} | set(self.mechanism.sliding)
         edge = np.minimum(self.collapse_state.position, 1.0 - self.collapse_state.position) < TOUCH
         return [j for j in np.flatnonzero(edge).tolist() if j not in moving]

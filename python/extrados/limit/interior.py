@@ -58,6 +58,7 @@ class Residuals:
 
     @property
     def worst(self) -> float:
+        """The greatest of them."""
         return max(
             self.equilibrium, self.friction, self.tension, self.overlap, self.complementarity, self.work
         )  # fmt: skip
@@ -85,6 +86,7 @@ class Point:
     hold: np.ndarray
 
     def moved(self, step: "Point", force: float, motion: float) -> "Point":
+        """The iterate after a step, lengthened by one factor for forces and one for motions."""
         return Point(
             self.n + force * step.n, self.s + force * step.s, self.v + force * step.v, self.w + force * step.w,
             self.o + motion * step.o, self.slip + motion * step.slip, self.u + motion * step.u,
@@ -94,14 +96,17 @@ class Point:
 
     @property
     def gap(self) -> float:
+        """Complementarity gap: forces times motions that should exclude each other, in all."""
         return self.gap_of_joints + float((self.room * self.hold).sum())
 
     @property
     def gap_of_joints(self) -> float:
+        """The part of the gap that joints have."""
         return float((self.v * self.o).sum() + (self.slip * self.w).sum())
 
     @property
     def corners(self) -> np.ndarray:
+        """Normal forces at the corners and shear (joints, 3)."""
         return np.column_stack([self.n, self.s])
 
 

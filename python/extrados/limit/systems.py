@@ -61,6 +61,7 @@ class Reduced:
         return matrix, (c * self._constant[rows.joint]).sum(axis=1)
 
     def corners(self, x: np.ndarray) -> np.ndarray:
+        """Corner forces (joints, 3) at values x (unknowns)."""
         return self._slope @ x + self._constant
 
     def cost(self, corner_cost: np.ndarray) -> np.ndarray:
@@ -125,6 +126,7 @@ class Sparse:
         self.right = -(loads.dead / unit).ravel()
 
     def express(self, rows: Constraints) -> tuple[sparse.csr_array, np.ndarray]:
+        """Constraints on corner forces as rows over the unknowns, and their constants (rows)."""
         k = len(rows.joint)
         row, corner = np.nonzero(rows.coefficient)
         entries = rows.coefficient[row, corner], (row, 3 * rows.joint[row] + corner)
@@ -136,9 +138,11 @@ class Sparse:
         return sparse.csr_array(self.matrix[:, : self.shares.start])
 
     def corners(self, x: np.ndarray) -> np.ndarray:
+        """Corner forces (joints, 3) at values x (unknowns)."""
         return x[: self.shares.start].reshape(-1, 3)
 
     def cost(self, corner_cost: np.ndarray) -> np.ndarray:
+        """A cost of corner forces (joints, 3) as one of the unknowns (unknowns)."""
         return np.concatenate([corner_cost.ravel(), np.zeros(self.unknowns - self.shares.start)])
 
     def velocities(self, motion: np.ndarray, dual: np.ndarray) -> tuple[np.ndarray, float]:

@@ -46,6 +46,7 @@ class CompatibleSet:
 
     @property
     def points(self) -> int:
+        """Samples of a motion."""
         return round(self.duration / self.step) + 1
 
     def _periods(self, per_decade: int) -> np.ndarray:

@@ -34,6 +34,7 @@ class GeneratedSet:
 
     @property
     def points(self) -> int:
+        """Samples of a motion."""
         return len(self.window)
 
     @property

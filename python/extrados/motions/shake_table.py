@@ -96,6 +96,7 @@ class Fit:
 
     @property
     def fits(self) -> bool:
+        """Whether the table can play it."""
         return max(self.stroke, self.flow, self.force) <= 1.0 + 1e-9
 
     @property

@@ -95,9 +95,10 @@ def _plan(structure: dict[str, Any], folder: Path) -> tuple[str, str]:
         ax.set_ylabel("y [m]")
         ax.set_title("Plan")
         saved = style.save(fig, folder, NAME)
-    heights = " and ".join(f"{h:.4g}" for h in structure["storeys"])
-    told = "with the length of each wall between the middle planes of those it meets, and its greatest thickness"
-    return saved, f"The building on its plan, {told}. Storeys of {heights} m from the ground up."
+    *first, last = [f"{h:.4g}" for h in structure["storeys"]]
+    storeys = f"Storeys, from the ground up: {', '.join(first)} and {last} m" if first else f"Storey: {last} m"
+    told = "length of each wall on its middle plane, and its greatest thickness"
+    return saved, f"Plan of the building: {told}. {storeys}."
 
 
 def _dimension(ax: Axes, row: dict[str, Any], off: float, below: int) -> None:

@@ -54,6 +54,7 @@ class Scene:
 
     @property
     def aspect(self) -> float:
+        """Height over width of the window."""
         left, right, bottom, top = self.window
         return (top - bottom) / (right - left)
 
@@ -192,7 +193,7 @@ def _energies(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ]
         style.energies(low, "energy", lines)
         low.set_xlabel("time [s]")
-        low.set_xlim(0.0, time[-1])
+        low.set_xlim(0.0, time[-1] or 1.0)
         style.legend_above(low)
         saved = style.save(fig, folder, f"{name}-energy")
     return saved, (

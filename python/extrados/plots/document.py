@@ -41,6 +41,8 @@ class Figure:
 
 @dataclass(frozen=True)
 class Code:
+    """Text as it was typed, line by line."""
+
     text: str
 
 

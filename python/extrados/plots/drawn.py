@@ -37,7 +37,7 @@ class Drawn:
         return self.figures[name]
 
     def save(self, folder: str | Path, suffix: str = "png") -> list[Path]:
-        """Write each as FOLDER/NAME.SUFFIX, in any format of matplotlib; returns the files."""
+        """Write each into `folder` as NAME.SUFFIX, in any format of matplotlib by its `suffix`; returns the files."""
         place = Path(folder)
         place.mkdir(parents=True, exist_ok=True)
         paths = [place / f"{name}.{suffix}" for name in self.figures]

@@ -350,7 +350,7 @@ def _stresses(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
         title = style.save(fig, folder, f"{name}{SENSES[prefix]}-stress")
     return (
         title,
-        f"Principal stresses at the peak load ({load[s] / 1e3:.4g} kN); tension is positive{OPPOSITE[prefix]}.",
+        f"Principal stresses{OPPOSITE[prefix]}, at the peak load ({load[s] / 1e3:.4g} kN); tension is positive.",
     )
 
 

@@ -116,7 +116,7 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             axes[4].legend(loc="upper right", ncols=2, fontsize=8)
         axes[4].set_ylabel("ground [g]")
         axes[4].set_xlabel("time [s]")
-        axes[4].set_xlim(0.0, float(time[-1]) if len(time) > 1 else 1.0)
+        axes[4].set_xlim(0.0, float(time.max(initial=0.0)) or 1.0)
         saved = style.save(fig, folder, f"{name}-displacements")
     return saved, (
         f"Displacements of the stones that go farthest, from their settled places, and by how much they turn; the ground moves along "

@@ -115,5 +115,6 @@ class LocalMechanism(Checked):
         source="Circ. 7/2019 C7.2.3",
     )
     walls: list[WallMechanism] = maybe(
-        "of a building on a plan: every wall above the foot of each storey, the worst first, for which the numbers stand"
+        "of a building on a plan: every wall above the foot of each storey, the worst first; the other "
+        "numbers are those of the worst"
     )

@@ -43,6 +43,7 @@ class Convergence(ResultModel):
     worst_violation_ratio: float = fact(
         "greatest violation of the contact law as a velocity, over that which gravity gives in a step"
     )
+    worst_violation_s: float = fact("when that was", "s")
 
 
 class DemRun(KindResults):
@@ -148,19 +149,22 @@ class SolidDemRun(KindResults):
     energy_residual_ratio: float = fact("error of the energy ledger over the energy that went round")
     bounces: int = fact("times that blocks left the ground or each other")
     airborne_time_s: float = fact("longest time that a block was without contact", "s")
-    solver: Literal["compliant"] = fact("springs at the contacts")
-    joint_stiffness_min_Pa_per_m: float = fact("least normal stiffness of the contacts", "Pa/m")
-    joint_stiffness_max_Pa_per_m: float = fact("greatest normal stiffness of the contacts", "Pa/m")
-    beta_s: float = fact("stiffness-proportional damping", "s")
-    damping_ratio_rotation: float = fact(
+    solver: Literal["compliant", "nonsmooth"] = fact("springs at the contacts, or rigid ones; these have no stiffness")
+    convergence: Convergence | None = maybe("of rigid contacts")
+    joint_stiffness_min_Pa_per_m: float | None = fact("least normal stiffness of the contacts", "Pa/m")
+    joint_stiffness_max_Pa_per_m: float | None = fact("greatest normal stiffness of the contacts", "Pa/m")
+    beta_s: float | None = fact("stiffness-proportional damping", "s")
+    damping_ratio_rotation: float | None = fact(
         "least fraction of critical damping at rotational impact", source="thesis Eq. 7.13"
     )
-    damping_ratio_corner: float = fact("least fraction of critical damping at corner impact")
-    damping_ratio_edge: float = fact("least fraction of critical damping at edge impact", source="thesis Eq. 7.9")
+    damping_ratio_corner: float | None = fact("least fraction of critical damping at corner impact")
+    damping_ratio_edge: float | None = fact(
+        "least fraction of critical damping at edge impact", source="thesis Eq. 7.9"
+    )
     steps: int = fact("time steps")
     settling_steps: int = fact("time steps until it had settled under its weight")
     time_step_s: float = fact("time step", "s")
-    critical_step_s: float = fact("greatest stable time step", "s")
+    critical_step_s: float | None = fact("greatest stable time step", "s")
     contact_searches: int = fact("searches for contacts")
     animation: Literal["none", "gif", "mp4"] = fact("the animation that is drawn")
 
@@ -186,8 +190,9 @@ class SolidDemTilt(KindResults):
     energy_residual_ratio: float = fact("error of the energy ledger over the energy that went round")
     time_step_s: float = fact("time step", "s")
     steps: int = fact("time steps of the last run")
-    solver: Literal["compliant"] = fact("springs at the contacts")
-    beta_s: float = fact("stiffness-proportional damping", "s")
+    solver: Literal["compliant", "nonsmooth"] = fact("springs at the contacts, or rigid ones")
+    convergence: Convergence | None = maybe("of rigid contacts, in the last runs of both senses")
+    beta_s: float | None = fact("stiffness-proportional damping; null of rigid contacts", "s")
 
     def judged(self, demand: Demand) -> Verdict:
         """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
@@ -246,6 +251,7 @@ class DemDomain(KindResults):
     """dem-domain: the shortest pulses that bring the blocks down."""
 
     pulse: Literal["step", "sine"] = fact("shape of the pulses")
+    direction_deg: float | None = maybe("of solids: direction in plan of the motion, from +x to +y", "deg")
     amplitudes_g: list[float] = fact("amplitudes of the pulses", "g")
     shortest_durations_s: list[float | None] = fact("at each amplitude; null where none of those tried fails", "s")
     curves: list[DemCurve] = fact("failure curves with other damping, stiffness or friction; the first is as given")

@@ -45,8 +45,8 @@ LIMITS: dict[str, tuple[str, str]] = {
     "pushover": (
         "Flat shells that crack event by event under horizontal forces that grow in one proportion; corners and floors hold as the "
         "deck says.",
-        "Static: it asks how hard, not how long. A wall that is not bonded to those across it, or not anchored to the floors, turns "
-        "out of its plane before: ask for local mechanisms too.",
+        "Static: it asks how hard, not how long. A wall that is not bonded to those across it, or not anchored to the floors, may "
+        "fall out of its plane first: check local mechanisms too.",
     ),
     "dem": (
         "Every stone moves by itself on springs that open, slide and damp; no mechanism is chosen before.",

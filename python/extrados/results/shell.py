@@ -30,6 +30,19 @@ class FirstCrack(ResultModel):
     base_shear_N: float = fact("under this base shear", "N")
 
 
+class JointMotion(ResultModel):
+    """How far a joint between walls, or a bed joint in a wall, has come apart."""
+
+    joint: str = fact("its name")
+    wall: str = fact("the wall that it is in, or that abuts there")
+    opening_m: float = fact("where it is widest, at the greatest load", "m")
+    slip_m: float = fact("where it has slid most along its wall, at the greatest load", "m")
+    last_opening_m: float = fact("where it is widest, in the last state in equilibrium", "m")
+    last_slip_m: float = fact("where it has slid most, in the last state in equilibrium", "m")
+    first_base_shear_N: float | None = fact("base shear under which its bond first gives way; null where it holds", "N")
+    broken_share: float = fact("part of its area that has lost some of its bond, in the last state in equilibrium")
+
+
 class FootForce(ResultModel):
     """What a foot of a vault presses on the ground with, at the greatest load or at the end of a settlement."""
 
@@ -56,6 +69,7 @@ class PushCurve(SlaCurve):
     walls: list[WallShare] = fact("what each wall carries there")
     flanges: Flanges = maybe("whether walls across the push work with them")
     first_crack: FirstCrack = maybe("where it cracks first; absent where it never does")
+    joints: list[JointMotion] = maybe("how far its joints have come apart")
     feet: list[FootForce] = maybe("of a vault or dome: what its feet press on the ground with")
     cracked_points_by_storey: list[int] = fact("places in the planes of the walls that have cracked there, by storey")
 

@@ -373,7 +373,10 @@ class Stored:
         return self._typed[name]
 
     def analysis(self, name: str) -> dict[str, Any]:
-        """All that summary.json says of an analysis: kind, status, reason, answer, verdict, assumptions, results."""
+        """All that summary.json says of an analysis by its name: kind, status, reason, answer, verdict, assumptions, results.
+
+        KeyError names those that there are.
+        """
         for row in self.analyses:
             if row["name"] == name:
                 return row
@@ -390,11 +393,18 @@ class Stored:
             ) from None
 
     def series(self, analysis: str, name: str) -> list[Array]:
-        """The arrays of an analysis that make up a series, in order; none where there is no such series."""
+        """The arrays of an analysis that make up the series of a name, in order; none where there is no such series.
+
+        Each says its axes by `dims` and its `unit`.
+        """
         return [array for array in self.arrays[analysis].values() if array.series == name]
 
     def array(self, analysis: str, name: str) -> np.ndarray:
-        """The data of an array; KeyError with the names that there are."""
+        """The numbers of an array of an analysis by its name; KeyError with the names that there are.
+
+        `run.arrays[analysis][name]` says its axes by `dims`, so that its shape is for instance (time,) or (joint, axis), and
+        its `unit`, in SI.
+        """
         self.analysis(analysis)
         there = self.arrays[analysis]
         if name not in there:
@@ -402,7 +412,7 @@ class Stored:
         return np.asarray(there[name].data)
 
     def dataset(self, analysis: str) -> Any:
-        """The arrays of an analysis as an xarray.Dataset (xarray must be installed), with the coordinates that its
+        """The arrays of an analysis as an xarray.Dataset (xarray must be installed), each with its unit, and with the coordinates that its
         group in results.h5 has: an array where one is called as the axis, x, y, z along "axis", else numbers from 0; beside
         "joint" and "block" their names and places."""
         import xarray

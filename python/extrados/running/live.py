@@ -60,7 +60,8 @@ class Live:
         return f"<Live: {', '.join(self.names)}>"
 
     def set(self, key: str, value: Any) -> None:
-        """Give a key of the deck another value, as it would stand in the deck: set("structure.thickness", "20 cm").
+        """Give a key of the deck another value, as it would stand in the deck: set("structure.thickness", "20 cm"). A bare
+        number is in SI, an angle in degrees.
 
         See `update`.
         """
@@ -69,7 +70,7 @@ class Live:
     def update(self, changes: dict[str, Any]) -> None:
         """Give several keys other values at once; None takes a key out, so that it has its default again.
 
-        Keys are dotted; those of an analysis follow its name: "analysis.rocking.end_time", "analysis.tilt-2.load.0.x".
+        changes: keys with their values as in the deck. Keys are dotted; those of an analysis follow its name: "analysis.rocking.end_time", "analysis.tilt-2.load.0.x".
         A table may be given whole, as may "analysis", the list of them.
         DeckError lists what is wrong, by its key, and then nothing has changed.
         """
@@ -137,7 +138,8 @@ class Live:
         return self._computed(name).results
 
     def array(self, analysis: str, name: str) -> np.ndarray:
-        """The data of an array of an analysis; KeyError names those that there are."""
+        """The numbers of an array of an analysis by its name, with the shape and unit that `result(analysis).arrays[name]` says
+        by its `dims`, for instance (time,), and its `unit`, in SI; KeyError names those that there are."""
         there = self._computed(analysis).arrays
         if name not in there:
             raise KeyError(f"{analysis} has no array '{name}'; there are {', '.join(there) or 'none'}")

@@ -5,7 +5,7 @@ import platform
 from datetime import datetime
 from pathlib import Path
 
-from extrados._build_info import BUILD_TYPE, C_COMPILER, COMPILER, VERSION
+from extrados._build_info import BUILD_TYPE, C_COMPILER, COMMIT, COMPILER, VERSION
 
 
 def provenance() -> dict[str, str]:
@@ -24,14 +24,15 @@ def computed() -> dict[str, str]:
 
 
 def _commit() -> str:
-    """What git says of a checkout of this project, "" of an installed copy.
+    """What git says of a checkout of this project; of an installed copy the commit that it was built from, "" where that
+    was none.
 
     Only a checkout of this project is asked: git would also answer for a repository that happens to lie around.
     """
     folder = Path(__file__).resolve().parents[1]
     root = folder.parents[1]
     if not (root / ".git").exists() or (root / "python" / "extrados") != folder:
-        return ""
+        return COMMIT
     import subprocess
 
     with contextlib.suppress(OSError, subprocess.TimeoutExpired):

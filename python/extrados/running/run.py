@@ -31,7 +31,7 @@ class Run(Stored):
 
     @classmethod
     def of(cls, deck: Deck, results: list[Result]) -> "Run":
-        """The run of a deck that has been computed, the parts of its analyses after them; it has no folder yet."""
+        """The run of a deck from its results, the parts of its analyses after them; it has no folder yet."""
         parts = [part for result in results for part in result.parts]
         results = [*results, *parts]
         when = computed()
@@ -47,7 +47,7 @@ class Run(Stored):
 
     @classmethod
     def read(cls, folder: str | Path) -> "Run":
-        """The run that a folder holds; StoreError where it is damaged."""
+        """The run that a `folder` holds; StoreError where it is damaged."""
         found = store.read(folder)
         return cls(found.folder, found.head, found.analyses, found.arrays)
 
@@ -65,7 +65,7 @@ class Run(Stored):
         return draw(self, analysis)
 
     def write(self, folder: str | Path, figures: bool = True) -> Path:
-        """Write the results into `folder`, in place of an earlier run there, and draw figures and report.
+        """Write the results into `folder`, in place of an earlier run there, and draw figures and report unless `figures` is False.
 
         A killed write leaves the old folder or the new one; Ctrl-C waits until the results are there. Only what
         extrados wrote and nobody has changed since is replaced: where `folder` holds anything else the results are put

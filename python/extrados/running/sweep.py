@@ -147,8 +147,8 @@ class Sweep:
         return list(dict.fromkeys([*self.names, *(name for row in self.rows for name in row)]))
 
     def column(self, name: str) -> np.ndarray:
-        """One value of each member (members,): numbers with NaN where there is none, else objects; KeyError names those
-        that there are."""
+        """The values of a name, one of each member (members,), in the unit that `units[name]` says: numbers with NaN where
+        there is none, else objects; KeyError names those that there are."""
         if name not in self.columns:
             raise KeyError(f"no column '{name}'; there are {', '.join(self.columns)}")
         values = [row.get(name) for row in self.rows]

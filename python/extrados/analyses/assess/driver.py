@@ -112,7 +112,7 @@ class _Work:
         without = self.asker.cannot_bear(choice.kind or strategy.kind)
         if without and name != "scaled":
             self.bare[name] = without
-            words = f"{words}; without {' and '.join(without)}, with which it does not reckon"
+            words = f"{words}; without {' and '.join(without)}, which it cannot take into account"
         whole = name == "scaled" or (name == "probability" and self.many)
         motion = dict(self.context.deck.data["motion"]) if whole else None
         try:
@@ -147,7 +147,7 @@ class _Work:
             return True
         if "strategies" in self.options.model_fields_set:
             kind = self.context.building.structure.kind
-            self.rows[name] = no_row(strategy, "left out", f"it does not look at a structure of kind '{kind}'")
+            self.rows[name] = no_row(strategy, "left out", f"it cannot analyse a structure of kind '{kind}'")
         return False
 
     # ----- the three rounds
@@ -168,7 +168,7 @@ class _Work:
             if not self.wants(name) or name in self.rows:
                 continue
             if name == "probability" and "rocking" in self.rows and self.rows["rocking"].status == "refused":
-                text = "it is that of rocking, which this building does not do as one mechanism"
+                text = "it counts collapses by rocking, and this building does not rock as one mechanism"
                 self.rows[name] = no_row(strategies.of(name), "left out", text)
             else:
                 self.ask(strategies.of(name))

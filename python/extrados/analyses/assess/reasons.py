@@ -23,8 +23,6 @@ STATIC, DYNAMIC = ("tilt", "sla", "push-x", "push-y"), ("rocking", "assessment",
 PUSHES = ("push-x", "push-y")
 #: A joint that slips by this part of its length has slid; a thrust line outside by this share of the time is elsewhere
 SLID, ELSEWHERE = 0.01, 0.1
-#: Passages of a motion over a capacity that are looked at one by one, those of the greatest impulse
-PASSAGES = 4
 #: Of a collapse displacement: what moved less than this was far from it
 FAR = 0.5
 
@@ -55,6 +53,7 @@ class Facts:
         return found.results if found is not None and found.status == "ok" else None
 
     def outcome(self, name: str) -> str:
+        """The outcome of a strategy by its name."""
         return self.rows[name].outcome
 
     def judged(self) -> list[str]:
@@ -105,6 +104,7 @@ HEADLINES = {
 
 
 def reason(rule: str, pairs: list[Pair], text: str, **numbers: float | None) -> Reason:
+    """A reason by its rule, for the pairs of strategies whose difference it explains, with the numbers in its text."""
     return Reason(rule=rule, headline=HEADLINES[rule], explains=[list(p) for p in pairs], text=text, numbers=numbers)
 
 
@@ -183,9 +183,13 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
 def _by_passages(
     facts: Facts, mine: list[Pair], text: str, level: float, factor: float, numbers: dict[str, float | None]
 ) -> Reason | None:
-    """The strongest passages over the capacity one by one, each as a constant push of what it has on average."""
-    worst = None
-    for length, mean in passages(facts.motion, level)[:PASSAGES]:
+    """The passages over the capacity one by one, each as a constant push of what it has on average; those left out of which
+    another is as strong and as long."""
+    worst, longest = None, 0.0
+    for length, mean in sorted(passages(facts.motion, level), key=lambda p: (-p[1], -p[0])):
+        if length <= longest:
+            continue
+        longest = length
         needed = facts.needed_s(factor * mean)
         if needed is None or length >= needed:
             return None
@@ -196,8 +200,8 @@ def _by_passages(
     length, mean, needed = worst
     return reason(
         "static-peak", mine,
-        f"{text}. No passage is long enough for what it holds: the one nearest to that has {mean:.3g} g on average for {length:.3g} s, "
-        f"and a constant push of {mean:.3g} g needs {needed:.3g} s to bring it down.",
+        f"{text}. None of these times lasts long enough: the most dangerous averages {mean:.3g} g for {length:.3g} s, and a constant "
+        f"push of {mean:.3g} g needs {needed:.3g} s to bring it down.",
         **{**numbers, "passage_g": mean, "passage_s": length, "passage_needed_s": needed},
     )  # fmt: skip
 
@@ -257,7 +261,7 @@ def ties_of_statics(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if sla.capacity is None or tilt.capacity is None or abs(bare - sla.capacity) > 0.1 * bare:
         return None
     return reason(
-        "left-out", mine, f"Limit analysis reckons with the ties, the elements do not: {tilt.capacity:.3g} g with them, {bare:.3g} g "
+        "left-out", mine, f"Limit analysis uses the ties, the elements do not: {tilt.capacity:.3g} g with them, {bare:.3g} g "
         f"without, and the elements {sla.capacity:.3g} g.", with_ties=tilt.capacity, without_ties=bare, elements=sla.capacity,
     )  # fmt: skip
 

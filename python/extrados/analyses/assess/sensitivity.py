@@ -45,6 +45,7 @@ class Varied:
     share: float
 
     def bounded(self, value: float) -> float:
+        """A value of the key, brought within what the key may be."""
         low, high = BOUNDS.get(self.key.rpartition(".")[2], (0.0, np.inf))
         return float(min(max(value, low), high))
 

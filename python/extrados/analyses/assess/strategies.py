@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from extrados import kinds
 from extrados.analyses.assess.hazard import STRONG, strong_end
 from extrados.analyses.assess.tables import Assess
 from extrados.analyses.context import Context
@@ -26,7 +27,7 @@ LEVELS_OF_A_SET = [0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0, 3.0]
 #: of a wall's elements; a step of discrete elements, and what each of its joints adds
 RUN_SECONDS = {"block": 0.002, "column": 0.002, "arch": 0.012}
 RUN_SECONDS_ELSE = 0.15
-STONE_SECONDS, ELEMENT_SECONDS = 0.03, 5e-4
+STONE_SECONDS, EVENT_SECONDS = 0.03, 5e-4
 PUSH_SECONDS = 1.6e-6  # of an element of shells in an event
 STEP_SECONDS, JOINT_SECONDS = 1.5e-6, 2.5e-7
 #: Of the greatest frequency of impact at an edge: what the critical step of discrete elements is at least
@@ -38,7 +39,12 @@ SCATTER, STRAY = 0.05, 0.01
 #: Discrete elements come to rest, or down, within so many sqrt(size/g)
 AFTER = 12.0
 #: Elements along the longer side of a wall, and of all walls of a building on a plan; points through their thickness
-ELEMENTS, SHELLS, LAYERS = 24, 800, 3
+ELEMENTS, SHELL_ELEMENTS, LAYERS = 24, 800, 3
+#: Size of elements over the lowest storey at most, so that piers and spandrels have some rows each
+OF_A_STOREY = 0.25
+#: A push goes to two sides, and each takes its part of the time; fewer events than these hardly reach a peak, however little
+#: the budget
+SIDES, LEAST_EVENTS = 2, 500
 #: A push ends where its load has fallen to this part of the peak
 FALLEN = 0.8
 
@@ -69,6 +75,7 @@ class Asked:
 
     @property
     def building(self) -> Building:
+        """The building that all strategies look at."""
         return self.context.building
 
     def share(self, name: str) -> float:
@@ -149,9 +156,9 @@ def _push(asked: Asked, direction: float) -> Choice:
     if not any(m.tensile_strength is not None and m.fracture_energy is not None for m in materials):
         raise LeftOut("walls crack only with [material] tensile_strength and fracture_energy, which the deck lacks")
     name = "push-x" if direction == 0.0 else "push-y"
-    size = round(min(float(np.sqrt(plan.wall_area / SHELLS)), 0.25 * min(plan.storeys)), 3)
+    size = round(min(float(np.sqrt(plan.wall_area / SHELL_ELEMENTS)), OF_A_STOREY * min(plan.storeys)), 3)
     elements = plan.wall_area / size**2
-    events = max(int(0.5 * asked.share(name) / (PUSH_SECONDS * elements)), 500)
+    events = max(int(asked.share(name) / SIDES / (PUSH_SECONDS * elements)), LEAST_EVENTS)
     keys = {
         "direction": direction, "directions": ["+", "-"], "mesh": {"size": size, "layers": LAYERS}, "ripple": 0.2,
         "events": events, "stop_fraction": FALLEN,
@@ -210,7 +217,7 @@ def _sla(asked: Asked) -> Choice:
         raise LeftOut("the wall cracks only with [material] tensile_strength and fracture_energy, which the deck lacks")
     size = getattr(building.structure, "size", None)
     keys: dict[str, Any] = {
-        "directions": ["+"], "events": int(asked.share("sla") / ELEMENT_SECONDS), "stop_fraction": FALLEN,
+        "directions": ["+"], "events": int(asked.share("sla") / EVENT_SECONDS), "stop_fraction": FALLEN,
     }  # fmt: skip
     if size is not None:
         keys["mesh"] = {"size": max(size) / ELEMENTS}
@@ -290,6 +297,14 @@ ALL = tuple(
 )
 #: Rocking at many factors on the hazard: the margin of `rocking`, and of a set the share of its motions
 SCALED = Strategy("scaled", "fragility", "rocking at factors on the hazard", "probability", "", _levels)
+
+
+def reckon_with(options: Assess, building: Building) -> set[str]:
+    """Properties of the building that at least one of the strategies takes into account that are asked and can look at it."""
+    asked = [s for s in ALL if s.name in (options.strategies or [s.name]) and s.applies(building)]
+    every = {s.kind for s in asked} | {"local-mechanism" for s in asked if s.name == "code-checks"}
+    tables = [kinds.table("analysis", kind).model_construct(kind=kind, mechanism="building") for kind in every]
+    return set().union(*(table.reckons_with(building) for table in tables))
 
 
 def of(name: str) -> Strategy:

@@ -1,16 +1,12 @@
 """Analysis kind of the whole: assess."""
 
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
 from extrados.analyses.table import Analysis
-from extrados.building.properties import Initial, Joints, Material, Supports
 from extrados.schema.spectrum import CodeSpectrum
 from extrados.schema.table import key
-
-if TYPE_CHECKING:
-    from extrados.building.building import Building
 
 #: Strategies in the order in which they are asked: cheap first
 STRATEGIES = ("tilt", "rocking", "assessment", "code-checks", "probability", "sla", "push-x", "push-y", "dem")
@@ -72,11 +68,6 @@ class Assess(Analysis):
         {},
         "keys of a strategy's own table, such as `dem = { joints.normal_stiffness = 2e10 }`; they go before the rules",
     )
-
-    def reckons_with(self, building: "Building") -> set[str]:
-        """What any of its strategies does."""
-        tables = {"material": Material, "joints": Joints, "supports": Supports, "initial": Initial}
-        return {f"{table}.{name}" for table, model in tables.items() for name in model.model_fields}
 
     @model_validator(mode="after")
     def _once(self) -> "Assess":

@@ -30,6 +30,7 @@ class Line:
 
     @property
     def verdict(self) -> str:
+        """Whether it "holds", the demand being no more than the capacity, or "fails"; "" without a demand."""
         if self.demand is None:
             return ""
         return "holds" if self.demand <= self.capacity else "fails"

@@ -87,16 +87,18 @@ def _walls(context: Context, options: LocalMechanism) -> Result:
     for part in wall_parts(context.building):
         own = options.model_copy(
             update={
-                "base_height": part.foot, "building_height": float(plan.levels[-1]),
-                "storeys": max(options.storeys, len(plan.storeys)),
+                "base_height": part.foot,
+                "building_height": float(plan.levels[-1]),
+                "storeys": len(plan.storeys),
             }
-        )  # fmt: skip
+        )
         above = "" if part.storey == 1 else f" above the foot of storey {part.storey}"
         turning = _body(part.body, f"wall {part.wall}{above}", own, part)
         lines, more = _checks(context, own, turning.found)
         r = _results(turning, lines, more)
         governing = r.governing()
         rows.append((governing[0][0] if governing else None, r, turning, lines))
+    context.warnings = list(dict.fromkeys(context.warnings))  # what goes for one wall goes for the others
     rows.sort(key=lambda row: (row[0] is None, row[0] or 0.0, row[1].activation_acceleration_g))
     _, worst, turning, lines = rows[0]
     walls = [
@@ -191,16 +193,18 @@ def _of_building(context: Context) -> tuple[Capacity, tuple[np.ndarray, np.ndarr
     weaker = _weaker(context, tuple(curves), float(alpha[0]))
     if weaker is not None:
         multiplier, field, slides = weaker
-        why, without = "its stones crush at the hinges", "crushing"
+        why, without = "limit analysis finds a weaker mechanism", "it"
         if slides:
             why, without = f"its joints slide, at a friction of {building.joints.friction},", "sliding"
+        elif building.material.compressive_strength is not None:
+            why, without = "its stones crush at the hinges", "crushing"
         context.warnings.append(
             f"{why} before it turns (multiplier {float(alpha[0]):.4g} without {without}): the displacement that it bears is not known"
         )
         return (
             capacity(multiplier, weight, field, None),
             (np.zeros(1), np.array([multiplier])),
-            f"{words}, which {'slides' if slides else 'crushes'},",
+            f"{words}, which {'slides' if slides else 'crushes'}," if without != "it" else words,
         )
     field = model.fields[side][:, 0] * (1.0, -1.0)[side]
     found = capacity(float(alpha[0]), weight, field, critical, model.uplift[side])
@@ -247,7 +251,10 @@ def _checks(context: Context, options: LocalMechanism, found: Capacity) -> tuple
     a_g = spectrum(0.0, 0.05) if spectrum is not None else None
     if options.peak_acceleration is not None:
         a_g = options.peak_acceleration
-    q, height = options.behaviour_factor, options.building_height if options.base_height > 0.0 else None
+    q = options.behaviour_factor
+    height = (
+        options.building_height if options.base_height > 0.0 else None
+    )  # of the building, where the part stands in it
     at_height = None
     if height is not None and spectrum is not None:
         at_height = ntc.floor(spectrum, options.base_height, height, options.storeys, options.building_period)
@@ -265,7 +272,7 @@ def _checks(context: Context, options: LocalMechanism, found: Capacity) -> tuple
     )
     if options.collapse_spectrum is not None and found.d0 is not None:
         rare, above = spectrum_of(context, options.collapse_spectrum, "collapse_spectrum"), None
-        if options.base_height > 0.0 and height is not None:
+        if height is not None:
             above = ntc.floor(rare, options.base_height, height, options.storeys, options.building_period)
         lines.append(ntc.collapse_check(found.alone / fc, found.d0, rare, above))
     more = {} if at_height is None else {"floor_acceleration_g": at_height.acceleration / GRAVITY}

@@ -10,15 +10,27 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.needs import Need
 from extrados.analyses.table import Analysis
 from extrados.building.building import Building
+from extrados.building.errors import Key
 from extrados.building.templates.plan import Plan
+
+#: What of the table describes a body by itself; and where on a building it stands, which a plan says of each of its walls
+OF_A_BODY = ("height", "thickness", "width", "hinge_height", "crack_angle", "floors", "ties", "side_walls")
+OF_A_PLACE = ("base_height", "building_height", "storeys")
 
 
 def needs(context: Context, options: Analysis) -> Iterator[Need]:
     """Steps that raise where the deck is wrong, see `analyses.needs`."""
     building, structure = context.building, context.building.structure
     if isinstance(options, LocalMechanism):
+        if not options.of_stones(building):
+            for what, key in building.special_keys.items():
+                yield lambda what=what, key=key: _refuse_unheld(what, key)
         if options.mechanism == "building":
             yield lambda: _refuse_nothing(building)
+            for name in sorted(
+                options.model_fields_set & {*OF_A_BODY, *(OF_A_PLACE if isinstance(structure, Plan) else ())}
+            ):
+                yield lambda name=name: _refuse_given(name)
             if isinstance(structure, Plan):
                 yield lambda: wall_parts(building)
         else:
@@ -38,6 +50,18 @@ def needs(context: Context, options: Analysis) -> Iterator[Need]:
             yield lambda: spectrum_of(context, options.spectrum)(0.0, 0.05)
     if (wall or options.axial_load is not None) and building.material.compressive_strength is None:
         yield lambda: _refuse_weak()
+
+
+def _refuse_unheld(what: str, key: Key) -> None:
+    raise Refused(
+        f"local-mechanism takes {what} into account only where the stones of the deck turn: leave it out, or give what holds a wall as "
+        "`ties` of this table",
+        key,
+    )
+
+
+def _refuse_given(name: str) -> None:
+    raise Refused(f'mechanism = "building" takes it from [structure]: leave {name} out', ("analysis", name))
 
 
 def _refuse_nothing(building: Building) -> None:

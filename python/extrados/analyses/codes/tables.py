@@ -136,6 +136,11 @@ class LocalMechanism(BuildingAnalysis):
         return self
 
     def reckons_with(self, building: "Building") -> set[str]:
-        """Joints and a wall beside it are of the building's own mechanism."""
+        """Joints, and a wall beside them, are of the stones that turn as the deck draws them."""
         found = super().reckons_with(building)
-        return found if self.mechanism == "building" else found - {"joints.friction", "supports.abutting_wall"}
+        return found if self.of_stones(building) else found - {"joints.friction", "supports.abutting_wall"}
+
+    def of_stones(self, building: "Building") -> bool:
+        """Whether the mechanism is that of the deck's stones, not of a body by itself or of the walls of a plan."""
+        structure = building.structure
+        return self.mechanism == "building" and (structure is None or "blocks" not in structure.lacks)

@@ -9,9 +9,9 @@ from extrados.analyses.codes.kinematics import Overturning, Weight
 from extrados.analyses.codes.mechanisms import set_back
 from extrados.analyses.context import Refused
 from extrados.building.building import Building
-from extrados.building.mesh.plan import around
+from extrados.building.errors import BadGeometry
 from extrados.building.properties import Material
-from extrados.building.templates.plan import Plan, PlanWall
+from extrados.building.templates.plan import MEETS, Plan, PlanWall
 from extrados.schema.constants import GRAVITY
 
 
@@ -50,13 +50,18 @@ def _floors(plan: Plan) -> tuple[dict[tuple[str, int], float], dict[str, set[int
     """Load [N] that each wall bears on top of each storey, and the storeys on top of which each wall is held."""
     loads: dict[tuple[str, int], float] = defaultdict(float)
     held: dict[str, set[int]] = defaultdict(set)
-    for floor in plan.floors:
-        ring = around(plan, floor)
+    for k, floor in enumerate(plan.floors):
+        ring = plan.around(floor)
         corner = np.array([np.asarray(plan.walls[w].start) + s * plan.walls[w].direction for w, s, _ in ring])
         x, y = corner.T
         area = 0.5 * abs(float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)))
         lengths = {plan.walls[w].name: abs(end - start) for w, start, end in ring}
         bearing = {name: lengths[name] for name in floor.bears_on if name in lengths} if floor.bears_on else lengths
+        if floor.load > 0.0 and not bearing:
+            raise BadGeometry(
+                f"floor on storey {floor.storey}: none of the walls that bear its load lies beside it",
+                ("structure", "floors", k, "bears_on"),
+            )
         for name, length in bearing.items():
             loads[name, floor.storey] += floor.load * area * length / sum(bearing.values())
         if floor.kind == "rigid":
@@ -72,14 +77,19 @@ def _part(building: Building, plan: Plan, wall: PlanWall, storey: int, loads: di
     material: Material = building.materials[wall.material] if wall.material else building.material
     thickness = [wall.thickness or wall.thicknesses[k - first] for k in range(first, last + 1)]
     foot, arm = float(plan.levels[storey - 1]), 0.5 * thickness[storey - first]
+    sole = plan.strips(wall, storey)[0][0]
+    if not sole > MEETS:
+        number = plan.walls.index(wall)
+        raise Refused(
+            f"wall '{wall.name}' has no masonry at the foot of storey {storey}: openings take its whole length",
+            ("structure", "walls", number, "openings"),
+        )
     volume = moment = 0.0  # m^3, and about the foot m^4
     for k in range(storey, last + 1):
         floor = float(plan.levels[k - 1]) - foot
-        holes = [(o.x[1] - o.x[0], o.z[0], min(o.z[1], plan.storeys[k - 1])) for o in wall.openings if o.storey == k]
-        pieces = [(wall.length, 0.0, plan.storeys[k - 1]), *((-width, low, high) for width, low, high in holes)]
-        for width, low, high in pieces:
-            volume += thickness[k - first] * width * (high - low)
-            moment += thickness[k - first] * width * (high - low) * (floor + 0.5 * (low + high))
+        for length, low, high in plan.strips(wall, k):
+            volume += thickness[k - first] * length * (high - low)
+            moment += thickness[k - first] * length * (high - low) * (floor + 0.5 * (low + high))
     if not volume * material.density > 0.0:
         raise Refused("nothing that sways has weight: give a density above zero", ("material", "density"))
     weights = [Weight(material.density * GRAVITY * volume, arm, moment / volume)]
@@ -92,7 +102,6 @@ def _part(building: Building, plan: Plan, wall: PlanWall, storey: int, loads: di
             for p in plan.prestress
             if p.wall == wall.name and (p.level or last) == k
         ]
-    doors = sum(o.x[1] - o.x[0] for o in wall.openings if o.storey == storey and o.z[0] == 0.0)
     if material.compressive_strength is not None:
-        weights = set_back(weights, material.compressive_strength, wall.length - doors, 2.0 * arm)
+        weights = set_back(weights, material.compressive_strength, sole, 2.0 * arm)
     return WallPart(wall.name, storey, foot, Overturning(tuple(weights)))

@@ -2,22 +2,26 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.dem import measures
+from extrados.analyses.dem import measures, solid_settlement
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.model import JointValues, Model
-from extrados.analyses.dem.runs import Runs, Task, answered
+from extrados.analyses.dem.runs import Runs, SolidRuns, SolidTask, Task, answered
 from extrados.analyses.dem.settlement import farthest_settlement
+from extrados.analyses.dem.solid_model import SolidModel, SolidValues, make_solid_model
 from extrados.analyses.dem.tables import DemDomain
 from extrados.analyses.dem.trial import start
+from extrados.analyses.needs import stones_of
 from extrados.analyses.rocking.failure_domain import settling_time, shortest_durations, unit_pulse
 from extrados.building.errors import BadGeometry
+from extrados.building.geometry.assembly import Assembly
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
-from extrados.core import dem
+from extrados.core import dem, dem3, dem_run
 from extrados.core.calls import interruptible
 from extrados.core.errors import CoreError
 from extrados.results import dem as out
@@ -28,6 +32,8 @@ FAILED = ("collapse", "left")
 #: Times at which a swing is looked at [s], and rotations below which bodies vibrate [rad].
 SWING, VIBRATES = 0.01, 2e-3
 COMPLIANT, RIGID = "springs (compliant)", "rigid contacts (nonsmooth)"
+#: Number of a curve, amplitude [m/s^2], duration [s]
+Pulse = tuple[int, float, float]
 #: Solvers that agree in fewer cells do not confirm each other.
 AGREE = 0.95
 
@@ -37,38 +43,37 @@ class Curve:
     """What is asked of one set of joints and one solver."""
 
     label: str
-    values: JointValues
+    values: JointValues | SolidValues
     rigid: bool = False
 
 
 class Search:
     """Asks round by round which pulses (curve, amplitude, duration) bring the structure down."""
 
-    def __init__(self, context: Context, options: DemDomain, model: Model, curves: list[Curve], rounds: float):
+    def __init__(
+        self, context: Context, options: DemDomain, model: Model | SolidModel, curves: list[Curve], rounds: float
+    ):
         self.context, self.options, self.model, self.curves = context, options, model, curves
-        self.bodies = [model.bodies(curve.values) for curve in curves]
-        self.settlement = [farthest_settlement(model, curve.values, curve.rigid) for curve in curves]
         self.settle = options.settle or dem_model.settle_time(model)
         self.limit = options.collapse_displacement or 0.2 * model.size
-        self.shift = start(context, model)
+        self.job = _of_section(self, model) if isinstance(model, Model) else _of_solids(self, model)
         self.asked, self.total = 0, len(curves) * len(options.amplitudes) * rounds
-        self.residual, self.steps, self.effort = 0.0, 0, dem.Effort(0, 0, 0, 0, 0.0)
+        self.residual, self.steps, self.effort = 0.0, 0, dem_run.NO_EFFORT
 
-    def fails(self, pulses: list[tuple[int, float, float]]) -> list[bool]:
+    def fails(self, pulses: list[Pulse]) -> list[bool]:
         """Whether each pulse (curve, amplitude [m/s^2], duration [s]) brings the structure down; Unfinished where
         some have no answer, Refused where one is not to be trusted."""
         return [run.reason in FAILED for run in self._runs(pulses)]
 
-    def falls_at_once(self, pulses: list[tuple[int, float, float]]) -> list[bool]:
-        """Whether each pulse brings it down in its first swing: no body turns back beyond where it began."""
-        return [
-            run.reason in FAILED and _swings_once(run, self.model.rigid.count)
-            for run in self._runs(pulses, output_step=SWING)
-        ]
+    def falls_at_once(self, pulses: list[Pulse]) -> list[bool]:
+        """Of a section: whether each pulse brings it down in its first swing: no body turns back beyond where it began."""
+        assert isinstance(self.model, Model)
+        count = self.model.rigid.count
+        return [run.reason in FAILED and _swings_once(run, count) for run in self._runs(pulses, output_step=SWING)]
 
-    def _runs(self, pulses: list[tuple[int, float, float]], output_step: float = 1e3) -> list[dem.Run]:
+    def _runs(self, pulses: list[Pulse], output_step: float = 1e3) -> list[Any]:
         runs = answered(
-            self.context, "dem-domain", Runs(self.bodies, [self._task(*one, output_step) for one in pulses]), "",
+            self.context, "dem-domain", self.job(pulses, output_step), "",
             tell=lambda done: self.context.progress(
                 min(self.asked + done, self.total), self.total, "failure domain by discrete elements"
             ),
@@ -85,29 +90,59 @@ class Search:
         """Of the rigid contacts in all runs, None where there were none."""
         return measures.convergence(self.effort) if self.effort.steps else None
 
-    def _task(self, curve: int, amplitude: float, duration: float, output_step: float) -> Task:
-        motion = unit_pulse(self.options.pulse, duration)
-        options = dem.Options(
-            end_time=motion.end + self.settle, output_step=output_step, fraction=self.options.fraction, collapse=self.limit,
-            stop_at_rest=True, mass_damping=self.options.mass_damping, settlement=self.settlement[curve],
-            rigid=self.curves[curve].rigid, rebound=self.options.rebound, step=self.options.time_step or 0.0,
-        )  # fmt: skip
-        return Task(curve, options, motion.ground, amplitude, self.shift)
+    def core_options(self, curve: int, end: float, output_step: float) -> dict[str, Any]:
+        """What of the core's options is the same of a section and of solids; `end` of the pulse [s]."""
+        return {
+            "end_time": end + self.settle, "output_step": output_step, "fraction": self.options.fraction,
+            "collapse": self.limit, "stop_at_rest": True, "rigid": self.curves[curve].rigid, "rebound": self.options.rebound,
+            "step": self.options.time_step or 0.0,
+        }  # fmt: skip
+
+
+def _of_section(search: Search, model: Model) -> Callable[[list[Pulse], float], Runs]:
+    """Runs of a section under pulses."""
+    bodies = [model.bodies(curve.values) for curve in search.curves]
+    settlement = [farthest_settlement(model, curve.values, curve.rigid) for curve in search.curves]
+    shift = start(search.context, model)
+
+    def task(curve: int, amplitude: float, duration: float, output_step: float) -> Task:
+        motion = unit_pulse(search.options.pulse, duration)
+        given = search.core_options(curve, motion.end, output_step)
+        options = dem.Options(**given, settlement=settlement[curve], mass_damping=search.options.mass_damping)
+        return Task(curve, options, motion.ground, amplitude, shift)
+
+    return lambda pulses, output_step: Runs(bodies, [task(*one, output_step) for one in pulses])
+
+
+def _of_solids(search: Search, model: SolidModel) -> Callable[[list[Pulse], float], SolidRuns]:
+    """Runs of solids under pulses."""
+    bodies = model.bodies()
+    settlement = [solid_settlement.farthest_settlement(model, curve.rigid) for curve in search.curves]
+
+    def task(curve: int, amplitude: float, duration: float, output_step: float) -> SolidTask:
+        motion = unit_pulse(search.options.pulse, duration)
+        given = search.core_options(curve, motion.end, output_step)
+        options = dem3.Options(**given, settlement=settlement[curve], way=search.options.way)
+        return SolidTask(options, motion.ground, scale=amplitude)
+
+    return lambda pulses, output_step: SolidRuns(bodies, [task(*one, output_step) for one in pulses])
 
 
 def run(context: Context, options: DemDomain) -> Result:
     """Curves of the shortest failing durations, with their sensitivity, beside those of the four-hinge model."""
-    model = dem_model.make_model(context, options)
+    model: Model | SolidModel
+    if isinstance(stones_of(context.building, options), Assembly):
+        model = dem_model.make_model(context, options)
+        context.warnings += dem_model.warnings(model, options)
+        varied = _varied(options, model.values)
+    else:
+        model, varied = make_solid_model(context.building, options), []
+        if not options.rigid or options.cross_check:
+            context.warnings += dem_model.under_damped(model.values)
     base = model.values
-    curves = [
-        Curve("as given", base, options.rigid),
-        *(Curve(f"damping x {f:g}", base.scaled(damping=f)) for f in options.vary_damping),
-        *(Curve(f"stiffness x {f:g}", base.scaled(stiffness=f)) for f in options.vary_stiffness),
-        *(Curve(f"friction {f:g}", base.scaled(friction=f), options.rigid) for f in options.vary_friction),
-    ]
+    curves = [Curve("as given", base, options.rigid), *varied]
     if options.cross_check:
         curves.append(Curve(COMPLIANT if options.rigid else RIGID, base, not options.rigid))
-    context.warnings += dem_model.warnings(model, options)
     amplitudes, durations = np.array(options.amplitudes), np.array(options.durations)
     refining = max(0.0, np.ceil(np.log2(max(float(np.diff(durations).max()), durations[0]) / options.accuracy)))
     search = Search(context, options, model, curves, len(durations) + refining)
@@ -120,6 +155,7 @@ def run(context: Context, options: DemDomain) -> Result:
     result = Result("dem-domain")
     numbers = {
         "pulse": options.pulse,
+        "direction_deg": None if isinstance(model, Model) else options.direction or 0.0,
         "amplitudes_g": amplitudes / GRAVITY,
         "shortest_durations_s": shortest[0],
         "curves": [
@@ -172,6 +208,15 @@ def run(context: Context, options: DemDomain) -> Result:
     return result
 
 
+def _varied(options: DemDomain, base: JointValues) -> list[Curve]:
+    """Curves with other joints."""
+    return [
+        *(Curve(f"damping x {f:g}", base.scaled(damping=f)) for f in options.vary_damping),
+        *(Curve(f"stiffness x {f:g}", base.scaled(stiffness=f)) for f in options.vary_stiffness),
+        *(Curve(f"friction {f:g}", base.scaled(friction=f), options.rigid) for f in options.vary_friction),
+    ]
+
+
 def _springs(curve: Curve) -> dict[str, float | None]:
     """Stiffness and damping of a curve; None of rigid contacts."""
     told = {"beta_s": curve.values.beta, "stiffness_Pa_per_m": float(curve.values.stiffness.max())}
@@ -222,7 +267,7 @@ def _swings_once(run: dem.Run, count: int) -> bool:
 
 
 def _shortest(
-    fails: Callable[[list[tuple[int, float, float]]], list[bool]],
+    fails: Callable[[list[Pulse]], list[bool]],
     curves: int,
     amplitudes: np.ndarray,
     durations: np.ndarray,
@@ -262,7 +307,7 @@ def _shortest(
 
 
 def _beside(
-    context: Context, options: DemDomain, model: Model, amplitudes: np.ndarray, durations: np.ndarray, result: Result,
+    context: Context, options: DemDomain, model: Model | SolidModel, amplitudes: np.ndarray, durations: np.ndarray, result: Result,
     table: dict, units: dict,
 ) -> dict[str, np.ndarray]:  # fmt: skip
     """Shortest failing durations of the four-hinge model at the same amplitudes, where the structure is an arch: their

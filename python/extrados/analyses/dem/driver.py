@@ -32,7 +32,8 @@ def run(context: Context, options: Dem) -> Result:
 
 def _of_solids(context: Context, options: Dem) -> Result:
     model = make_solid_model(context.building, options)
-    context.warnings += dem_model.under_damped(model.values)
+    if not options.rigid:
+        context.warnings += dem_model.under_damped(model.values)
     try:
         with interruptible():
             result = (solid_tilt if options.test == "tilt" else solid_motion).run(context, options, model)

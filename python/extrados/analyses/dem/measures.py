@@ -4,11 +4,12 @@ import itertools
 
 import numpy as np
 
-from extrados.analyses.dem.model import Model
+from extrados.analyses.dem.model import JointValues, Model
+from extrados.analyses.dem.solid_model import SolidValues
 from extrados.analyses.dem.tables import Dem
 from extrados.building.geometry.assembly import GROUND
 from extrados.building.geometry.rigid import FOOTING
-from extrados.core import dem, dem3
+from extrados.core import dem, dem3, dem_run
 from extrados.results.dem import APART, CLOSED, HINGED_FIRST, HINGED_SECOND, Convergence
 from extrados.results.model import Array, TableData
 from extrados.schema.constants import GRAVITY
@@ -72,7 +73,7 @@ def peak_slip(state: np.ndarray, slip: np.ndarray) -> float:
     return float(np.nanmax(np.abs(np.where(state == APART, 0.0, slip)), initial=0.0))
 
 
-def convergence(effort: dem.Effort) -> Convergence:
+def convergence(effort: dem_run.Effort) -> Convergence:
     """What rigid contacts took."""
     return Convergence(
         steps=effort.steps,
@@ -80,7 +81,20 @@ def convergence(effort: dem.Effort) -> Convergence:
         most_rounds=effort.most_rounds,
         factorisations_per_step=effort.factors / max(effort.steps, 1),
         worst_violation_ratio=effort.residual,
+        worst_violation_s=effort.worst,
     )
+
+
+def springs(options: Dem, values: JointValues | SolidValues, found: dem_run.FoundRun) -> dict[str, float | None]:
+    """Stiffness, damping and the stable step of joints with springs; None of rigid contacts."""
+    told = {
+        "joint_stiffness_min_Pa_per_m": float(values.stiffness.min()),
+        "joint_stiffness_max_Pa_per_m": float(values.stiffness.max()),
+        "beta_s": values.beta,
+        **{f"damping_ratio_{name}": ratio for name, ratio in values.ratios().items()},
+        "critical_step_s": found.critical_step,
+    }
+    return dict.fromkeys(told) if options.rigid else told
 
 
 def off_their_footings(model: Model, state: np.ndarray, slip: np.ndarray) -> list[str]:
@@ -176,6 +190,8 @@ def block_places(model: Model, place: np.ndarray) -> np.ndarray:
 
 
 def block_rates(model: Model, run: dem.Run) -> np.ndarray:
+    """Velocities [m/s] and spin [rad/s] (frames, blocks, 3) of the centroids of the blocks, from those of the bodies
+    that they belong to."""
     body = model.rigid.body_of_block
     out = run.rate[:, body].copy()
     arm = block_places(model, run.place)[..., :2] - run.place[:, body, :2]

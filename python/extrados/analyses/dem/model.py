@@ -16,7 +16,7 @@ from extrados.building.geometry.earth import passive_left_out
 from extrados.building.geometry.rigid import RigidBodies
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
-from extrados.core import dem, dem3
+from extrados.core import dem, dem3, dem_run
 from extrados.schema.constants import GRAVITY
 
 Found = TypeVar("Found", dem.Run, dem3.Run)
@@ -188,13 +188,13 @@ def under_damped(values: JointValues | SolidValues) -> list[str]:
     return found
 
 
-def unconverged(effort: dem.Effort) -> list[str]:
+def unconverged(effort: dem_run.Effort) -> list[str]:
     """The warning that rigid contacts did not converge in some steps."""
     if not effort.open_steps:
         return []
     return [
-        f"the contacts did not converge in {effort.open_steps} of {effort.steps} steps: at the worst they are off by "
-        f"{effort.residual:.2g} of the velocity that gravity gives in a step; a smaller time_step may help"
+        f"the contacts did not converge in {effort.open_steps} of {effort.steps} steps: at the worst, at {effort.worst:.4g} s, "
+        f"they are off by {effort.residual:.2g} of the velocity that gravity gives in a step; a smaller time_step may help"
     ]
 
 

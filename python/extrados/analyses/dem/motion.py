@@ -125,25 +125,12 @@ def _numbers(options: Dem, trial: Trial, found: dem.Run, seen: Seen) -> dict[str
         "airborne_time_s": float(found.airborne[mobile].max(initial=0.0)),
         "solver": options.solver,
         "convergence": measures.convergence(found.effort) if options.rigid else None,
-        **_springs(options, model, found),
+        **measures.springs(options, model.values, found),
         "steps": found.steps,
         "settling_steps": found.settling_steps,
         "time_step_s": found.step,
         "contact_searches": found.searches,
     }
-
-
-def _springs(options: Dem, model: Model, found: dem.Run) -> dict[str, float | None]:
-    """Stiffness, damping and the stable step of joints with springs; None of rigid contacts."""
-    values = model.values
-    told = {
-        "joint_stiffness_min_Pa_per_m": float(values.stiffness.min()),
-        "joint_stiffness_max_Pa_per_m": float(values.stiffness.max()),
-        "beta_s": values.beta,
-        **{f"damping_ratio_{name}": ratio for name, ratio in values.ratios().items()},
-        "critical_step_s": found.critical_step,
-    }
-    return dict.fromkeys(told) if options.rigid else told
 
 
 def _store(options: Dem, model: Model, found: dem.Run, seen: Seen, result: Result) -> None:

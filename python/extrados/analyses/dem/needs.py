@@ -25,7 +25,7 @@ def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
     except BadGeometry:
         return  # told already
     if not isinstance(stones, Assembly):
-        assert isinstance(options, tables.Dem)  # the others take sections alone
+        assert isinstance(options, tables.SpatialDem)  # the others take sections alone
         yield from _needs_of_solids(context, options, stones)
         return
     yield building.refuse_mixture
@@ -66,7 +66,7 @@ def _refuse_restitution(building: Building) -> None:
         raise Refused('"restitution" is of a single block; say damping = "edge" and vary it', ("joints", "damping"))
 
 
-def _needs_of_solids(context: Context, options: tables.Dem, stones: SolidAssembly) -> Iterator[Need]:
+def _needs_of_solids(context: Context, options: tables.SpatialDem, stones: SolidAssembly) -> Iterator[Need]:
     building = context.building
 
     def refuse(text: str, key: Key) -> None:
@@ -75,6 +75,8 @@ def _needs_of_solids(context: Context, options: tables.Dem, stones: SolidAssembl
     for text, key in refusals(building, options):
         yield partial(refuse, text, key)
     yield lambda: refuse_stones(building, stones)
+    if not isinstance(options, tables.Dem):
+        return
     if context.deck.motion is not None and options.test == "motion":
         yield context.refuse_motion
     if options.track:

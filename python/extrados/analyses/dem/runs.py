@@ -104,23 +104,23 @@ class Runs(Job[dem.Run]):
         return {
             **recorded(found, length),
             "blamed": np.array([*found.blamed, -1, -1][:2]),
-            "effort": np.array(astuple(found.effort), dtype=float),
         }
 
     def run_of(self, rows: dict[str, np.ndarray], k: int = 0) -> dem.Run:
         """The run of row k, but for the forces in its contacts at the end."""
         row = {name: values[k] for name, values in rows.items()}
-        effort = dem.Effort(*(int(v) for v in row["effort"][:-1]), float(row["effort"][-1]))
-        return dem.Run(**record_of(row), contacts=NO_CONTACTS, effort=effort)
+        return dem.Run(**record_of(row), contacts=NO_CONTACTS)
 
 
 @dataclass(frozen=True)
 class SolidTask:
-    """One run of blocks in space: options, and how the ground moves along their way and, horizontally, across it."""
+    """One run of blocks in space: options, and how the ground moves along their way and, horizontally, across it, each times
+    `scale`."""
 
     options: dem3.Options
     ground: Ground | None = None
     across: Ground | None = None
+    scale: float = 1.0
 
     @property
     def times(self) -> np.ndarray:
@@ -151,7 +151,7 @@ class SolidRuns(Job[dem3.Run]):
         ):
             told = None if watch is None else partial(watch, model)
             across = None if task.across is None else 1
-            return model.run(motions, across=across, times=task.times, state=state, watch=told)
+            return model.run(motions, across=across, scale=task.scale, times=task.times, state=state, watch=told)
 
     def rows(self, found: dem3.Run) -> dict[str, np.ndarray]:
         """The row of a run; histories are as long as the longest that was asked for."""
@@ -177,6 +177,7 @@ def recorded(found: dem_run.FoundRun, length: int) -> dict[str, np.ndarray]:
         "points": np.array(len(found.time)),
         **{name: padded(getattr(found, name), length) for name in HISTORIES},
         "energy": padded(energy, length),
+        "effort": np.array(astuple(found.effort), dtype=float),
         **{name: getattr(found, name) for name in OF_BODIES},
         **{name: np.array(getattr(found, name)) for name in NUMBERS + COUNTS},
     }
@@ -190,6 +191,7 @@ def record_of(row: dict[str, np.ndarray]) -> dict[str, Any]:
         "blamed": [int(b) for b in row["blamed"] if b >= 0],
         **{name: row[name][:points] for name in HISTORIES},
         "energy": {name: row["energy"][:points, i] for i, name in enumerate(dem_run.ENERGIES)},
+        "effort": dem_run.Effort(*(int(v) for v in row["effort"][:4]), *(float(v) for v in row["effort"][4:])),
         **{name: row[name] for name in OF_BODIES},
         **{name: float(row[name]) for name in NUMBERS},
         **{name: int(row[name]) for name in COUNTS},

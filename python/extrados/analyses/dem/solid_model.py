@@ -6,7 +6,7 @@ import numpy as np
 
 from extrados.analyses.context import Refused
 from extrados.analyses.dem import impact_rules
-from extrados.analyses.dem.tables import Dem
+from extrados.analyses.dem.tables import Dem, DemDomain, SpatialDem
 from extrados.building.building import Building
 from extrados.building.errors import Key
 from extrados.building.geometry.solids.assembly import SolidAssembly
@@ -94,30 +94,41 @@ def _law(stiffness: float, shear: float, friction: float, values: SolidValues) -
     return dem3.Law(*(float(f"{x:.12g}") for x in (stiffness, shear, friction)), values.beta)
 
 
-def make_solid_model(building: Building, options: Dem) -> SolidModel:
+def make_solid_model(building: Building, options: SpatialDem) -> SolidModel:
     """The model of a building's blocks in space."""
     assembly = building.solids()
     return SolidModel(assembly, supports_of(assembly, options.floor), solid_values(building, assembly))
 
 
-def refusals(building: Building, options: Dem) -> list[tuple[str, Key]]:
+def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
     """What discrete elements in space do not reckon with, and the key that asks for it."""
     given, joints = options.model_fields_set, building.joints
     asked: list[tuple[str, bool, Key]] = [
-        ('solver = "nonsmooth"', options.rigid, ("analysis", "solver")),
         ("mass_damping", options.mass_damping > 0.0, ("analysis", "mass_damping")),
         ('merge = "three-bars"', options.merge != "none", ("analysis", "merge")),
-        ('base = "moving"', options.base == "moving", ("analysis", "base")),
         *((key, key in given, ("analysis", key)) for key in ("vary_damping", "vary_stiffness", "vary_friction")),
-        ("find_friction", options.find_friction, ("analysis", "find_friction")),
         ("[[initial.movements]]", bool(building.initial.movements), ("initial", "movements")),
         ("[initial] rotation_ratio", bool(building.initial.rotation_ratio), ("initial", "rotation_ratio")),
         ("stiffness of supports", building.supports.stiffness is not None, ("supports", "stiffness")),
         ("worn corners", joints.worn_corners > 0.0, ("joints", "worn_corners")),
-        ('stiffness_rule = "thesis", which is of a section', joints.stiffness_rule == "thesis", ("joints", "stiffness_rule")),
-        ('damping = "restitution"', joints.damping == "restitution" and joints.beta is None, ("joints", "damping")),
     ]  # fmt: skip
-    return [(f"dem of solids does not reckon with {what}: leave it out", key) for what, there, key in asked if there]
+    if isinstance(options, Dem):
+        asked += [
+            ('base = "moving"', options.base == "moving", ("analysis", "base")),
+            ("find_friction", options.find_friction, ("analysis", "find_friction")),
+        ]
+    if isinstance(options, DemDomain):
+        asked.append(("mode_II", options.mode_II, ("analysis", "mode_II")))
+    if not options.rigid or (
+        isinstance(options, DemDomain) and options.cross_check
+    ):  # rigid contacts do not ask for it
+        asked += [
+            ('stiffness_rule = "thesis", which is of a section', joints.stiffness_rule == "thesis", ("joints", "stiffness_rule")),
+            ('damping = "restitution"', joints.damping == "restitution" and joints.beta is None, ("joints", "damping")),
+        ]  # fmt: skip
+    return [
+        (f"dem of solids cannot take {what} into account: leave it out", key) for what, there, key in asked if there
+    ]
 
 
 def refuse_stones(building: Building, assembly: SolidAssembly) -> None:
@@ -132,10 +143,10 @@ def refuse_stones(building: Building, assembly: SolidAssembly) -> None:
         if np.nanmax(building.joint_property(name, assembly), initial=0.0) > 0.0:
             raise Refused(f"joints.{name}: dem of solids knows dry joints alone", ("joints", name))
     if assembly.keys is not None:
-        raise Refused("dowels: dem of solids does not reckon with them; leave them out", ("structure", "dowels"))
+        raise Refused("dowels: dem of solids cannot take them into account; leave them out", ("structure", "dowels"))
     if len(assembly.fill):
         raise Refused(
-            "fill: dem of solids does not reckon with what rests on the stones; leave it out", ("structure", "fill")
+            "fill: dem of solids cannot take what rests on the stones into account; leave it out", ("structure", "fill")
         )
 
 

@@ -31,7 +31,6 @@ def collapse_limit(options: Dem, model: SolidModel) -> float:
 def core_options(context: Context, options: Dem, model: SolidModel) -> dem3.Options:
     """Options of the core for a run of this deck."""
     quiet = context.motion.end if context.deck.motion else 0.0
-    turn = np.radians(options.direction or 0.0)
     return dem3.Options(
         end_time=options.end_time or quiet + dem_model.settle_time(model),
         output_step=options.output_step,
@@ -39,9 +38,12 @@ def core_options(context: Context, options: Dem, model: SolidModel) -> dem3.Opti
         fraction=options.fraction,
         collapse=collapse_limit(options, model) if options.stop_at_collapse else 0.0,
         domain=options.domain * model.size,
-        settlement=farthest_settlement(model),
+        settlement=farthest_settlement(model, options.rigid),
         stop_at_rest=options.end_time is None,
-        way=(float(np.cos(turn)), float(np.sin(turn)), 0.0),
+        rigid=options.rigid,
+        rebound=options.rebound,
+        quasi_static=options.quasi_static,
+        way=options.way,
     )
 
 
@@ -72,6 +74,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
         result.warnings.append(
             f"the energy ledger is off by {100 * found.residual:.2g} % of the energy that went round"
         )
+    result.warnings += dem_model.unconverged(found.effort)
     if r.still_moving:
         result.warnings.append("it still moves at the end of the run: a longer end_time may show another outcome")
     if moved is None:
@@ -81,7 +84,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
 
 
 def _numbers(options: Dem, model: SolidModel, found: dem3.Run, seen: SolidsSeen) -> dict[str, Any]:
-    names, values, limit = model.assembly.block_names, model.values, collapse_limit(options, model)
+    names, limit = model.assembly.block_names, collapse_limit(options, model)
     mobile = slice(0, model.count)
     kinetic = found.energy["kinetic"]
     noise = 1e-6 * float(model.assembly.mass.sum()) * GRAVITY * model.size
@@ -110,12 +113,9 @@ def _numbers(options: Dem, model: SolidModel, found: dem3.Run, seen: SolidsSeen)
         "energy_residual_ratio": found.residual,
         "bounces": int(found.bounces[mobile].sum()),
         "airborne_time_s": float(found.airborne[mobile].max(initial=0.0)),
-        "solver": "compliant",
-        "joint_stiffness_min_Pa_per_m": float(values.stiffness.min()),
-        "joint_stiffness_max_Pa_per_m": float(values.stiffness.max()),
-        "beta_s": values.beta,
-        **{f"damping_ratio_{name}": ratio for name, ratio in values.ratios().items()},
-        "critical_step_s": found.critical_step,
+        "solver": options.solver,
+        "convergence": measures.convergence(found.effort) if options.rigid else None,
+        **measures.springs(options, model.values, found),
         "steps": found.steps,
         "settling_steps": found.settling_steps,
         "time_step_s": found.step,

@@ -4,7 +4,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from extrados.analyses.dem.settlement import FARTHEST, TIMES
+from extrados.analyses.dem.settlement import FARTHEST, RIGID, TIMES
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.building.geometry.solids.contacts import GROUND
 from extrados.schema.constants import GRAVITY
@@ -20,9 +20,11 @@ def corner_areas(polygon: np.ndarray) -> np.ndarray:
     return piece + np.roll(piece, 1)
 
 
-def farthest_settlement(model: SolidModel) -> float:
+def farthest_settlement(model: SolidModel, rigid: bool = False) -> float:
     """The displacement of a block beyond which it falls instead of settling [m]: a multiple of that under the own weight
-    with all contacts held closed, as in the plane (`settlement.py`)."""
+    with all contacts held closed, as in the plane (`settlement.py`). Rigid contacts give nothing."""
+    if rigid:
+        return RIGID * model.size
     one, v = model.assembly, model.values
     joint, corner = one.corner_joint, one.corner
     area = np.concatenate([corner_areas(p) for p in one.polygon])

@@ -31,6 +31,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
         context, options, lambda asked: SolidRuns(bodies, [SolidTask(base, pushed(a, base.end_time)) for a in asked]),
         lambda run: dem_model.checked(run, model),
     )  # fmt: skip
+    effort = last.effort.with_(back_run.effort)
     r = out.SolidDemTilt(
         test="tilt",
         outcome="collapse",
@@ -46,10 +47,12 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
         energy_residual_ratio=max(last.residual, back_run.residual),
         time_step_s=last.step,
         steps=last.steps,
-        solver="compliant",
-        beta_s=model.values.beta,
+        solver=options.solver,
+        convergence=measures.convergence(effort) if options.rigid else None,
+        beta_s=None if options.rigid else model.values.beta,
     )
     result = Result("dem")
+    result.warnings += dem_model.unconverged(effort)
     result.results = r
     opening, slip, state = solid_measures.contacts(model, last)
     result.arrays = {

@@ -1,6 +1,7 @@
 """Analysis kinds of the discrete elements: dem, dem-domain, dem-parameters."""
 
 import itertools
+import math
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
@@ -97,16 +98,27 @@ class DemTable(BuildingAnalysis):
         return self
 
 
-class Dem(DemTable, Animated):
-    """Discrete elements: rigid blocks that rock, hinge, slide and fall (thesis chapter 7)."""
+class SpatialDem(DemTable):
+    """What looks at sections and at solids."""
 
-    starter_motion: ClassVar = "step-pulse"
     solid: ClassVar = True
-    kind: Literal["dem"]
     direction: Angle | None = key(
         None, "direction in plan of the horizontal motion or push, from +x to +y; with it, and where there is no plane section, the "
         "blocks are looked at as solids", ge=-360, le=360,
     )  # fmt: skip
+
+    @property
+    def way(self) -> tuple[float, float, float]:
+        """Unit vector of the horizontal motion."""
+        turn = math.radians(self.direction or 0.0)
+        return (math.cos(turn), math.sin(turn), 0.0)
+
+
+class Dem(SpatialDem, Animated):
+    """Discrete elements: rigid blocks that rock, hinge, slide and fall (thesis chapter 7)."""
+
+    starter_motion: ClassVar = "step-pulse"
+    kind: Literal["dem"]
     quasi_static: bool = key(
         False, "nonsmooth: without inertia, so that supports that move are followed through large displacements until "
         "what stands on them falls",
@@ -134,7 +146,7 @@ class Dem(DemTable, Animated):
     tilt_accuracy: Gravities = key(1e-3, "accuracy of the tilt test", ge=1e-6, le=0.1)
 
 
-class DemDomain(DemTable):
+class DemDomain(SpatialDem):
     """Which pulses bring the structure down, by discrete elements, beside the four-hinge curves where they exist."""
 
     kind: Literal["dem-domain"]
@@ -175,7 +187,7 @@ class DemDomain(DemTable):
     def reckons_with(self, building: "Building") -> set[str]:
         """Beside an arch stands its four-hinge curve; a check by the other solver looks at springs, too."""
         found = super().reckons_with(building) | (of_springs(building) if self.cross_check else set())
-        arch = building.structure is not None and building.structure.kind == "arch"
+        arch = self.direction is None and building.structure is not None and building.structure.kind == "arch"
         return found | {"joints.restitution"} if arch else found
 
 

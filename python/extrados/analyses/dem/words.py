@@ -14,18 +14,23 @@ def solved(c: Convergence) -> str:
     )
 
 
+def _audit(r: DemRun | SolidDemRun) -> str:
+    """Ledger, and how impacts are damped or contacts solved."""
+    audit = f"energy ledger closed to {100 * r.energy_residual_ratio:.2g} %"
+    if r.convergence is not None:
+        return f"{audit}, {solved(r.convergence)}"
+    return (
+        f"{audit}, damping {100 * r.damping_ratio_rotation:.3g} % of critical at rotational and "
+        f"{100 * r.damping_ratio_edge:.3g} % at edge impact"
+    )
+
+
 def motion_answer(r: DemRun, model: Model, idle: bool) -> str:
+    """The answer of a run under a motion; idle: nothing moves the ground."""
     if idle and r.outcome == "no-hinging":
         return "It stands under its own weight; nothing moves it."
     turn = max(r.peak_rotation_rad.items(), key=lambda item: abs(item[1]), default=("", 0.0))
-    audit = f"energy ledger closed to {100 * r.energy_residual_ratio:.2g} %"
-    if r.convergence is None:
-        audit += (
-            f", damping {100 * r.damping_ratio_rotation:.3g} % of critical at rotational and "
-            f"{100 * r.damping_ratio_edge:.3g} % at edge impact"
-        )
-    else:
-        audit += f", {solved(r.convergence)}"
+    audit = _audit(r)
     if r.outcome == "collapse":
         who = f" ({r.stopped_by[0]} is the first to go)" if r.stopped_by else ""
         first = f"It collapses{who} at {r.collapse_time_s:.2f} s"
@@ -43,6 +48,7 @@ def motion_answer(r: DemRun, model: Model, idle: bool) -> str:
 
 
 def tilt_answer(r: DemTilt) -> str:
+    """The answer of a tilt test in the plane."""
     collapse, back = r.collapse_acceleration_g, r.collapse_acceleration_opposite_g
     where = ", ".join(f"{h.name} ({h.side})" for h in r.hinges[:6]) or "none"
     least, sense = min((collapse, "+x"), (back, "-x"))
@@ -54,13 +60,11 @@ def tilt_answer(r: DemTilt) -> str:
 
 
 def solid_answer(r: SolidDemRun, idle: bool) -> str:
+    """The answer of a run in space; idle: nothing moves the ground."""
     if idle and r.outcome == "no-hinging":
         return "It stands under its own weight; nothing moves it."
     turn = max(r.peak_rotation_rad.items(), key=lambda item: item[1], default=("", 0.0))
-    audit = (
-        f"energy ledger closed to {100 * r.energy_residual_ratio:.2g} %, damping {100 * r.damping_ratio_rotation:.3g} % of critical "
-        f"at rotational and {100 * r.damping_ratio_edge:.3g} % at edge impact"
-    )
+    audit = _audit(r)
     if r.outcome == "collapse":
         who = f" ({r.stopped_by[0]} is the first to go)" if r.stopped_by else ""
         first = f"It collapses{who} at {r.collapse_time_s:.2f} s"
@@ -76,10 +80,12 @@ def solid_answer(r: SolidDemRun, idle: bool) -> str:
 
 
 def solid_tilt_answer(r: SolidDemTilt) -> str:
+    """The answer of a tilt test in space."""
     where = ", ".join(r.opening_contacts[:6]) or "none"
     least = min(r.collapse_acceleration_g, r.collapse_acceleration_opposite_g)
     return (
         f"A constant horizontal acceleration brings it down at {r.collapse_acceleration_g:.4f} g pushed along {r.load_direction_deg:g} "
         f"degrees in plan (a tilt of {r.tilt_angle_deg:.2f} deg) and at {r.collapse_acceleration_opposite_g:.4f} g the opposite way; "
         f"the least is {least:.4f} g. Contacts that gape or slide as it goes: {where}."
+        + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")
     )

@@ -28,6 +28,7 @@ from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.chains import is_stack
 from extrados.building.geometry.earth import skyline
 from extrados.building.structure import Structure
+from extrados.limit.errors import NoAnswer
 from extrados.limit.fill import pressed, under_load
 from extrados.limit.lines import thrust_paths
 from extrados.limit.loads import Loads, forces_at
@@ -242,7 +243,9 @@ def run(context: Context, options: MovingLoad) -> Result:
         )
     worst = job.collapse(k)
     if worst is None:  # the sweep found it by the same steps
-        raise Refused("the most dangerous place was not found again", WHOLE)
+        raise NoAnswer(
+            f"the load at {places[k]:.4g} m brought it down in the sweep, and not when it was computed again"
+        )
     state, mechanism = worst.state, worst.mechanism
     heavier = replace(assembly, mass=factors.masonry * assembly.mass)
     result = Result("moving-load")

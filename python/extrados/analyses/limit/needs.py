@@ -61,7 +61,9 @@ def _refuse_of_sections(building: Building, options: tables.BuildingAnalysis) ->
     }
     for what, (there, key) in asked.items():
         if there:
-            raise Refused(f"tilt of solids does not reckon with {what}: leave it out, or look at a plane section", key)
+            raise Refused(
+                f"tilt of solids cannot take {what} into account: leave it out, or look at a plane section", key
+            )
 
 
 def _refuse_alone(building: Building) -> None:

@@ -48,6 +48,8 @@ class Range:
     whole: bool
 
     def at(self, value: float, *, beside: bool = False, explain: bool = False) -> Outcome:
+        """The outcome at a value of the key, in SI; beside: also what stands beside the capacity; explain: with the
+        reason of a refusal."""
         data = changed(self.data, self.path, round(value) if self.whole else float(value))
         try:
             own = getattr(self.building, self.table)

@@ -40,9 +40,11 @@ def rotd_peaks(motion: Motion) -> dict[str, float]:
 class Members(Protocol):
     """The motions of a set by their numbers, from 0."""
 
-    def motions(self, first: int, count: int, threads: int) -> Iterator[Motion]: ...
+    def motions(self, first: int, count: int, threads: int) -> Iterator[Motion]:
+        """Motions first .. first + count - 1, in order."""
 
-    def name(self, k: int) -> str: ...
+    def name(self, k: int) -> str:
+        """What motion k is called."""
 
 
 @dataclass(frozen=True)

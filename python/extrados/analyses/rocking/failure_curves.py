@@ -44,6 +44,7 @@ class Variant:
 
     @property
     def settle(self) -> float:
+        """How long it may rock on after a pulse [s]."""
         return SETTLE * self.natural
 
 

@@ -9,6 +9,7 @@ from extrados.analyses.shell.tables import Pushover, Settlement
 from extrados.analyses.sla.events import Curve
 from extrados.analyses.sla.kept import State
 from extrados.analyses.sla.model import (
+    MOST_CHANGES_OF_JOINTS,
     POINTS_PER_THREAD,
     bands_of,
     crushing_of,
@@ -16,11 +17,13 @@ from extrados.analyses.sla.model import (
     laws_of,
     refusal,
     softening_of,
+    teeth_of_joints,
 )
 from extrados.building.errors import BadGeometry
-from extrados.building.mesh.shells import ShellBar, ShellMesh, ShellPart
+from extrados.building.mesh.mesh import JointLaw
+from extrados.building.mesh.shells import ShellBar, ShellJoint, ShellMesh, ShellPart
 from extrados.core import sla as core
-from extrados.core.shell import node_frames
+from extrados.core.shell import layers_of, node_frames
 from extrados.schema.constants import GRAVITY
 
 #: Iterations of the lowest modes; the vectors that go with them
@@ -45,7 +48,6 @@ class ShellModel:
     axes: list[np.ndarray]  # of the elements of each part, rows x, y, normal
     mechanism_ratio: float
     acceleration: float | None = None  # of the reference load, where it is one of masses alone [m/s^2]
-    slides = False
     bars = ()  # whose forces would be followed
     already: float = 0.0  # reference load that stages before have left on [N]
     grounds: dict["Ground", int] = field(default_factory=dict)  # ground that may give way: which of what may move it is
@@ -58,6 +60,11 @@ class ShellModel:
     def driven(self) -> bool:
         """Whether the multiplier moves supports."""
         return bool(self.rate.any())
+
+    @property
+    def slides(self) -> bool:
+        """Whether a joint has a coefficient of friction."""
+        return any(isinstance(g, core.ShellJoints) and bool(np.isfinite(g.friction).any()) for g in self.groups)
 
     @property
     def watched(self) -> list[core.Monitor]:
@@ -76,7 +83,7 @@ class ShellModel:
             x, y, z = self.mesh.xyz[error.node]
             raise Refused(
                 f"the building is a mechanism: node {error.node + 1} at x {x:g}, y {y:g}, z {z:g} m is free to move in "
-                f"{error.direction}; what stands there hangs on nothing",
+                f"{error.direction}; what stands there is not supported",
                 ("structure",),
             ) from None
         except core.BadElement as error:
@@ -97,6 +104,16 @@ class ShellModel:
         own = np.zeros(len(moved))
         np.add.at(own, equation[equation >= 0], (self.freedoms.factor * load)[equation >= 0])
         return own - inner
+
+    def joints(self) -> list[tuple[ShellJoint, slice]]:
+        """The joints and the points of each."""
+        found, first, joints = [], 0, iter(self.mesh.joints)
+        for group in self.groups[: len(self.mesh.parts) + len(self.mesh.joints)]:
+            count = len(group.connect) * group.points_each
+            if isinstance(group, core.ShellJoints):
+                found.append((next(joints), slice(first, first + count)))
+            first += count
+        return found
 
     def places(self) -> list[tuple[ShellPart, slice, int]]:
         """Parts that bend, the points of each, and the layers: its points are (elements, places, layers)."""
@@ -119,6 +136,7 @@ def build(mesh: ShellMesh, options: Pushover) -> ShellModel:
 
 def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     frames, flat = node_frames(mesh.xyz, [part.connect for part in mesh.parts if part.bends])
+    flat &= ~_twisted(mesh, frames)
     held = set(mesh.held) | {(int(n), 5) for n in np.flatnonzero(flat)}
     angle = np.radians(options.direction)
     along = np.array([np.cos(angle), np.sin(angle), 0.0])
@@ -135,6 +153,7 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
         own = core.shell_axes(mesh.xyz, part.connect)
         axes.append(own)
         groups.append(_shells(mesh, part, own, frames, flat, options))
+    groups += [_joint(joint, frames, options) for joint in mesh.joints]
     for bar in mesh.bars:
         groups.append(_bar(mesh, bar, options))
     if mesh.springs:
@@ -145,6 +164,12 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
                 stiffness.astype(float),
             )
         )  # fmt: skip
+    if options.without_equilibrium != "load-unload" and any(np.isfinite(j.strength["friction"]) for j in mesh.joints):
+        raise Refused(
+            'joints that slide keep forces that only load-unload can follow: give them friction = "no-sliding", or leave '
+            "without_equilibrium out",
+            ("analysis", "without_equilibrium"),
+        )
     mass = mesh.mass()
     constant = np.zeros((len(mesh.xyz), 6))
     constant[:, 2] = -GRAVITY * mass
@@ -159,7 +184,10 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     weight, acceleration = float(GRAVITY * mass.sum()), None
     if not weight > 0.0:
         raise BadGeometry("a building without weight: give the material a density")
-    behaviour = core.Behaviour(options.cracking, options.shear_retention, options.crack_closure)
+    behaviour = core.Behaviour(
+        options.cracking, options.shear_retention, options.crack_closure,
+        MOST_CHANGES_OF_JOINTS if mesh.joints else core.Behaviour.most_changes,
+    )  # fmt: skip
     control = _control(mesh, options, along, held)
     model = ShellModel(
         mesh,
@@ -399,6 +427,44 @@ def _shells(
         frames=frames, flat=flat,
         layers=options.mesh.layers if part.bends else 1, through=options.mesh.through if part.bends else "gauss",
         bends=part.bends,
+    )  # fmt: skip
+
+
+def _twisted(mesh: ShellMesh, frames: np.ndarray) -> np.ndarray:
+    """Nodes (nodes) whose rotation about the normal of their wall a joint there feels: it is not held then."""
+    found = np.zeros(len(mesh.xyz), dtype=bool)
+    for joint in mesh.joints:
+        for way in (joint.normal, joint.along):
+            turn = np.cross(joint.out, way)
+            for corner in joint.connect.T:
+                found[corner[np.abs(np.einsum("ex,ex->e", turn, frames[corner, :, 2])) > 1e-9]] = True
+    return found
+
+
+def _joint(joint: ShellJoint, frames: np.ndarray, options: Pushover) -> core.ShellJoints:
+    """A joint layer by layer; an element is a layer of a stretch, layers of one stretch one after the other."""
+    height, share = layers_of(options.mesh.layers, options.mesh.through)
+    connect, layers = joint.connect, options.mesh.layers
+    # A pair of nodes between two stretches of a row stands in the first of them
+    follows = np.append(False, (connect[1:, 0] == connect[:-1, 1]) & (connect[1:, 3] == connect[:-1, 2]))
+    half = 0.5 * joint.length * joint.thickness
+    after = np.where(np.append(follows[1:], False), np.append(half[1:], 0.0), 0.0)
+    area = np.column_stack([np.where(follows, 0.0, half), half + after])
+
+    def each(values: np.ndarray) -> np.ndarray:
+        return np.repeat(values, layers, axis=0)
+
+    count = len(connect) * layers
+    axes = [each(axis) for axis in (joint.normal, joint.along, joint.out)]
+    upright = np.abs(joint.normal[:, 2]) > 0.5
+    law = JointLaw(
+        normal=each(np.column_stack([~upright, upright]).astype(float)), area=each(area) * np.tile(share, len(connect))[:, None],
+        **{name: np.full(count, value) for name, value in joint.strength.items()}, small=1.0, softening=joint.softening,
+    )  # fmt: skip
+    row = core.ShellJoints.rows(*axes, np.tile(height, len(connect)) * each(joint.thickness), frames[each(connect)])
+    return core.ShellJoints(
+        each(connect), law.normal, law.area, law.normal_stiffness, law.shear_stiffness, law.friction,
+        *teeth_of_joints(law, np.ones(count), options), small=law.small, row=row,
     )  # fmt: skip
 
 

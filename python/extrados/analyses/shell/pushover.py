@@ -22,7 +22,7 @@ from extrados.analyses.sla.stored import events_of_curve
 from extrados.building.building import Building
 from extrados.building.templates.plan import Plan
 from extrados.core.calls import interruptible
-from extrados.core.sla import EVENT, Shells
+from extrados.core.sla import EVENT, ShellJoints, Shells
 from extrados.results import shell as out
 from extrados.results.model import Array, Result, TableData
 from extrados.results.sla import PREFIXES
@@ -30,6 +30,10 @@ from extrados.results.vtu import pvd, vtu
 
 #: Part of the weight that walls across the push must take up or down to count as working flanges
 WORKING = 0.05
+#: Forces below this part of the weight are rounding
+ROUNDING = 1e-9
+#: What elements of a mesh file are called that are of no group
+NO_GROUP = "shell"
 
 
 def run(context: Context, options: Pushover) -> Result:
@@ -42,7 +46,7 @@ def _run(context: Context, options: Pushover) -> Result:
     result = Result("pushover")
     model = build(context.building.shell(options.mesh), options)
     context.warnings += model.warnings
-    if not any(g.tension is not None for g in model.groups if isinstance(g, Shells)):
+    if not any(g.tension is not None for g in model.groups if isinstance(g, Shells | ShellJoints)):
         context.warnings.append("nothing of it can crack: [material] has no tensile_strength, or no fracture_energy")
     elastic = _elastic(model, options)
     numbers: dict[str, Any] = {}
@@ -204,6 +208,8 @@ def _numbers(
     seen = cracks(model, state.report)["part"] > 0.0
     storey = point_places(model)["storey"]
     numbers["cracked_points_by_storey"] = np.bincount(storey[seen], minlength=len(model.mesh.levels))[1:].tolist()
+    if model.mesh.joints:
+        numbers["joints"] = _joints(model, curve, state)
     if not model.mesh.walls:
         numbers["feet"] = _feet(context, model, options, curve, state)
         return numbers
@@ -243,6 +249,30 @@ def shown_state(model: ShellModel, curve: Curve) -> State | None:
     if model.driven:
         return curve.states[-1] if curve.states else None
     return next((s for s in curve.states if s.event == curve.peak), None)
+
+
+def _gave_way(row: dict[str, Any]) -> str:
+    """When a joint gave way: under the constant loads, where no event of the push did it."""
+    load = row["first_base_shear_N"]
+    return "" if load is None else f" gives way under {load / 1e3:.3g} kN and"
+
+
+def _joints(model: ShellModel, curve: Curve, state: State) -> list[dict[str, Any]]:
+    """How far each joint has come apart in a state, and in the last one that is in equilibrium."""
+    last = next((s for s in reversed(curve.states) if curve.events.equilibrium[s.event]), state)
+    rows, force = [], curve.force(model.unit)
+    for joint, points in model.joints():
+        hits = np.flatnonzero((curve.events.point >= points.start) & (curve.events.point < points.stop))
+        found: dict[str, Any] = {"joint": joint.name, "wall": joint.wall}
+        for prefix, at in (("", state), ("last_", last)):
+            found[f"{prefix}opening_m"] = max(float(at.report["strain_n"][points].max()), 0.0)
+            found[f"{prefix}slip_m"] = float(np.abs(at.report["strain_ns"][points]).max())
+        area = last.report["volume"][points]
+        broken = (last.report["tooth_n"][points] > 1) | (last.report["tooth_s"][points] > 1)
+        found["first_base_shear_N"] = float(force[hits[0]]) if len(hits) else None
+        found["broken_share"] = float(area[broken].sum() / area.sum())
+        rows.append(found)
+    return rows
 
 
 def _feet(context: Context, model: ShellModel, options: Pushover, curve: Curve, state: State) -> list[dict[str, Any]]:
@@ -477,12 +507,13 @@ def _fields(
 
 def _answer(building: Building, options: Pushover, numbers: dict[str, Any]) -> str:
     word = "building" if building.structure is None else building.structure.word
+    grouped = building.structure is not None and building.structure.kind == "mesh"
     parts = []
     if "stages" in numbers:
         ends = [_stage_told(stage) for stage in numbers["stages"]]
         parts.append(f"Stages, each with the damage of those before: {'; '.join(ends)}.")
     for curve in [numbers, *([numbers["minus"]] if "minus" in numbers else [])]:
-        parts.append(_curve_told(options, numbers, curve, word))
+        parts.append(_curve_told(options, numbers, curve, word, grouped))
     if numbers.get("band_N"):
         low, high = numbers["band_N"]
         parts.append(
@@ -508,13 +539,20 @@ def _stage_told(stage: dict[str, Any]) -> str:
     return f"{stage['name']}, a push to {stage['sense']}, ends at {end / 1e3:.4g} kN by: {stage['stop']}"
 
 
-def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any], word: str) -> str:
-    """What a push of a building or a vault says; of ground that gives way what its feet bear."""
+def _pressing(row: dict[str, Any], weight: float) -> str:
+    """What a foot hands to the ground; what is only rounding beside the weight is not told."""
+    parts = []
+    for force, ways in ((row["thrust_N"], ("outward", "inward")), (row["vertical_N"], ("down", "up"))):
+        if abs(force) > ROUNDING * weight:
+            parts.append(f"{ways[force < 0.0]} with {abs(force) / 1e3:.4g} kN")
+    return f"presses {' and '.join(parts)}" if parts else "bears nothing"
+
+
+def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any], word: str, grouped: bool) -> str:
+    """What a push of a building or a vault says; of ground that gives way what its feet bear. grouped: its parts are groups of
+    a mesh file."""
     main = next((stage for stage in numbers.get("stages", []) if not stage["prefix"]), None)
-    feet = "; ".join(
-        f"its foot {row['foot']} presses outward with {row['thrust_N'] / 1e3:.4g} kN and down with {row['vertical_N'] / 1e3:.4g} kN"
-        for row in curve.get("feet", [])
-    )
+    feet = "; ".join(f"its foot {row['foot']} {_pressing(row, numbers['weight_N'])}" for row in curve.get("feet", []))
     if main is not None and main["of"] == "settlement":
         return f"After stage {main['name']} {feet}." if feet else ""
     load = curve["greatest_load_N"]
@@ -541,8 +579,10 @@ def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any
             )
         else:
             x, y, z = crack["place_m"]
+            part = crack["wall"]
+            where = f"group {part}" if grouped and part != NO_GROUP else f"the {part}"
             text += (
-                f"; it cracks first in the {crack['wall']} at x {x:.3g}, y {y:.3g}, z {z:.3g} m, under "
+                f"; it cracks first in {where} at x {x:.3g}, y {y:.3g}, z {z:.3g} m, under "
                 f"{crack['base_shear_N'] / 1e3:.3g} kN"
             )
     if any(r["share"] > 0.02 for r in curve["walls"]):
@@ -555,5 +595,11 @@ def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any
         text += (
             f"; walls across the push {'work as flanges' if flanges['working'] else 'hardly work with them'} "
             f"({flanges['uplift_N'] / 1e3:.3g} kN up, {flanges['pressure_N'] / 1e3:.3g} kN down)"
+        )
+    moved = [row for row in curve.get("joints", []) if row["broken_share"] > 0.0]
+    for row in sorted(moved, key=lambda row: -max(row["last_slip_m"], row["last_opening_m"]))[:3]:
+        text += (
+            f"; joint {row['joint']} in wall {row['wall']}{_gave_way(row)} has slid by {1e3 * row['last_slip_m']:.2g} mm and opened by "
+            f"{1e3 * row['last_opening_m']:.2g} mm at the end"
         )
     return f"{text}{'; ' if feet else ''}{feet}."

@@ -137,7 +137,7 @@ def _directions(options: Pushover) -> set[float]:
 
 
 def _compliance(core_model: core.Model, force: np.ndarray) -> float:
-    """Work of forces on the displacements of their own [J]."""
+    """Work of forces through the displacements that they cause [J]."""
     core_model.loads(np.zeros_like(force), force)
     return float((force * core_model.displacement(1.0)).sum())
 

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from extrados.analyses.sla.tables import MATERIAL, CrackOptions, Staged, without_effect
+from extrados.analyses.sla.tables import INTERFACES, MATERIAL, CrackOptions, Staged, without_effect
 from extrados.analyses.table import BuildingAnalysis
 from extrados.building.mesh.shells import ShellOptions
 from extrados.building.places import Range
@@ -183,9 +183,20 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     solution: ClassVar = "events"
     algorithm: ClassVar = "update"
 
+    def rests_on(self, building: "Building") -> dict[str, str | None]:
+        """Also, where it has joints, their friction, cohesion and tension."""
+        found = super().rests_on(building)
+        if getattr(building.structure, "joint_names", []):
+            found |= {"joints.friction": None, "joints.cohesion": None, "joints.tension": None}
+        return found
+
     def reckons_with(self, building: "Building") -> set[str]:
-        """Walls, floors and shells have materials, and no joints between stones; formulas of piers ask for a strength."""
+        """Walls, floors and shells have materials, and joints where the building says so; formulas of piers ask for a strength."""
         found = {*MATERIAL} - without_effect(building)
+        if getattr(building.structure, "joint_names", []):
+            found |= {name for name in INTERFACES if name != "supports.stiffness"}
+            if building.joints.shear_stiffness is not None:
+                found.discard("joints.shear_ratio")
         if self.frame is not None and self.frame.compressive_strength is None:
             found.add("material.compressive_strength")
         return found
@@ -198,6 +209,7 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
             {
                 "directions": self.directions != ["+"], "drives": bool(self.drives), "variants": bool(self.variants),
                 "target_displacement": self.target_displacement is not None, "stop_fraction": self.stop_fraction > 0.0,
+                'without_equilibrium = "proportional"': self.without_equilibrium == "proportional",
                 "constant_damage = false": not self.constant_damage,
             }
         )  # fmt: skip

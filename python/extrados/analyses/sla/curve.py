@@ -23,6 +23,7 @@ class Bilinear:
 
     @property
     def ductility(self) -> float:
+        """Ultimate over yield displacement."""
         return self.ultimate_displacement / self.yield_displacement
 
 

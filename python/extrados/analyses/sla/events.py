@@ -64,6 +64,7 @@ class Curve:
 
     @property
     def sense(self) -> str:
+        """Its sign as a deck writes it: "+" or "-"."""
         return "+" if self.sign > 0 else "-"
 
     def force(self, unit: float) -> np.ndarray:

@@ -35,6 +35,7 @@ class Step:
 
     @property
     def u(self) -> np.ndarray:
+        """Displacements (nodes, 2) of the state [m]."""
         return self.ua + self.load * self.ub
 
 

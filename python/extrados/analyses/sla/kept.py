@@ -36,6 +36,7 @@ class UnderWay:
 
     @property
     def done(self) -> int:
+        """Events so far."""
         return sum(map(len, self.parts))
 
     def arrays(self, damage: np.ndarray, standing: np.ndarray) -> dict[str, np.ndarray]:

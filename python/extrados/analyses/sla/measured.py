@@ -28,6 +28,7 @@ class Measured:
 
     @property
     def mean(self) -> np.ndarray:
+        """Mean of the least and the greatest load (points) [N]."""
         return 0.5 * (self.least + self.greatest)
 
 

@@ -89,13 +89,14 @@ def far_away(model: SlaModel, curve: Curve) -> str | None:
 
     Mechanisms of stones tend to a load that they reach in the end only, and a wall that nothing crushes bears ever more.
     """
-    if curve.peak < 0:
+    if curve.peak < 0 or not curve.force(model.unit)[curve.peak] > 0.0:
         return None
     load, moved = curve.force(model.unit), curve.events.monitors[:, 0]
     size = float(np.ptp(model.mesh.xy, axis=0).max())
     if not abs(moved[curve.peak] - curve.before) > FAR * size:
         return None
-    nearly = int(np.argmax(curve.events.equilibrium & (load >= NEARLY * load[curve.peak])))
+    carried = curve.events.equilibrium & (curve.events.compliance <= curve.most_compliance)
+    nearly = int(np.argmax(carried & (load >= NEARLY * load[curve.peak])))
     text = (
         f"the greatest load comes with a displacement of {moved[curve.peak]:.3g} m in a building of {size:.3g} m, and "
         "displacements are taken as small: it is what the load tends to"

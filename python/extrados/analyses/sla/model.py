@@ -10,7 +10,7 @@ from extrados.analyses.context import Refused
 from extrados.analyses.sla.bars import NamedBar, bar_group, tie_group
 from extrados.analyses.sla.tables import CrackOptions, Load, Sla
 from extrados.building.errors import BadGeometry, Key
-from extrados.building.mesh.mesh import ElementGroup, Mesh, corner_count, element_areas
+from extrados.building.mesh.mesh import ElementGroup, JointLaw, Mesh, corner_count, element_areas
 from extrados.building.places import Placed
 from extrados.building.properties import Material
 from extrados.building.templates.walls import Bar
@@ -292,6 +292,7 @@ def bands_of(
 
 
 def softening_of(material: Material, options: CrackOptions, factor: float = 1.0) -> core.Softening | None:
+    """The tension softening of a material, its strength times `factor`; None where it does not crack."""
     if material.tensile_strength is None:
         return None
     return core.Softening(
@@ -330,6 +331,7 @@ def bedding_of(material: Material) -> core.Bedding | None:
 
 
 def crushing_of(material: Material, options: CrackOptions) -> core.Softening | None:
+    """The softening of a material in compression; None where it does not crush."""
     if material.crushing_energy is None:
         return None
     return core.Softening(
@@ -384,6 +386,24 @@ def _plane(
 def _joints(group: ElementGroup, factors: np.ndarray, options: Sla) -> core.Joints:
     """Joints of no thickness; `factors` of their tensile strength and cohesion."""
     law = group.law
+    return core.Joints(
+        group.connect,
+        law.normal,
+        law.area,
+        law.normal_stiffness,
+        law.shear_stiffness,
+        law.friction,
+        *teeth_of_joints(law, factors, options),
+        group.dry,
+        law.small,
+        options.friction_ripple,
+    )
+
+
+def teeth_of_joints(
+    law: JointLaw, factors: np.ndarray, options: CrackOptions
+) -> tuple[list[core.Softening | None] | None, ...]:
+    """How tension, compression and cohesion of joints soften, by element."""
 
     def softenings(strength: np.ndarray, energy: np.ndarray) -> list[core.Softening | None] | None:
         made: dict[tuple[float, float], core.Softening] = {}
@@ -409,20 +429,7 @@ def _joints(group: ElementGroup, factors: np.ndarray, options: Sla) -> core.Join
                     f"joints.{name} is too small for joints of {k:.4g} Pa/m, which would snap back: it must be above "
                     f"{row.energy / core.largest_band(row, k):.4g} N/m"
                 )
-    return core.Joints(
-        group.connect,
-        law.normal,
-        law.area,
-        law.normal_stiffness,
-        law.shear_stiffness,
-        law.friction,
-        tension,
-        crushing,
-        cohesion,
-        group.dry,
-        law.small,
-        options.friction_ripple,
-    )
+    return tension, crushing, cohesion
 
 
 def _bar(mesh: Mesh, bar: Bar, options: Sla) -> tuple[core.Bars, np.ndarray]:

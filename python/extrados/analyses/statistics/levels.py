@@ -41,10 +41,12 @@ class Stripes:
 
     @property
     def valid(self) -> np.ndarray:
+        """Which runs came to an end (motions, levels)."""
         return self.outcome != FAILED
 
     @property
     def over(self) -> np.ndarray:
+        """Which runs collapsed (motions, levels)."""
         return self.outcome == COLLAPSE
 
     def percentile(self, percent: float) -> np.ndarray:

@@ -36,6 +36,7 @@ class Lognormal:
     p_value: float = np.nan
 
     def probability(self, x: np.ndarray) -> np.ndarray:
+        """Probability (n) at intensities x (n), in the unit of the median."""
         with np.errstate(divide="ignore"):
             return ndtr(np.log(np.asarray(x, dtype=float) / self.median) / self.dispersion)
 

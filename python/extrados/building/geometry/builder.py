@@ -64,10 +64,12 @@ class Builder:
         return len(self._blocks) - 1
 
     def fill_in(self, index: int, outline: np.ndarray) -> None:
+        """Give a block another outline (corners, 2) [m], either way round."""
         outline = outline if signed_area(outline) > 0.0 else outline[::-1]
         self._blocks[index] = (self._blocks[index][0], outline, *properties(outline))
 
     def name_of(self, block: int) -> str:
+        """The name of a block by its index."""
         return self._blocks[block][0]
 
     def outline_of(self, block: int) -> np.ndarray:

@@ -75,6 +75,7 @@ def _inner(value: Any) -> Any:
 
 
 def nodes_of(value: Any, name: str) -> dict[str, dict[str, Any]]:
+    """The nodes of an assembly by their keys; `name` is what complaints call the file."""
     inner = _inner(value)
     if isinstance(inner, dict) and "graph" in inner:
         inner = _inner(inner["graph"])

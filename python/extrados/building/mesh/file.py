@@ -24,8 +24,9 @@ IN_PARTS = {".xdmf", ".xmf", ".node", ".ele"}
 _INCLUDE = re.compile(rb"^\s*\*\s*include\b", re.IGNORECASE | re.MULTILINE)
 KINDS = {"triangle": "T3", "triangle6": "T6", "quad": "Q4", "quad8": "Q8"}
 LARGEST = 500_000_000  # bytes
-EXPECTED = "expected a whole file of gmsh, Abaqus, VTU or another format of its list, with the ending of its format"
-#: Farther from the origin no place of a building is [m]
+EXPECTED = "expected a complete file of gmsh, Abaqus, VTU or another format that meshio reads, with the file ending of that format"
+#: Farther from the origin no place of a building is [m]: map coordinates (UTM: up to 1e7 m north) must be moved to the
+#: building first
 FARTHEST = 1e6
 
 
@@ -57,7 +58,8 @@ def open_mesh(wall: MeshFile, building: "Building") -> tuple[str, "meshio.Mesh"]
     if far > FARTHEST:
         node = int(np.abs(points).max(axis=1).argmax()) + 1
         raise BadGeometry(
-            f"{path.name}: node {node} lies {far:.3g} m from the origin; expected places within {FARTHEST:g} m"
+            f"{path.name}: node {node} lies {far:.3g} m from the origin; expected places within {FARTHEST:g} m: move it to the "
+            "building's own origin"
         )
     for cells in mesh.cells:
         data = np.asarray(cells.data)

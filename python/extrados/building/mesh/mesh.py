@@ -80,14 +80,17 @@ class Mesh:
 
     @property
     def has_joints(self) -> bool:
+        """Whether stones meet at interface elements."""
         return any(group.joint is not None for group in self.groups)
 
     @property
     def low(self) -> np.ndarray:
+        """Least x and y (2) of the nodes [m]."""
         return self.xy.min(axis=0)
 
     @property
     def high(self) -> np.ndarray:
+        """Greatest x and y (2) of the nodes [m]."""
         return self.xy.max(axis=0)
 
     def nodes_at(self, place: Placed, what: str) -> np.ndarray:
@@ -157,6 +160,7 @@ class Mesh:
         return edges[alone], thickness[alone]
 
     def elements(self) -> int:
+        """Number of elements, interfaces among them."""
         return sum(len(b.connect) for b in self.groups)
 
 

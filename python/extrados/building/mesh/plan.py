@@ -1,17 +1,37 @@
 """The mesher of buildings on a plan: walls as grids that meet at corners, openings and storeys, floors between them."""
 
 import itertools
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from extrados.building.errors import BadGeometry, blaming
 from extrados.building.mesh.options import LARGEST_MESH
-from extrados.building.mesh.shells import Foot, ShellBar, ShellMesh, ShellOptions, ShellPart, WallPlane, pieces
+from extrados.building.mesh.shells import (
+    Foot,
+    ShellBar,
+    ShellJoint,
+    ShellMesh,
+    ShellOptions,
+    ShellPart,
+    WallPlane,
+    pieces,
+)
 from extrados.building.mesh.triangles import fill_ring
-from extrados.building.properties import Material
-from extrados.building.templates.plan import MEETS, Plan, PlanWall, Prestress, Rod, StoreyFloor, meeting, nearly_meeting
+from extrados.building.properties import NO_SLIDING, Material
+from extrados.building.templates.plan import (
+    MEETS,
+    Corner,
+    Plan,
+    PlanWall,
+    Prestress,
+    Rod,
+    StoreyFloor,
+    meeting,
+    nearly_meeting,
+)
 from extrados.schema.constants import GRAVITY
 
 if TYPE_CHECKING:
@@ -21,6 +41,8 @@ if TYPE_CHECKING:
 RIGID_YOUNG, RIGID_THICKNESS = 30e9, 0.2
 #: Breaks of the grid nearer to each other than this part of the size are told
 SLIVER = 0.2
+#: A joint without a stiffness has that of a layer of masonry, as thick as this part of the elements' size
+LAYER = 1.0 / 25.0
 
 
 class _Grid:
@@ -75,6 +97,17 @@ def mesh_plan(plan: Plan, building: "Building", options: ShellOptions) -> ShellM
     for w in range(len(grids)):
         with blaming("walls", w):
             parts.append(_wall_part(plan, w, grids, junctions, number, names))
+    joints, sources = _joints(plan, grids, junctions, number, parts, len(xyz))
+    joints = [
+        replace(joint, strength=_strength(plan, building, joint.name, size), softening=building.joints.softening)
+        for joint in joints
+    ]
+    if joints and building.joints.coefficient is not None and not all(j.strength["cohesion"] > 0.0 for j in joints):
+        warnings.append(
+            "joints have no cohesion: they slide only where they have been torn; any cohesion, with its shear_energy, lets them "
+            "slide under pressure"
+        )
+    xyz = np.concatenate([xyz, xyz[sources]])
     planes = [_plane(plan, grid) for grid in grids]
     mass, push = np.zeros(len(xyz)), np.zeros((len(xyz), 3))
     bars: list[ShellBar] = []
@@ -89,16 +122,18 @@ def mesh_plan(plan: Plan, building: "Building", options: ShellOptions) -> ShellM
                 plan, floor, walls, ring, grids, number, grown, mass, push, parts, materials, bars, size
             )
     used = np.zeros(len(grown), dtype=bool)
-    for part in parts:
-        used[part.connect] = True
+    for connect in (*(part.connect for part in parts), *(joint.connect for joint in joints)):
+        used[connect] = True
+    above = np.zeros(len(grown), dtype=bool)  # a sole joint
+    above[len(xyz) - len(sources) : len(xyz)] = True
     for k, load in enumerate(plan.prestress):
         with blaming("prestress", k):
             _prestress(plan, load, grids, number, used, push)
     for k, rod in enumerate(plan.rods):
         with blaming("rods", k):
             bars.append(_rod(rod, k + 1, grown, used, building, size))
-    held, springs = _supports(plan, parts, grown, used)
-    warnings += _apart(plan, parts, bars, grown)
+    held, springs = _supports(plan, [*parts, *joints], grown, used, above)
+    warnings += _apart(plan, parts, bars, joints, grown)
     for prop in plan.props:
         w = next(i for i, wall in enumerate(plan.walls) if wall.name == prop.wall)
         nodes, _ = _level_nodes(plan, prop.storey, grids[w], number)
@@ -108,13 +143,14 @@ def mesh_plan(plan: Plan, building: "Building", options: ShellOptions) -> ShellM
     parts = [
         ShellPart(**{**part.__dict__, "connect": kept[part.connect]}) for part in parts
     ]  # nodes within openings are dropped
+    joints = [replace(joint, connect=kept[joint.connect]) for joint in joints]
     bars = [
         ShellBar(b.name, (int(kept[b.nodes[0]]), int(kept[b.nodes[1]])), b.area, b.material, b.prestress) for b in bars
     ]
     return ShellMesh(
         grown[used], parts, planes, plan.levels, materials, size, [(int(kept[n]), d) for n, d in held],
         [(int(kept[n]), d, k) for n, d, k in springs], bars, mass[used], push[used], warnings,
-        _feet(plan, grids, number, kept, used),
+        _feet(plan, grids, number, kept, used), joints,
     )  # fmt: skip
 
 
@@ -128,10 +164,12 @@ def _check_corners(plan: Plan, junctions: dict) -> None:
             )
 
 
-def _apart(plan: Plan, parts: list[ShellPart], bars: list[ShellBar], xyz: np.ndarray) -> list[str]:
+def _apart(
+    plan: Plan, parts: list[ShellPart], bars: list[ShellBar], joints: list[ShellJoint], xyz: np.ndarray
+) -> list[str]:
     """What to tell of walls that nothing joins with the others; BadGeometry where a wall does not reach the ground."""
     walls, ground = [part for part in parts if part.bends], xyz[:, 2] <= MEETS
-    piece = pieces(len(xyz), walls, bars)  # a floor holds no wall up
+    piece = pieces(len(xyz), walls, bars, joints)  # a floor holds no wall up
     stands = np.isin(
         piece, piece[ground & np.isin(np.arange(len(xyz)), np.concatenate([p.connect.ravel() for p in walls]))]
     )
@@ -140,10 +178,10 @@ def _apart(plan: Plan, parts: list[ShellPart], bars: list[ShellBar], xyz: np.nda
         if len(loose):
             x, y, z = xyz[loose].mean(axis=(0, 1))
             raise BadGeometry(
-                f"wall '{part.name}': what of it is at x {x:.3g}, y {y:.3g}, z {z:.3g} m hangs on nothing: no masonry joins it with "
-                "the ground", ("structure", "walls", part.wall),
+                f"wall '{part.name}': its part around x {x:.3g}, y {y:.3g}, z {z:.3g} m is not supported: no masonry connects it "
+                "with the ground", ("structure", "walls", part.wall),
             )  # fmt: skip
-    piece = pieces(len(xyz), parts, bars)
+    piece = pieces(len(xyz), parts, bars, joints)
     joined: dict[frozenset[int], list[str]] = {}
     for part in walls:
         joined.setdefault(frozenset(piece[part.connect[:, 0]].tolist()), []).append(part.name)
@@ -198,7 +236,7 @@ def _plane(plan: Plan, grid: _Grid) -> WallPlane:
 
 
 def _grids(plan: Plan, junctions: dict, size: float, warnings: list[str]) -> list[_Grid]:
-    heights = set(plan.levels.tolist())
+    heights = {*plan.levels.tolist(), *(plan.bed_height(bed) for bed in plan.beds)}
     for wall in plan.walls:
         for beam in (*_holes(plan, wall), *(lintel[:4] for lintel in _lintels(plan, wall))):
             heights.update(beam[2:4])
@@ -233,7 +271,7 @@ def _join(plan: Plan, grids: list[_Grid], junctions: dict) -> tuple[np.ndarray, 
 
     for (a, b), (s, t) in junctions.items():
         corner = plan.bond(plan.walls[a].name, plan.walls[b].name)
-        if corner is not None and corner.bond == "open":
+        if corner is not None and corner.bond in ("open", "joint"):
             continue
         one, two = grids[a], grids[b]
         i, j = int(np.abs(one.s - s).argmin()), int(np.abs(two.s - t).argmin())
@@ -254,18 +292,14 @@ def _wall_part(
         raise BadGeometry(f"wall '{wall.name}': its openings leave nothing of it")
     corners = [(i, k), (i + 1, k), (i + 1, k + 1), (i, k + 1)]
     connect = np.column_stack([number[grid.number(a, b)] for a, b in corners])
-    first, last = plan.reach(wall)
-    height = 0.5 * (grid.z[k] + grid.z[k + 1])
-    storey = np.searchsorted(plan.levels, height) - 1  # from 0
-    thick = wall.thicknesses or [wall.thickness] * (last - first + 1)
-    thickness = np.asarray(thick, dtype=float)[storey - (first - 1)]
+    thickness = _thickness_at(plan, wall, 0.5 * (grid.z[k] + grid.z[k + 1]))
     material = np.full(len(i), 0 if wall.material is None else _named(wall.material, names, f"wall '{wall.name}'"))
     linear, strength = np.zeros(len(i), dtype=bool), np.ones(len(i))
     for *box, name in _lintels(plan, wall):
         inside = grid.cells((box[0], box[1]), (box[2], box[3]))[i, k]
         if not inside.any():
             raise BadGeometry(
-                f"wall '{wall.name}': a lintel at x {box[0]:g} to {box[1]:g}, z {box[2]:g} to {box[3]:g} m is all in openings"
+                f"wall '{wall.name}': a lintel at x {box[0]:g} to {box[1]:g}, z {box[2]:g} to {box[3]:g} m lies entirely within openings"
             )
         linear |= inside
         if name is not None:
@@ -277,6 +311,168 @@ def _wall_part(
         column = int(np.abs(grid.s - (s if a == w else t)).argmin())
         strength[(i == column) | (i == column - 1)] *= corner.strength
     return ShellPart(wall.name, "Q4", connect, thickness, material, linear, strength, wall=w)
+
+
+def _joints(
+    plan: Plan, grids: list[_Grid], junctions: dict, number: np.ndarray, parts: list[ShellPart], nodes: int
+) -> tuple[list[ShellJoint], np.ndarray]:
+    """Joints between walls and bed joints; above a bed joint the walls stand on copies of its nodes, numbered from `nodes`
+    on. The nodes that are copied."""
+    copies: dict[tuple[int, int], int] = {}  # row of the grids and node: its copy
+    beds: list[tuple[str, int, list[int]]] = []  # name, row of the grids, walls
+    for k, (bed, name) in enumerate(
+        zip(plan.beds, plan.joint_names[len(plan.joint_names) - len(plan.beds) :], strict=True)
+    ):
+        walls = [
+            w for w, wall in enumerate(plan.walls)
+            if (wall.name in bed.walls or not bed.walls) and plan.reach(wall)[0] <= bed.storey <= plan.reach(wall)[1]
+        ]  # fmt: skip
+        row = int(np.abs(grids[0].z - plan.bed_height(bed)).argmin())
+        on = {w: _cells_above(grids[w], row, number) for w in range(len(grids))}
+        if not any(len(on[w]) for w in walls):
+            raise BadGeometry(f"no wall stands at {plan.bed_height(bed):g} m", ("structure", "beds", k))
+        stay = {
+            n for w in on if w not in walls for n in on[w].ravel().tolist()
+        }  # there a wall passes through the joint
+        for n in sorted({n for w in walls for n in on[w].ravel().tolist()} - stay):
+            copies[row, n] = nodes + len(copies)
+        for w in walls:
+            part = parts[w]
+            connect, base = part.connect.copy(), np.nonzero(grids[w].there)[1] == row
+            connect[base, :2] = [[copies.get((row, n), n) for n in pair] for pair in connect[base, :2].tolist()]
+            parts[w] = replace(part, connect=connect)
+        beds.append((name, row, walls))
+
+    def foot(row: int, n: int) -> int:
+        return copies.get((row, n), n)
+
+    found = []
+    for corner in plan.corners:
+        if corner.bond == "joint":
+            found.append(_between(plan, corner, grids, junctions, number, foot))
+    for name, row, walls in beds:
+        for w in walls:
+            grid, wall = grids[w], plan.walls[w]
+            beside = grid.there[:, row] & (grid.there[:, row - 1] if row > 0 else True)
+            i = np.flatnonzero(beside)
+            if not len(i):
+                continue
+            lower = np.column_stack(
+                [number[grid.number(i, np.full(len(i), row))], number[grid.number(i + 1, np.full(len(i), row))]]
+            )
+            upper = np.array([[foot(row, n) for n in pair] for pair in lower.tolist()])
+            along = np.append(wall.direction, 0.0)
+            found.append(
+                _stretches(name, np.column_stack([lower, upper[:, ::-1]]), np.diff(grid.s)[i], np.array([0.0, 0.0, 1.0]), along,
+                           _thickness_at(plan, wall, np.full(len(i), 0.5 * (grid.z[row] + grid.z[row + 1]))), wall.name)
+            )  # fmt: skip
+    sources = np.array([n for _, n in copies], dtype=int)
+    return found, sources
+
+
+#: What the joints of a building take from [joints], and what [[joints.types]] may say of some
+STRENGTHS = (
+    "tension", "fracture_energy", "friction", "cohesion", "shear_energy", "compressive_strength", "crushing_energy",
+)  # fmt: skip
+
+
+def _strength(plan: Plan, building: "Building", name: str, size: float) -> dict[str, float]:
+    """What [joints] and [[joints.types]] say of a joint; NaN where they say nothing, of friction where it excludes sliding."""
+    own = {what: getattr(building.joints, what) for what in (*STRENGTHS, "normal_stiffness")}
+    named: dict[str, int] = {}
+    for k, kind in enumerate(building.joints.types):
+        for joint in kind.joints:
+            key = ("joints", "types", k, "joints")
+            if joint not in plan.joint_names:
+                raise BadGeometry(f"names no joint '{joint}'; there are {', '.join(plan.joint_names)}", key)
+            if named.setdefault(joint, k) != k:
+                raise BadGeometry(
+                    f"joint '{joint}' is named twice, in joints.types {named[joint] + 1} and {k + 1}", key
+                )
+        if name in kind.joints:
+            own |= {what: value for what in own if (value := getattr(kind, what)) is not None}
+    for strength, energy in (("tension", "fracture_energy"), ("cohesion", "shear_energy")):
+        if own[strength] > 0.0 and own[energy] is None:
+            raise BadGeometry(f"joint '{name}' has a {strength} but no {energy}", ("joints", energy))
+    if (own["compressive_strength"] is None) != (own["crushing_energy"] is None):
+        raise BadGeometry(f"joint '{name}': compressive_strength and crushing_energy go together", ("joints",))
+    if not own["tension"] > 0.0:
+        raise BadGeometry(
+            f"joint '{name}' has no tension: between shells a joint holds until it is torn; give it one, however small, with a "
+            "fracture_energy",
+            ("joints", "tension"),
+        )
+    if own["friction"] == NO_SLIDING:
+        own["friction"] = None
+    if own["normal_stiffness"] is None:
+        own["normal_stiffness"] = building.material.young / (LAYER * size)
+    shear = building.joints.shear_stiffness
+    own["shear_stiffness"] = building.joints.shear_ratio * own["normal_stiffness"] if shear is None else shear
+    return {what: np.nan if value is None else float(value) for what, value in own.items()}
+
+
+def _cells_above(grid: _Grid, row: int, number: np.ndarray) -> np.ndarray:
+    """Lower nodes (cells, 2) of the cells of a wall that stand on a line of the grid."""
+    i = np.flatnonzero(grid.there[:, row]) if row < grid.there.shape[1] else np.empty(0, dtype=int)
+    row_of = np.full(len(i), row)
+    return np.column_stack([number[grid.number(i, row_of)], number[grid.number(i + 1, row_of)]])
+
+
+def _between(
+    plan: Plan, corner: Corner, grids: list[_Grid], junctions: dict, number: np.ndarray, foot: Callable[[int, int], int]
+) -> ShellJoint:
+    """The joint at which the second wall of a corner abuts on the first; foot: the node above a bed joint of a node at it."""
+    names = [wall.name for wall in plan.walls]
+    one, two = (names.index(name) for name in corner.walls)
+    at = junctions[min(one, two), max(one, two)]
+    s, t = at if one < two else at[::-1]
+    wall, grid, other = plan.walls[two], grids[two], grids[one]
+    key = ("structure", "corners", plan.corners.index(corner))
+    if MEETS < t < wall.length - MEETS:
+        raise BadGeometry(
+            f"walls: wall '{wall.name}' passes through '{names[one]}'; a joint is where the second wall ends on the first",
+            key,
+        )
+    first = t <= MEETS  # it begins there
+    j = 0 if first else len(grid.s) - 1
+    i = int(np.abs(other.s - s).argmin())
+    own = grid.there[0 if first else -1]
+    beside = np.zeros(len(own), dtype=bool)
+    for column in (i - 1, i):
+        if 0 <= column < other.there.shape[0]:
+            beside |= other.there[column]
+    k = np.flatnonzero(own & beside)
+    if not len(k):
+        raise BadGeometry(f"walls: '{names[one]}' and '{wall.name}' have no height in common there", key)
+    lower, upper = (
+        np.array([[foot(int(r), int(low)), int(high)] for r, low, high in zip(k, nodes[k], nodes[k + 1], strict=True)])
+        for nodes in (number[g.number(np.array(c), np.arange(len(g.z)))] for g, c in ((other, i), (grid, j)))
+    )
+    normal = np.append(wall.direction if first else -wall.direction, 0.0)
+    return _stretches(
+        "-".join(corner.walls), np.column_stack([lower, upper[:, ::-1]]), np.diff(grid.z)[k], normal, np.array([0.0, 0.0, 1.0]),
+        _thickness_at(plan, wall, 0.5 * (grid.z[k] + grid.z[k + 1])), wall.name,
+    )  # fmt: skip
+
+
+def _stretches(
+    name: str,
+    connect: np.ndarray,
+    length: np.ndarray,
+    normal: np.ndarray,
+    along: np.ndarray,
+    thickness: np.ndarray,
+    wall: str,
+) -> ShellJoint:
+    n, t, out = (np.tile(axis, (len(connect), 1)) for axis in (normal, along, np.cross(along, normal)))
+    return ShellJoint(name, connect, n, t, out, length, thickness, wall)
+
+
+def _thickness_at(plan: Plan, wall: PlanWall, height: np.ndarray) -> np.ndarray:
+    """Thickness of a wall at some heights [m]."""
+    first, last = plan.reach(wall)
+    thick = wall.thicknesses or [wall.thickness] * (last - first + 1)
+    return np.asarray(thick, dtype=float)[np.searchsorted(plan.levels, height) - 1 - (first - 1)]
 
 
 def _named(name: str, names: list[str], what: str) -> int:
@@ -297,29 +493,12 @@ def _level_nodes(plan: Plan, storey: int, grid: _Grid, number: np.ndarray) -> tu
     return number[grid.number(i, np.full(len(i), k))], grid.s[i]
 
 
-def around(plan: Plan, floor: StoreyFloor) -> list[tuple[int, float, float]]:
-    """The walls around a floor in order: number, and the places along it where the one before and the one after meet it [m]."""
-    what = f"floor on storey {floor.storey}"
-    reach = [plan.reach(wall) for wall in plan.walls]
-    names = floor.walls or [w.name for w, r in zip(plan.walls, reach, strict=True) if r[0] <= floor.storey <= r[1]]
-    walls = [next(i for i, w in enumerate(plan.walls) if w.name == name) for name in names]
-    if floor.walls is None:
-        walls = _in_order(plan, walls, what)
-    corners = []
-    for a, b in zip(walls, walls[1:] + walls[:1], strict=True):
-        at = meeting(plan.walls[a], plan.walls[b])
-        if at is None:
-            raise BadGeometry(f"{what}: walls '{plan.walls[a].name}' and '{plan.walls[b].name}' do not meet")
-        corners.append(at)
-    return [(w, corners[k - 1][1], corners[k][0]) for k, w in enumerate(walls)]
-
-
 def _ring(
     plan: Plan, floor: StoreyFloor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray
 ) -> tuple[list[int], list[int]]:
     """Walls around a floor and the nodes on them in order, counter-clockwise."""
     what = f"floor on storey {floor.storey}"
-    walls = around(plan, floor)
+    walls = plan.around(floor)
     nodes: list[int] = []
     for w, start, end in walls:
         own, s = _level_nodes(plan, floor.storey, grids[w], number)
@@ -339,24 +518,6 @@ def _ring(
     if np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) < 0.0:
         ring.reverse()
     return [w for w, _, _ in walls], ring
-
-
-def _in_order(plan: Plan, walls: list[int], what: str) -> list[int]:
-    """Walls that meet two others each, in the order of the ring they make."""
-    meets = {a: [b for b in walls if b != a and meeting(plan.walls[min(a, b)], plan.walls[max(a, b)])] for a in walls}
-    if any(len(others) != 2 for others in meets.values()):
-        raise BadGeometry(
-            f"{what}: the walls of the storey make no simple ring; name those around the floor by `walls`"
-        )
-    ring = [walls[0], meets[walls[0]][0]]
-    while len(ring) < len(walls):
-        after = [b for b in meets[ring[-1]] if b != ring[-2]]
-        if after[0] in ring:
-            raise BadGeometry(
-                f"{what}: the walls of the storey make more than one ring; name those around it by `walls`"
-            )
-        ring.append(after[0])
-    return ring
 
 
 def _add_floor(
@@ -474,15 +635,16 @@ def _feet(plan: Plan, grids: list[_Grid], number: np.ndarray, kept: np.ndarray, 
 
 
 def _supports(
-    plan: Plan, parts: list[ShellPart], xyz: np.ndarray, used: np.ndarray
+    plan: Plan, parts: Sequence[ShellPart | ShellJoint], xyz: np.ndarray, used: np.ndarray, above: np.ndarray
 ) -> tuple[list[tuple[int, int]], list[tuple[int, int, float]]]:
-    """Nodes on the ground are held, or stand on springs; nodes of floors alone only move in their plane."""
+    """Nodes on the ground but those above a joint there are held, or stand on springs; nodes of floors alone only move in
+    their plane."""
     held, springs = [], []
     bends = np.zeros(len(xyz), dtype=bool)
     for part in parts:
-        if part.bends:
+        if isinstance(part, ShellJoint) or part.bends:
             bends[part.connect] = True
-    ground = np.flatnonzero((xyz[:, 2] <= MEETS) & used)
+    ground = np.flatnonzero((xyz[:, 2] <= MEETS) & used & ~above)
     if not len(ground):
         raise BadGeometry("no wall stands on the ground: give a wall storeys from 1")
     rigid = plan.foundation_stiffness is None
@@ -491,7 +653,7 @@ def _supports(
         sole = np.zeros(len(xyz))
         for part in parts:
             low = part.connect[:, :2]
-            on = part.bends & (xyz[low, 2] <= MEETS).all(axis=1)
+            on = (isinstance(part, ShellJoint) or part.bends) & (xyz[low, 2] <= MEETS).all(axis=1)
             half = 0.5 * np.linalg.norm(xyz[low[on, 0]] - xyz[low[on, 1]], axis=1) * part.thickness[on]
             np.add.at(sole, low[on], half[:, None])
         springs = [(int(n), 2, float(plan.foundation_stiffness * sole[n])) for n in ground]

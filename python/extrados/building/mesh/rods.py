@@ -38,6 +38,7 @@ class Corners:
 
     @staticmethod
     def of(mesh: Mesh) -> "Corners":
+        """The corners of all elements of a mesh but interfaces."""
         found = []
         for group in mesh.groups:
             if group.joint is None:

@@ -257,7 +257,7 @@ def _unjoined(xyz: np.ndarray, parts: list[ShellPart], size: float) -> list[str]
         node = between[0][1]
         nodes = len({n for _, n in between})
         told.append(
-            (f"node {node + 1}", xyz[node], "lies on the edge of an element that has it not as a corner", nodes)
+            (f"node {node + 1}", xyz[node], "lies on the edge of an element of which it is not a corner", nodes)
         )
     return [
         f"{who}, at x {at[0]:.4g}, y {at[1]:.4g}, z {at[2]:.4g} m, {what}{f' ({many} such)' if many > 1 else ''}: nothing joins the "
@@ -311,7 +311,7 @@ def _mesh(
     if not stands.all():
         x, y, z = kept[~stands].mean(axis=0)
         raise BadGeometry(
-            f"{file}: {int((~stands).sum())} nodes around x {x:.4g}, y {y:.4g}, z {z:.4g} m hang on nothing: no elements join them "
+            f"{file}: {int((~stands).sum())} nodes around x {x:.4g}, y {y:.4g}, z {z:.4g} m are not supported: no elements connect them "
             f"with a support{f'; {loose[0]}' if loose else ''}"
         )
     levels = np.array([kept[:, 2].min(), kept[:, 2].max()])

@@ -1,5 +1,6 @@
 """A building or a vault as flat shells in space: nodes, elements by part, masses, and what holds it."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -72,6 +73,26 @@ class ShellPart:
 
 
 @dataclass(frozen=True)
+class ShellJoint:
+    """A joint of no thickness between two rows of nodes, stretch by stretch. Arrays by stretch.
+
+    connect (stretches, 4) along the lower and back along the upper side; normal from the lower to the upper side, along the
+    joint in the plane of the wall, and out of it.
+    """
+
+    name: str
+    connect: np.ndarray
+    normal: np.ndarray  # (stretches, 3)
+    along: np.ndarray
+    out: np.ndarray
+    length: np.ndarray  # [m]
+    thickness: np.ndarray  # [m]
+    wall: str  # that it is in, or that abuts there
+    strength: dict[str, float] = field(default_factory=dict)  # its values of [joints], stiffnesses too; NaN where none
+    softening: str = "exponential"
+
+
+@dataclass(frozen=True)
 class ShellBar:
     """A bar between two nodes."""
 
@@ -82,12 +103,13 @@ class ShellBar:
     prestress: float = 0.0  # [N]
 
 
-def pieces(nodes: int, parts: list[ShellPart], bars: list[ShellBar]) -> np.ndarray:
-    """Which piece each node is of, from 0: nodes of one piece are joined by elements and bars."""
+def pieces(nodes: int, parts: list[ShellPart], bars: list[ShellBar], joints: Iterable[ShellJoint] = ()) -> np.ndarray:
+    """Which piece each node is of, from 0: nodes of one piece are joined by elements, bars and joints."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
     ends = [np.column_stack([p.connect, np.roll(p.connect, -1, axis=1)]).reshape(len(p.connect), 2, -1) for p in parts]
+    ends += [np.stack([j.connect[:, :2], j.connect[:, [3, 2]]], axis=1) for j in joints]
     one = np.concatenate([*(e[:, 0].ravel() for e in ends), np.array([bar.nodes[0] for bar in bars], dtype=int)])
     two = np.concatenate([*(e[:, 1].ravel() for e in ends), np.array([bar.nodes[1] for bar in bars], dtype=int)])
     return connected_components(coo_array((np.ones(len(one)), (one, two)), shape=(nodes, nodes)), directed=False)[1]
@@ -137,12 +159,14 @@ class ShellMesh:
     push: np.ndarray
     warnings: list[str] = field(default_factory=list)
     feet: list[Foot] = field(default_factory=list)
-    has_joints = False
+    joints: list[ShellJoint] = field(default_factory=list)
+    has_joints = False  # dry ones, of stones
 
     def __repr__(self) -> str:
         return f"<ShellMesh: {len(self.xyz)} nodes, {self.elements()} elements>"
 
     def elements(self) -> int:
+        """Number of elements."""
         return sum(len(part.connect) for part in self.parts)
 
     def mass(self) -> np.ndarray:

@@ -97,6 +97,7 @@ class ArchModel:
 
     @cached_property
     def limit(self) -> LimitAnalysis:
+        """The limit analysis that finds its collapse states."""
         return LimitAnalysis(self.arch)
 
     @cached_property
@@ -131,6 +132,7 @@ class ArchModel:
 
     @cached_property
     def limits(self) -> core_arch.Limits:
+        """Critical and locking rotation, and what it weighs at rest."""
         return core_arch.limits(self.four_hinge)
 
     @cached_property
@@ -177,6 +179,7 @@ class ArchModel:
 
     @property
     def warnings(self) -> list[str]:
+        """What the reader of an answer should know of the impact rule."""
         impacts = self.impacts
         if (kept := self.kept_by_elements) is not None:
             return [
@@ -198,6 +201,7 @@ class ArchModel:
 
     @cached_property
     def body(self) -> Body:
+        """What the integrator takes, without rebound at a wall."""
         return self.rebounding(1.0)
 
     def rebounding(self, factor: float) -> Body:

@@ -62,6 +62,7 @@ class BlockModel:
 
     @property
     def warnings(self) -> list[str]:
+        """What the reader of an answer should know of the impact rule."""
         if self.energy_ratio is None and isinstance(self.rule, str) and self.housner.min() < 0.0:
             return ["it is too stocky for Housner's impact (c_v below zero): it lands flat and stays, c_v = 0 is used"]
         return []
@@ -72,6 +73,7 @@ class BlockModel:
 
     @cached_property
     def body(self) -> Body:
+        """What the integrator takes, without rebound at a wall."""
         return self.rebounding(1.0)
 
     def rebounding(self, factor: float) -> Body:

@@ -31,6 +31,7 @@ class SoftBaseModel:
 
     @property
     def block(self) -> BlockAssembly:
+        """The block on its base."""
         return self.rigid.block
 
     @property

@@ -34,6 +34,7 @@ class ArchAssembly(Assembly):
 
     @property
     def voussoirs(self) -> int:
+        """Number of voussoirs."""
         return len(self.mass)
 
     @property

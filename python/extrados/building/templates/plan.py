@@ -1,6 +1,7 @@
 """A building of walls on a plan: storeys, openings, flanges, floors, rods (`building`)."""
 
 from collections import Counter
+from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
@@ -75,6 +76,7 @@ class PlanWall(Table):
 
     @property
     def length(self) -> float:
+        """Length on the plan [m]."""
         return float(np.hypot(*np.subtract(self.end, self.start)))
 
     @property
@@ -87,9 +89,10 @@ class Corner(Table):
     """How two walls that meet hang together."""
 
     walls: list[str] = key(about="names of the two walls; the second abuts on the first", min_length=2, max_length=2)
-    bond: Literal["bonded", "weak", "open"] = key(
+    bond: Literal["bonded", "weak", "joint", "open"] = key(
         about="bonded: one masonry; weak: the column of elements of the second wall beside the first has less strength; "
-        "open: nothing but floors holds them together"
+        "joint: one of [joints] between them, which opens, slides up and down, and crushes; open: nothing but floors holds "
+        "them together"
     )
     strength: float = key(0.5, "of a weak corner: its tensile strength over that of the wall", gt=0, le=1)
 
@@ -98,6 +101,15 @@ class Corner(Table):
         if self.walls[0] == self.walls[1]:
             raise ValueError(f"walls: '{self.walls[0]}' stands twice; expected two walls that meet")
         return self
+
+
+class Bed(Table):
+    """A bed joint of [joints] all along a height of some walls: it opens, slides along the wall, and crushes."""
+
+    name: str | None = key(None, 'what answers and [[joints.types]] call it; default "bed 1" and so on', max_length=40)
+    storey: int = key(1, "the storey it is in, from 1 at the ground", ge=1)
+    z: Length = key(0.0, "height above the floor of the storey; 0 in the first is the sole", ge=0)
+    walls: list[str] = key([], "names of the walls that it runs through; default all of the storey", max_length=200)
 
 
 class StoreyFloor(Table):
@@ -187,6 +199,7 @@ class Plan(Structure):
     storeys: list[Length] = key(about="heights of the storeys, from the ground up", min_length=1, max_length=50)
     walls: list[PlanWall] = key(about="[[structure.walls]]", min_length=1, max_length=200)
     corners: list[Corner] = key([], "where walls meet and are not one masonry, [[structure.corners]]", max_length=1000)
+    beds: list[Bed] = key([], "bed joints that may slide, [[structure.beds]]", max_length=100)
     floors: list[StoreyFloor] = key([], "[[structure.floors]]", max_length=200)
     rods: list[Rod] = key([], "[[structure.rods]]", max_length=200)
     props: list[Prop] = key([], "[[structure.props]]", max_length=200)
@@ -209,6 +222,7 @@ class Plan(Structure):
             self._check_wall(w, wall)
         for what, named in (
             *((f"corners[{k}].walls", corner.walls) for k, corner in enumerate(self.corners)),
+            *((f"beds[{k}].walls", bed.walls) for k, bed in enumerate(self.beds)),
             *((f"floors[{k}].walls", floor.walls or []) for k, floor in enumerate(self.floors)),
             *((f"floors[{k}].bears_on", floor.bears_on) for k, floor in enumerate(self.floors)),
             *((f"prestress[{k}].wall", [part.wall]) for k, part in enumerate(self.prestress)),
@@ -216,6 +230,21 @@ class Plan(Structure):
         ):
             if strange := [name for name in named if name not in names]:
                 raise ValueError(f"{what}: there is no wall '{strange[0]}'; there are {', '.join(names)}")
+        heights: dict[float, int] = {}
+        for k, bed in enumerate(self.beds):
+            if bed.storey > len(self.storeys):
+                raise ValueError(f"beds[{k}].storey: there is no storey {bed.storey}, there are {len(self.storeys)}")
+            if bed.z >= self.storeys[bed.storey - 1]:
+                raise ValueError(
+                    f"beds[{k}].z: {bed.z:g} m is not below the top of a storey of {self.storeys[bed.storey - 1]:g} m; "
+                    "that on top of it is z = 0 of the next"
+                )
+            if (first := heights.setdefault(round(self.bed_height(bed), 9), k)) != k:
+                raise ValueError(f"beds[{k}]: bed {first + 1} lies at the same height; name all of its walls there")
+        names_of_joints = self.joint_names
+        for k, name in enumerate(names_of_joints):
+            if name in names_of_joints[:k]:
+                raise ValueError(f"beds: the name '{name}' of a joint stands twice")
         told: dict[frozenset[str], int] = {}
         for k, corner in enumerate(self.corners):
             if (first := told.setdefault(frozenset(corner.walls), k)) != k:
@@ -275,23 +304,34 @@ class Plan(Structure):
         """First and last storey of a wall."""
         return (wall.storeys[0], wall.storeys[1]) if wall.storeys is not None else (1, len(self.storeys))
 
+    def bed_height(self, bed: Bed) -> float:
+        """Height of a bed joint above the ground [m]."""
+        return float(self.levels[bed.storey - 1] + bed.z)
+
+    @property
+    def joint_names(self) -> list[str]:
+        """Of the joints between walls, then of the bed joints."""
+        between = ["-".join(corner.walls) for corner in self.corners if corner.bond == "joint"]
+        return between + [bed.name or f"bed {k}" for k, bed in enumerate(self.beds, 1)]
+
     @property
     def levels(self) -> np.ndarray:
         """Heights of the ground and of the top of each storey [m]."""
         return np.concatenate([[0.0], np.cumsum(self.storeys)])
 
     def foot_area(self, axis: int) -> float:
-        """Of the walls on the ground, doors left out, each by how far it runs along x (0) or y (1) [m^2]."""
+        """Area of the walls' soles at the ground without doors [m^2], each times the share of its direction along x (0) or
+        y (1)."""
         total = 0.0
         for wall in self.walls:
             if self.reach(wall)[0] == 1:
-                doors = sum(o.x[1] - o.x[0] for o in wall.openings if o.storey == 1 and o.z[0] == 0.0)
-                total += (wall.thickness or wall.thicknesses[0]) * (wall.length - doors) * abs(wall.direction[axis])
+                sole = self.strips(wall, 1)[0][0]
+                total += (wall.thickness or wall.thicknesses[0]) * sole * abs(wall.direction[axis])
         return float(total)
 
     @property
     def wall_area(self) -> float:
-        """Of all walls in their planes, openings counted [m^2]."""
+        """Of all walls in their planes, openings not deducted [m^2]."""
         return float(
             sum(
                 wall.length * np.diff(self.levels[[r[0] - 1, r[1]]])[0]
@@ -300,12 +340,44 @@ class Plan(Structure):
             )
         )
 
+    def strips(self, wall: PlanWall, storey: int) -> list[tuple[float, float, float]]:
+        """Masonry of a wall in a storey, from the bottom up: length, bottom and top above its floor [m] of each strip between
+        sills and heads of openings. What openings share is left out once."""
+        holes = [o for o in wall.openings if o.storey == storey]
+        heights = sorted({0.0, self.storeys[storey - 1], *(z for o in holes for z in o.z)})
+        found = []
+        for low, high in pairwise(heights):
+            cut, end = 0.0, 0.0
+            for left, right in sorted(tuple(o.x) for o in holes if o.z[0] < high and low < o.z[1]):
+                cut += max(right - max(left, end), 0.0)
+                end = max(end, right)
+            found.append((wall.length - cut, low, high))
+        return found
+
     def wall(self, name: str) -> PlanWall:
+        """The wall of a name; StopIteration where there is none."""
         return next(wall for wall in self.walls if wall.name == name)
 
     def bond(self, one: str, two: str) -> Corner | None:
         """What a deck says of the corner of two walls; None where they are one masonry."""
         return next((c for c in self.corners if set(c.walls) == {one, two} and c.bond != "bonded"), None)
+
+    def around(self, floor: StoreyFloor) -> list[tuple[int, float, float]]:
+        """The walls around a floor in order: number, and the places along it where the one before and the one after meet it
+        [m]; BadGeometry where they make no ring."""
+        what = f"floor on storey {floor.storey}"
+        reach = [self.reach(wall) for wall in self.walls]
+        names = floor.walls or [w.name for w, r in zip(self.walls, reach, strict=True) if r[0] <= floor.storey <= r[1]]
+        walls = [next(i for i, w in enumerate(self.walls) if w.name == name) for name in names]
+        if floor.walls is None:
+            walls = _in_order(self, walls, what)
+        corners = []
+        for a, b in zip(walls, walls[1:] + walls[:1], strict=True):
+            at = meeting(self.walls[a], self.walls[b])
+            if at is None:
+                raise BadGeometry(f"{what}: walls '{self.walls[a].name}' and '{self.walls[b].name}' do not meet")
+            corners.append(at)
+        return [(w, corners[k - 1][1], corners[k][0]) for k, w in enumerate(walls)]
 
     def shell(self, building: "Building", options: "ShellOptions") -> "ShellMesh":
         from extrados.building.mesh.plan import mesh_plan
@@ -349,3 +421,21 @@ def meeting(one: PlanWall, two: PlanWall) -> tuple[float, float] | None:
     if not (-MEETS <= s <= one.length + MEETS and -MEETS <= t <= two.length + MEETS):
         return None
     return float(np.clip(s, 0.0, one.length)), float(np.clip(t, 0.0, two.length))
+
+
+def _in_order(plan: Plan, walls: list[int], what: str) -> list[int]:
+    """Walls that meet two others each, in the order of the ring they make."""
+    meets = {a: [b for b in walls if b != a and meeting(plan.walls[min(a, b)], plan.walls[max(a, b)])] for a in walls}
+    if any(len(others) != 2 for others in meets.values()):
+        raise BadGeometry(
+            f"{what}: the walls of the storey make no simple ring; name those around the floor by `walls`"
+        )
+    ring = [walls[0], meets[walls[0]][0]]
+    while len(ring) < len(walls):
+        after = [b for b in meets[ring[-1]] if b != ring[-2]]
+        if after[0] in ring:
+            raise BadGeometry(
+                f"{what}: the walls of the storey make more than one ring; name those around it by `walls`"
+            )
+        ring.append(after[0])
+    return ring

@@ -154,7 +154,8 @@ def _under(desk: Desk, record: Path) -> Iterator[Reply]:
 
 def blocks(desk: Desk, _: Message) -> Iterator[Reply]:
     """The stones of any building as free blocks, whose vertices hands can move: as heavy, as deep and as rough as they were.
-    What rests on them and what holds them stays behind, and so do joints of their own, whose names are gone."""
+    What rests on them and what holds them stays behind, and so do joints of their own, whose names are gone: the new deck's
+    note says which."""
     deck = desk.there().deck
     assembly = deck.building.blocks()
     count = sum(map(len, assembly.outlines))
@@ -173,9 +174,12 @@ def blocks(desk: Desk, _: Message) -> Iterator[Reply]:
     ]
     grounded = [j for j in range(len(assembly.a)) if -1 in (assembly.a[j], assembly.b[j])]
     ground = [[round(float(v), 6) for v in (*assembly.p[j], *assembly.q[j])] for j in grounded]
+    left = [name for name in ("ties", "dampers", "hinges", "supports", "initial", "motion") if deck.data.get(name)]
+    left += ["joints.types"] * bool(deck.data.get("joints", {}).get("types"))
+    note = f"note = {json.dumps('Left out when its stones were set free: ' + ', '.join(left))}\n" if left else ""
     title = deck.title or deck.building._structure().word
     text = (
-        f'title = {json.dumps(f"{title}, its stones free")}\n\n[structure]\nkind = "blocks"\n'
+        f'title = {json.dumps(f"{title}, its stones free")}\n{note}\n[structure]\nkind = "blocks"\n'
         + f"depth = {assembly.depth!r}\n" * (assembly.depth != 1.0)
         + f'ground = {ground}\ncontact_tolerance = "1 mm"\n\n{chr(10).join(rows)}\n[[analysis]]\nkind = "tilt"\n'
     )

@@ -16,6 +16,7 @@ ROUNDED = 3.0  # units of the last decimal in a step, at least, for uneven steps
 
 
 def read(text: Lines) -> list[Record]:
+    """The one record of a text in columns: acceleration, or time [s] and acceleration."""
     header, rows = _split(text)
     if not rows:
         raise text.error(0, "holds no numbers; expected acceleration, or time and acceleration, in columns")

@@ -16,10 +16,12 @@ _STEP = 61  # real header, from 0: sampling interval of the data that follow [ms
 
 
 def recognises(text: Lines) -> bool:
+    """Whether the first line is that of COSMOS."""
     return re.search(r"\(format\s+v", text.words(0), re.I) is not None
 
 
 def read(text: Lines) -> list[Record]:
+    """The records of all channels."""
     records: list[Record] = []
     at = 0
     while at < len(text):

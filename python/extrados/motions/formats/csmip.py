@@ -19,10 +19,12 @@ _QUANTITY = {"accel": "acceleration", "veloc": "velocity", "displ": "displacemen
 
 
 def recognises(text: Lines) -> bool:
+    """Whether the first line is that of CSMIP, and no SMC file."""
     return _TITLE.search(text.words(0)) is not None and text[1].strip() != "*"
 
 
 def read(text: Lines) -> list[Record]:
+    """The records of all channels."""
     records, name, at = [], "", 0
     event, station = said_in(text.lines[:HEADER])
     while at < len(text):

@@ -7,10 +7,12 @@ _QUANTITY = {"ACC": "acceleration", "VEL": "velocity", "DIS": "displacement"}
 
 
 def recognises(text: Lines) -> bool:
+    """Whether the header is that of ESM."""
     return text[0].startswith("EVENT_NAME:") and text[1].startswith("EVENT_ID:")
 
 
 def read(text: Lines) -> list[Record]:
+    """The one record of the file."""
     if len(text) <= HEADER:
         raise text.error(len(text) - 1, f"ends within the {HEADER} header lines: the file is cut off")
     keys: dict[str, tuple[int, str]] = {}

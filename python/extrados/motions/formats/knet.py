@@ -11,10 +11,12 @@ HEADER = 17
 
 
 def recognises(text: Lines) -> bool:
+    """Whether the header is that of K-NET and KiK-net."""
     return text[0].startswith("Origin Time")
 
 
 def read(text: Lines) -> list[Record]:
+    """The one record of the file."""
     keys = {text[at][:18].strip(): (at, text[at][18:].strip()) for at in range(HEADER)}
 
     def value(key: str) -> tuple[int, str]:

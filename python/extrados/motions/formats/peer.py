@@ -8,10 +8,12 @@ HEADER = 12  # NPTS stands in the first lines, below any free text
 
 
 def recognises(text: Lines) -> bool:
+    """Whether the header is that of PEER."""
     return any("NPTS" in text[at].upper() for at in range(HEADER)) or "PEER " in text[0].upper()
 
 
 def read(text: Lines) -> list[Record]:
+    """The one record of the file."""
     for at in range(HEADER):
         line = text.words(at)
         if "NPTS" not in line.upper():

@@ -13,10 +13,12 @@ _QUANTITY = {"VELOCITY": ("velocity", "cm/s"), "DISPLACEMENT": ("displacement", 
 
 
 def recognises(text: Lines) -> bool:
+    """Whether the header is that of SMC."""
     return text[1].strip().startswith("*") and re.match(r"\s*(?:\d\s+\S|\*)", text.words(0)) is not None
 
 
 def read(text: Lines) -> list[Record]:
+    """The one record of the file."""
     whole, at = text.fixed(11, 48, 10, 8)
     real, at = text.fixed(at, 50, 15, 5)
     missing, rate = real[0], real[1]

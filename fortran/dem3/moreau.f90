@@ -1,0 +1,288 @@
+!> Steps of blocks in space without springs, see dem_rigid: each corner of the polygons in which faces meet, and each
+!> place where edges cross, is a contact point with a round friction cone.
+!>
+!> The unknowns are the velocities of the centroids and the spins about the bodies' own axes at the start of the step,
+!> where their inertia is three numbers. The impulses change the swings; free rotation turns the bodies between them, as
+!> in the steps with springs.
+module dem3_moreau
+   use common_kinds, only : wp
+   use common_status, only : status_ok, status_out_of_memory
+   use dem_clock, only : end_step
+   use dem_rigid, only : number_bodies, parting, solve_step, wait_for_rest
+   use dem3_bodies, only : body, cross, turn_freely
+   use dem3_law, only : contact_pair, contact_point
+   use dem3_model, only : look_anew, move, predict, prepare, solid_model
+   use dem3_patch, only : measure
+   use nonsmooth_impulses, only : along_normal, along_tangent, impulse_problem, in_space, problem_room
+   use, intrinsic :: iso_c_binding, only : c_int
+   implicit none
+   private
+   public :: advance_rigid, quickest
+
+   integer, parameter :: freedoms = 6
+
+contains
+
+   !> Up to `count` steps; returns early where near pairs must be searched again
+   subroutine advance_rigid(model, count, status)
+      type(solid_model), intent(inout) :: model
+      integer, intent(in) :: count
+      integer(c_int), intent(out) :: status
+      integer :: n, k
+      status = status_ok
+      if (model%rigid%pairs /= model%pairs) call make_ready(model, status)
+      do n = 1, count
+         if (status /= status_ok) return
+         call one_step(model, status)
+         if (status /= status_ok) return
+         do k = 1, size(model%set%item)
+            call move(model, model%set%item(k), model%stale)
+         end do
+         call end_step(model%model_clock)
+         if (model%quasi_static) call wait_for_rest(model%rigid, model%model_clock, quickest(model))
+         if (model%stale) then
+            model%rigid%pairs = -1
+            return
+         end if
+      end do
+   end subroutine advance_rigid
+
+   !> Greatest speed of a body, at its farthest vertex at the most [m/s]
+   pure function quickest(model) result(speed)
+      type(solid_model), intent(in) :: model
+      real(wp) :: speed
+      integer :: k
+      speed = 0.0_wp
+      do k = 1, size(model%set%item)
+         associate (b => model%set%item(k))
+            if (.not. b%fixed) speed = max(speed, norm2(b%v) + b%radius * norm2(matmul(b%inverse, b%swing)))
+         end associate
+      end do
+   end function quickest
+
+   !> Order of the unknowns after a search
+   subroutine make_ready(model, status)
+      type(solid_model), intent(inout) :: model
+      integer(c_int), intent(out) :: status
+      integer, allocatable :: bodies(:, :)
+      integer :: k, failed
+
+      status = status_out_of_memory
+      associate (rigid => model%rigid, item => model%set%item)
+         if (.not. allocated(rigid%next)) then
+            allocate (rigid%next(size(item)), stat=failed)
+            if (failed /= 0) return
+         end if
+         allocate (bodies(2, model%pairs), stat=failed)
+         if (failed /= 0) return
+         do k = 1, model%pairs
+            bodies(:, k) = model%set%parts(model%pair(k)%part)%owner
+         end do
+         call number_bodies(rigid, in_space, item%fixed, bodies, status)
+         if (status /= status_ok) return
+         do k = 1, size(item)
+            if (rigid%node(k) == 0) cycle
+            associate (at => freedoms * rigid%node(k))
+               rigid%problem%mass(at - 5:at - 3) = item(k)%mass
+               rigid%problem%mass(at - 2:at) = item(k)%inertia
+            end associate
+         end do
+      end associate
+   end subroutine make_ready
+
+   !> Room for all points of all pairs
+   subroutine make_room(model, points, status)
+      type(solid_model), intent(inout) :: model
+      integer, intent(in) :: points
+      integer(c_int), intent(out) :: status
+      integer :: room, failed
+      status = status_ok
+      associate (rigid => model%rigid)
+         room = 0
+         if (allocated(rigid%problem%friction)) room = size(rigid%problem%friction)
+         if (room >= points .and. allocated(rigid%number)) return
+         room = points + points / 2
+         if (allocated(rigid%number)) deallocate (rigid%number)
+         allocate (rigid%number(room), stat=failed)
+         status = merge(status_ok, status_out_of_memory, failed == 0)
+         if (status == status_ok) call problem_room(rigid%problem, room, status)
+      end associate
+   end subroutine make_room
+
+   !> Forces of all contacts in the next step, added to the bodies
+   subroutine one_step(model, status)
+      type(solid_model), intent(inout) :: model
+      integer(c_int), intent(out) :: status         !! out_of_memory, not_finite where a velocity is no number, or ok
+      integer :: k, first
+
+      call prepare(model)
+      associate (rigid => model%rigid, problem => model%rigid%problem)
+         do k = 1, size(model%set%item)
+            associate (b => model%set%item(k))
+               if (model%quasi_static .and. .not. b%fixed) then
+                  b%v = 0.0_wp
+                  b%swing = 0.0_wp
+               end if
+               call predict(model, b)
+               rigid%next(k) = b
+               if (b%fixed) cycle
+               rigid%next(k)%x = b%x + model%step * b%v
+               call turn_freely(rigid%next(k), model%step)
+               call set_rate(problem, rigid%node(k), b, model%kick * model%pull)
+            end associate
+         end do
+         do k = 1, model%pairs
+            call look_anew(model, model%pair(k))
+            if (model%pair(k)%lacks_memory) status = status_out_of_memory
+            if (model%pair(k)%lacks_memory) return
+         end do
+         call make_room(model, sum(model%pair(:model%pairs)%points), status)
+         if (status /= status_ok) return
+         problem%points = 0
+         first = 1
+         do k = 1, model%pairs
+            associate (last => first + model%pair(k)%points - 1)
+               call gather(model, model%pair(k), rigid%number(first:last))
+            end associate
+            first = first + model%pair(k)%points
+         end do
+         call solve_step(rigid, model%model_clock, status)
+         first = 1
+         do k = 1, model%pairs
+            associate (last => first + model%pair(k)%points - 1)
+               call act_rigidly(model, model%pair(k), rigid%number(first:last))
+            end associate
+            first = first + model%pair(k)%points
+         end do
+      end associate
+   end subroutine one_step
+
+   !> Velocities of a body before the step, and as they would be after it without contacts
+   pure subroutine set_rate(problem, rank, b, change)
+      type(impulse_problem), intent(inout) :: problem
+      integer, intent(in) :: rank
+      type(body), intent(in) :: b
+      real(wp), intent(in) :: change(3)             !! of the velocity by the body force [m/s]
+      associate (at => freedoms * rank)
+         problem%rate(at - 5:at - 3) = b%v
+         problem%rate(at - 2:at) = matmul(b%spin, b%turn)
+         problem%free(at - 5:at - 3) = b%v + change
+         problem%free(at - 2:at) = problem%rate(at - 2:at)
+      end associate
+   end subroutine set_rate
+
+   !> Normal from the first body to the second and two tangents at right angles with it
+   pure function frame_of(normal) result(frame)
+      real(wp), intent(in) :: normal(3)
+      real(wp) :: frame(3, in_space)
+      real(wp) :: axis(3)
+      axis = 0.0_wp
+      axis(minloc(abs(normal), dim=1)) = 1.0_wp
+      frame(:, along_normal) = normal
+      frame(:, 2) = cross(normal, axis)
+      frame(:, 2) = frame(:, 2) / norm2(frame(:, 2))
+      frame(:, 3) = cross(normal, frame(:, 2))
+   end function frame_of
+
+   !> The points of a pair that may press in this step, into the problem
+   pure subroutine gather(model, pair, number)
+      type(solid_model), intent(inout) :: model
+      type(contact_pair), intent(in) :: pair
+      integer, intent(out) :: number(:)             !! (points) of each in the problem, 0 where it cannot press
+      real(wp) :: normal(3), frame(3, in_space), gap, next_gap, at(3), next_at(3), arm(3, 2), lever(3), u_n
+      integer :: i, n, d, side, who(2)
+
+      number = 0
+      who = model%set%parts(pair%part)%owner
+      associate (a => model%set%item(who(1)), b => model%set%item(who(2)), rigid => model%rigid, &
+                 problem => model%rigid%problem)
+         do i = 1, pair%points
+            call measure(pair%point(i)%what, rigid%next(who(1)), rigid%next(who(2)), normal, next_gap, next_at)
+            call measure(pair%point(i)%what, a, b, normal, gap, at)
+            if (min(gap, next_gap) > model%margin) cycle
+            n = problem%points + 1
+            problem%points = n
+            number(i) = n
+            frame = frame_of(normal)
+            arm(:, 1) = at - a%x
+            arm(:, 2) = at - b%x
+            problem%node(:, n) = rigid%node(who)
+            u_n = 0.0_wp
+            do side = 1, 2
+               associate (c => model%set%item(who(side)), sense => merge(-1.0_wp, 1.0_wp, side == 1))
+                  do d = 1, in_space
+                     lever = cross(arm(:, side), frame(:, d))
+                     problem%row(1:3, side, d, n) = sense * frame(:, d)
+                     problem%row(4:6, side, d, n) = sense * matmul(lever, c%turn)
+                  end do
+                  if (c%fixed) cycle
+                  lever = cross(arm(:, side), normal)
+                  u_n = u_n + sense * (dot_product(normal, c%v) + dot_product(lever, c%spin))
+               end associate
+            end do
+            problem%shift(along_normal, n) = parting(rigid, model%step, gap, next_gap, u_n)
+            problem%shift(along_tangent:, n) = 0.0_wp
+            problem%friction(n) = model%law(pair%law)%friction
+            problem%impulse(:, n) = model%kick * matmul(pair%point(i)%force, frame)
+         end do
+      end associate
+   end subroutine gather
+
+   !> The impulses of a pair as forces on its bodies, and what they took
+   pure subroutine act_rigidly(model, pair, number)
+      type(solid_model), intent(inout) :: model
+      type(contact_pair), intent(inout) :: pair
+      integer, intent(in) :: number(:)              !! (points) of each in the problem, 0 where it cannot press
+      real(wp) :: frame(3, in_space), normal(3), gap, at(3), force(3), both(3), u(3), by_normal, lever(3)
+      integer :: i, who(2)
+
+      who = model%set%parts(pair%part)%owner
+      associate (a => model%set%item(who(1)), b => model%set%item(who(2)))
+         do i = 1, pair%points
+            associate (point => pair%point(i))
+               if (number(i) == 0 .and. .not. point%closed) cycle
+               call measure(point%what, a, b, normal, gap, at)
+               force = 0.0_wp
+               if (number(i) > 0) then
+                  frame = frame_of(normal)
+                  force = matmul(frame, model%rigid%problem%impulse(:, number(i))) / model%kick
+               end if
+               point%closed = any(abs(force) > 0.0_wp)
+               ! Mean force over the position step before, times the velocity that led through it.
+               u = velocity(b, at) - velocity(a, at)
+               both = point%force + force
+               by_normal = dot_product(both, normal) * dot_product(u, normal)
+               pair%damping_loss = pair%damping_loss - 0.5_wp * model%drift * by_normal
+               pair%friction_loss = pair%friction_loss - 0.5_wp * model%drift * (dot_product(both, u) - by_normal)
+               point%force = force
+               if (.not. point%closed) cycle
+               if (.not. a%fixed) then
+                  a%force = a%force - force
+                  lever = cross(at - a%x, force)
+                  a%moment = a%moment - lever
+                  a%touched = .true.
+               end if
+               if (.not. b%fixed) then
+                  b%force = b%force + force
+                  lever = cross(at - b%x, force)
+                  b%moment = b%moment + lever
+                  b%touched = .true.
+               end if
+            end associate
+         end do
+      end associate
+   end subroutine act_rigidly
+
+   !> Velocity of a body at a place, over the position step before [m/s]
+   pure function velocity(b, at) result(v)
+      type(body), intent(in) :: b
+      real(wp), intent(in) :: at(3)                 !! [m]
+      real(wp) :: v(3)
+      real(wp) :: arm(3)
+      v = 0.0_wp
+      if (b%fixed) return
+      arm = at - b%x
+      v = b%v + cross(b%spin, arm)
+   end function velocity
+
+end module dem3_moreau
