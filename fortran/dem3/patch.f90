@@ -6,7 +6,7 @@
 !> face, or a place where an edge of one crosses an edge of the other; where these are nearly parallel it is taken as a
 !> point of the face that was cut. The gap of such a pair of features changes by the velocity of one body relative to
 !> the other at that place alone, so that its spring is conservative.
-!> Each corner carries what of the polygon lies nearer to it, seen from its middle: of a rectangle a quarter, so that a
+!> Each corner carries what of the polygon lies nearer to it, seen from its centroid: of a rectangle a quarter, so that a
 !> plane problem drawn out has the points of the plane, twice.
 module dem3_patch
    use common_kinds, only : wp
@@ -399,7 +399,7 @@ contains
       integer :: i, j, n
       n = size(area)
       area = 0.0_wp
-      middle = sum(corner, dim=2) / n
+      middle = centre(normal, corner)
       do i = 1, n
          j = merge(1, i + 1, i == n)
          piece = 0.5_wp * abs(dot_product(normal, cross(corner(:, i) - middle, corner(:, j) - middle)))
@@ -409,6 +409,29 @@ contains
       total = sum(area)
       if (total < least) area = area + (least - total) / n
    end subroutine areas
+
+   !> Centroid of the area of a polygon. The mean of its corners would jump where a corner parts in two that lie together, and
+   !> with it what all of them carry.
+   pure function centre(normal, corner) result(middle)
+      real(wp), intent(in) :: normal(3)
+      real(wp), intent(in) :: corner(:, :)       !! (3, n) [m]
+      real(wp) :: middle(3)
+      real(wp) :: mean(3), one(3), next(3), piece, total
+      integer :: i, n
+      n = size(corner, 2)
+      mean = sum(corner, dim=2) / n
+      middle = 0.0_wp
+      total = 0.0_wp
+      do i = 1, n
+         one = corner(:, i) - mean
+         next = corner(:, merge(1, i + 1, i == n)) - mean
+         piece = dot_product(normal, cross(one, next))
+         total = total + piece
+         middle = middle + piece * (one + next)
+      end do
+      if (abs(total) > tiny(1.0_wp)) middle = middle / (3.0_wp * total)
+      middle = mean + middle
+   end function centre
 
    !> How far points reach against a direction: the least of their places along it [m]
    pure function lowest(axis, points) result(least)

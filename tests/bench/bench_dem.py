@@ -200,9 +200,26 @@ def sizes() -> None:
         print(f"  {n:5d} blocks  {1e9 * min(found):7.1f} ns per block and step ({run.steps} steps)")
 
 
+def bricks() -> None:
+    """How far behind real time a wall of a thousand bricks is, by processor time of one core."""
+    assembly = make_brickwork(Bond(0.5, 0.25), 12.0, 10.0, (), 2000.0, 1.0)
+    for stiffness in (1e10, 6e10):
+        bodies = Case(assembly, PULSE, 0, 0.1, 0.1, 0.0, stiffness, 3e-3).bodies(stiffness, 3e-3)
+        spent = []
+        for end in (1e-6, 0.1):
+            begin = time.process_time()
+            run = dem.run(bodies, dem.Options(end, fraction=0.8, settle_tolerance=1e-4, residual_limit=0.5), PULSE)
+            spent.append(time.process_time() - begin)
+        print(
+            f"wall of {len(assembly.mass)} bricks at {stiffness:.0e} Pa/m  {0.1 / (spent[1] - spent[0]):.2f} times real time  step {run.step:.1e} s  "
+            f"energy residual {run.residual:.1e}"
+        )
+
+
 def main() -> None:
     for name, case in CASES.items():
         one(name, case)
+    bricks()
     sizes()
 
 

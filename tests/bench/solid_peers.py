@@ -11,6 +11,7 @@ from extrados.core.ground import Ground
 from extrados.schema.constants import GRAVITY
 
 SETTLE = 0.2  # seconds under gravity alone, before the motion
+PATIENCE = 15.0  # seconds of processor time for a motion, and for settling before
 
 
 @dataclass(frozen=True)
@@ -75,14 +76,17 @@ def model_text(solids: Solids, dt: float) -> str:
 
 
 def mujoco(solids: Solids, along: Ground, across: Ground | None, end: float, dt: float, every: int = 1) -> Answer:
-    """A run from rest under the own weight; gravity carries the ground's acceleration along x and y."""
+    """A run from rest under the own weight, as far as PATIENCE lets it; gravity carries the ground's acceleration along x and y."""
     import mujoco as mj
 
     model = mj.MjModel.from_xml_string(model_text(solids, dt))
     data = mj.MjData(model)
     model.opt.gravity[:] = (0.0, 0.0, -GRAVITY)
+    spent = time.process_time()
     for _ in range(round(SETTLE / dt)):
         mj.mj_step(model, data)
+        if time.process_time() - spent > PATIENCE:
+            break
     data.qvel[:] = 0.0
     steps = round(end / dt)
     middle = dt * (np.arange(steps) + 0.5)
@@ -97,5 +101,8 @@ def mujoco(solids: Solids, along: Ground, across: Ground | None, end: float, dt:
         step(model, data)
         if (n + 1) % every == 0:
             place[(n + 1) // every - 1] = data.qpos.reshape(-1, 7)[:, :3]
+        if time.process_time() - spent > PATIENCE:
+            place = place[: (n + 1) // every]
+            break
     seconds, processor = time.perf_counter() - begin, time.process_time() - spent
     return Answer(seconds, processor, dt * every * np.arange(1, len(place) + 1), place - start)

@@ -16,6 +16,7 @@ PIXELS = 900  # of the longer side of a picture
 LIGHT = np.array([-0.35, -0.75, 1.0]) / np.linalg.norm([-0.35, -0.75, 1.0])
 DARKEST = 0.55  # of a colour, on a face that the light does not reach
 ROOM = 0.04  # of the picture, around the solids
+NARROW = 6.0  # lengths of an axis of the compass that a picture is wide at least
 
 
 @dataclass(frozen=True)
@@ -135,6 +136,10 @@ def compass(ax: Axes, points: np.ndarray, view: View, push: float | None = None)
     """The axes x, y, z, the scale, and where it is pushed [deg in plan], below the solids."""
     left, right, low, high = (*ax.get_xlim(), *ax.get_ylim())
     size = 0.09 * max(right - left, high - low)
+    if right - left < NARROW * size:  # of a tall picture: axes and scale stand side by side
+        middle = 0.5 * (left + right)
+        left, right = middle - 0.5 * NARROW * size, middle + 0.5 * NARROW * size
+        ax.set_xlim(left, right)
     below = low - 1.5 * size
     ax.set_ylim(below - 1.2 * size, high)
     origin = np.array([left + 1.5 * size, below])

@@ -4,7 +4,9 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, ListedColormap, to_rgb
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, ListedColormap, Normalize, to_rgb
+from matplotlib.figure import Figure
 
 from extrados.plots import animation, scene, style
 from extrados.plots.solids import FILM_PIXELS, VIEW, faces_of
@@ -74,9 +76,19 @@ def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.set_title(f"{times[k]:.3f} s")
         for ax in axes[len(picks) :]:
             ax.axis("off")
+        if stage.share.any():
+            legend(fig, list(axes[: rows * columns]), stage.farthest)
         saved = style.save(fig, folder, f"{name}-snapshots")
     what = f"Brought down by {r.collapse_acceleration_g:.4f} g" if tilt else "The stones as they move"
-    return saved, f"{what}; the redder a stone, the farther it has gone, at most {stage.farthest:.3g} m."
+    return saved, f"{what}; colours tell how far a stone has gone, at most {stage.farthest:.3g} m."
+
+
+def legend(fig: Figure, axes: list[Axes], farthest: float) -> None:
+    """What the colours of the stones tell [m]."""
+    bar = fig.colorbar(
+        ScalarMappable(Normalize(0.0, farthest), MOVED), ax=axes, shrink=0.6, pad=0.02, aspect=30, panchor=False
+    )
+    bar.set_label("displacement of a stone [m]")
 
 
 def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
@@ -141,6 +153,8 @@ def _film(run: Stored, name: str, folder: Path) -> None:
     width, height = (side / animation.DPI for side in animation.PIXELS)
     with style.figure(width, height) as (fig, (ax,)):
         stage.show(ax, int(frames[0]), None)
+        if stage.share.any():
+            legend(fig, [ax], stage.farthest)
         (drawn,) = ax.images
         title = ax.set_title(f"{time[frames[0]]:.2f} s")
 

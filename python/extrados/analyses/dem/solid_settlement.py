@@ -13,6 +13,9 @@ from extrados.schema.constants import GRAVITY
 def corner_areas(polygon: np.ndarray) -> np.ndarray:
     """What of a polygon (k, 3) each corner carries (k) [m^2]: that which lies nearer to it, seen from its middle."""
     arm = polygon - polygon.mean(axis=0)
+    after = np.roll(arm, -1, axis=0)
+    fan = np.cross(arm, after) @ np.cross(arm, after).sum(axis=0)
+    arm = arm - (fan[:, None] * (arm + after)).sum(axis=0) / (3.0 * fan.sum())  # from the centroid of the area
     piece = 0.25 * np.linalg.norm(np.cross(arm, np.roll(arm, -1, axis=0)), axis=1)
     return piece + np.roll(piece, 1)
 

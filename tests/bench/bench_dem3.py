@@ -1,0 +1,205 @@
+"""Blocks in space against MuJoCo: real-time factor and error of displacements; cost over size; two threads.
+
+Rates are of processor time of one core, ours without settling, MuJoCo's without its 0.2 s under gravity, so that what else runs on
+the machine counts little; threads are timed by the wall clock, and the load stands beside. The error is the greatest RMS distance of any block
+from a refined solution over a smooth stretch (before impacts make any two codes part), over the greatest displacement there. The
+refined solution is our own at ten times the stiffness or more, and a third of the critical step.
+"""
+
+import os
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+import solid_peers
+from peers import has
+
+from extrados.analyses.dem.runs import SOLIDS_FOR_THREADS
+from extrados.building.geometry.solids.assembly import SolidAssembly
+from extrados.building.geometry.solids.columns import drums
+from extrados.building.geometry.solids.sections import drawn_out
+from extrados.building.geometry.solids.supports import supports_of
+from extrados.building.templates.arch import make_arch
+from extrados.building.templates.brickwork import Bond
+from extrados.building.templates.dome import make_dome
+from extrados.building.templates.wall import make_wall
+from extrados.core import dem3
+from extrados.core.dem_run import STILL
+from extrados.core.ground import Ground, as_motion_set
+from extrados.schema.constants import GRAVITY
+
+FRICTION = 0.7
+
+
+def sine(amplitude: float, period: float) -> Ground:
+    """One cycle of a sine [m/s^2, s]."""
+    wave = np.array([[[[amplitude, 0.0, 2.0 * np.pi / period, 0.0]]]])
+    return Ground(breaks=np.array([0.0, period]), linear=np.zeros((1, 1, 2)), harmonic=wave)
+
+
+def solids_of(assembly: SolidAssembly, law: dem3.Law) -> dem3.Solids:
+    """Blocks on their footings, with one law for all contacts."""
+    below = supports_of(assembly).bodies
+    n = len(below)
+    middle = np.reshape([part.vertices.mean(axis=0) for part in below], (-1, 3))
+    parts = [*assembly.parts, *below]
+    return dem3.Solids(
+        np.concatenate([assembly.centroid, middle]), np.concatenate([assembly.mass, np.zeros(n)]),
+        np.concatenate([assembly.inertia, np.tile(np.eye(3), (n, 1, 1))]), [p.vertices for p in parts], [p.faces for p in parts],
+        [*assembly.owner.tolist(), *range(len(assembly.mass), len(assembly.mass) + n)], [law],
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Case:
+    """Structure, motion along x or (way = 1) y, seconds that are timed and compared, springs [Pa/m] and damping [s], step over the critical."""
+
+    assembly: Callable[[], SolidAssembly]
+    ground: Ground
+    seconds: float
+    stiffness: float
+    beta: float
+    refined: float
+    fraction: float = 0.6
+    peer_steps: tuple[float, ...] = (1e-3, 2e-4)
+    way: int = 0
+
+
+CASES = {
+    "column of 12 drums": Case(lambda: drums(1.0, [0.5] * 12, None, 16), sine(0.35 * GRAVITY, 0.8), 0.6, 1e10, 1e-3, 1e11),
+    "arch of 30": Case(lambda: drawn_out(make_arch(10.0, 1.5, 157.5, 30)), sine(0.6 * GRAVITY, 0.6), 0.4, 2e10, 1e-3, 2e11),
+    # Out of its plane
+    "wall of 500": Case(
+        lambda: make_wall(Bond(0.4, 0.2), 0.2, 3.2, [(12.6, False, [])]), sine(0.3 * GRAVITY, 0.6), 0.3, 2e9, 1e-3, 2e10,
+        way=1, peer_steps=(1e-3,),
+    ),
+    "dome of 600": Case(
+        lambda: make_dome(5.0, 0.5, 180.0, 25, 24), sine(0.8 * GRAVITY, 0.6), 0.3, 2e9, 1e-3, 2e10, peer_steps=(1e-3,)
+    ),
+}  # fmt: skip
+
+
+def run_of(
+    solids: dem3.Solids, case: Case, fraction: float, seconds: float, threads: int = 1
+) -> tuple[float, float, dem3.Run]:
+    """Processor and wall time [s] of the motion alone, the model built and settled before, and the run."""
+    times = np.linspace(0.0, seconds, 101)
+    options = dem3.Options(
+        seconds,
+        fraction=fraction,
+        settle_tolerance=1e-4,
+        residual_limit=0.5,
+        threads=threads,
+        way=(1.0 - case.way, float(case.way), 0.0),
+    )
+    still = replace(options, end_time=1e-6)
+    processor, wall = [], []
+    for given, when in ((still, np.array([0.0])), (options, times)):
+        begin, spent = time.perf_counter(), time.process_time()
+        run = dem3.run(solids, given, case.ground, times=when)
+        processor.append(time.process_time() - spent)
+        wall.append(time.perf_counter() - begin)
+    return processor[1] - processor[0], wall[1] - wall[0], run
+
+
+def error(time_axis: np.ndarray, moved: np.ndarray, exact: np.ndarray, times: np.ndarray) -> float:
+    """Greatest RMS distance of a block (t, n, 3) from the refined one over the greatest displacement of any."""
+    found = np.stack(
+        [[np.interp(times, time_axis, moved[:, b, i]) for i in range(3)] for b in range(moved.shape[1])]
+    ).transpose(2, 0, 1)
+    rms = np.sqrt(((found - exact) ** 2).sum(axis=2).mean(axis=0))
+    return float(rms.max() / np.linalg.norm(exact, axis=2).max())
+
+
+def one(name: str, case: Case) -> None:
+    assembly = case.assembly()
+    n = len(assembly.mass)
+
+    def solids(stiffness: float, beta: float) -> dem3.Solids:
+        return solids_of(assembly, dem3.Law(stiffness, stiffness, FRICTION, beta))
+
+    def moved(run: dem3.Run) -> np.ndarray:
+        return run.place[:, :n] - run.settled[:n]
+
+    fine = run_of(solids(case.refined, case.beta * case.stiffness / case.refined), case, 0.3, case.seconds)[2]
+    exact = moved(fine)
+    spent, _, run = run_of(solids(case.stiffness, case.beta), case, case.fraction, case.seconds)
+    ahead = case.seconds / spent
+    print(
+        f"{name}: {n} blocks, {len(assembly.a)} contacts, {case.seconds:g} s of motion, up to {np.abs(exact).max():.2g} m"
+    )
+    print(
+        f"  extrados  {ahead:9.2f} times real time  step {run.step:.1e} s  {n * run.steps / spent:9.2e} block-steps/s  error "
+        f"{error(run.time, moved(run), exact, fine.time):.1e}  energy residual {run.residual:.1e}",
+        flush=True,
+    )
+    if not has("mujoco"):
+        print("  MuJoCo    not installed")
+        return
+    for dt in case.peer_steps:
+        peer = solid_peers.mujoco(
+            solids(case.stiffness, 0.0), *((STILL, case.ground) if case.way else (case.ground, STILL)), case.seconds, dt
+        )
+        rate = peer.time[-1] / peer.processor
+        whole = peer.time[-1] > 0.99 * case.seconds
+        off = (
+            f"{error(peer.time, peer.moved, exact, fine.time):.1e}"
+            if whole
+            else f"- (stopped at {peer.time[-1]:.3f} s)"
+        )
+        print(
+            f"  MuJoCo    {rate:9.3f} times real time  step {dt:.0e} s  error {off}  extrados "
+            f"{ahead / rate:.1f} times as fast",
+            flush=True,
+        )
+
+
+def sizes() -> None:
+    """Cost per block and step over the size of a wall, as it shakes."""
+    print("cost over size: walls of units in running bond, one thread, processor time")
+    for length, height in ((2.4, 1.0), (4.8, 2.0), (9.6, 4.0), (19.2, 8.0), (32.0, 12.0)):
+        assembly = make_wall(Bond(0.4, 0.2), 0.2, height, [(length, False, [])])
+        solids = solids_of(assembly, dem3.Law(5e9, 5e9, FRICTION, 1e-3))
+        n = len(assembly.mass)
+        spent, steps = {}, {}
+        for seconds in (1e-6, max(0.008, 8.0 / n)):  # the first search takes as long as many steps
+            options = dem3.Options(seconds, fraction=0.6, residual_limit=1e9, settle_steps=0)
+            with dem3.Model(solids, options) as model, as_motion_set([sine(0.3 * GRAVITY, 0.6)]) as motions:
+                for _ in range(2):
+                    begin = time.process_time()
+                    run = model.run(motions)
+                    spent[seconds] = min(spent.get(seconds, np.inf), time.process_time() - begin)
+                    steps[seconds] = run.steps
+        (start, whole), (few, many) = spent.values(), steps.values()
+        each = (whole - start) / (n * (many - few))
+        print(f"  {n:5d} blocks  {1e9 * each:7.1f} ns per block and step ({many} steps)", flush=True)
+
+
+def threads() -> None:
+    """Wall time of one thread over that of two, the same bits; the least of some tries, for the machine may be shared."""
+    print(f"two threads against one, wall clock; load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
+    for length, height in ((2.8, 1.4), (4.8, 3.2), (12.6, 3.2), (19.2, 8.0)):
+        assembly = make_wall(Bond(0.4, 0.2), 0.2, height, [(length, False, [])])
+        solids = solids_of(assembly, dem3.Law(5e9, 5e9, FRICTION, 1e-3))
+        n = len(assembly.mass)
+        took = {}
+        for count in (1, 2) * 4:
+            options = dem3.Options(30.0 / n, fraction=0.6, residual_limit=1e9, settle_steps=0, threads=count)
+            with dem3.Model(solids, options) as model, as_motion_set([sine(0.3 * GRAVITY, 0.6)]) as motions:
+                begin = time.perf_counter()
+                model.run(motions)
+                took[count] = min(took.get(count, np.inf), time.perf_counter() - begin)
+        used = "" if n >= SOLIDS_FOR_THREADS else " (a deck takes one thread here)"
+        print(f"  {n:5d} blocks  {took[1] / took[2]:.2f} times{used}", flush=True)
+
+
+def main() -> None:
+    for name, case in CASES.items():
+        one(name, case)
+    sizes()
+    threads()
+
+
+if __name__ == "__main__":
+    main()
