@@ -83,7 +83,8 @@ contains
       call find_anew(set, margin, pair)
    end subroutine find_points
 
-   !> Where a pair touches now. Apart from find_points, which is asked far more often than it must look: a patch is long.
+   !> Where a pair touches now. Apart from find_points, which is asked far more often than it must look:
+   !> a patch is long.
    pure subroutine find_anew(set, margin, pair)
       type(body_set), intent(in) :: set
       real(wp), intent(in) :: margin            !! [m]
@@ -120,7 +121,8 @@ contains
          associate (point => pair%point(i), one => before(old))
             point = one
             if (equal(one%what, found%point(i))) cycle
-            ! The springs keep what they are drawn out by, so that a corner that parts in two holds the energy that it held.
+            ! The springs keep what they are drawn out by, so that a corner that parts in two holds
+            ! the energy that it held.
             share = found%point(i)%area / one%what%area
             point%what = found%point(i)
             point%spring_n = share * one%spring_n

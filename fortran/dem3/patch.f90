@@ -6,8 +6,8 @@
 !> face, or a place where an edge of one crosses an edge of the other; where these are nearly parallel it is taken as a
 !> point of the face that was cut. The gap of such a pair of features changes by the velocity of one body relative to
 !> the other at that place alone, so that its spring is conservative.
-!> Each corner carries what of the polygon lies nearer to it, seen from its centroid: of a rectangle a quarter, so that a
-!> plane problem drawn out has the points of the plane, twice.
+!> Each corner carries what of the polygon lies nearer to it, seen from its centroid: of a rectangle a quarter, so that
+!> a plane problem drawn out has the points of the plane, twice.
 module dem3_patch
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
@@ -410,8 +410,8 @@ contains
       if (total < least) area = area + (least - total) / n
    end subroutine areas
 
-   !> Centroid of the area of a polygon. The mean of its corners would jump where a corner parts in two that lie together, and
-   !> with it what all of them carry.
+   !> Centroid of the area of a polygon. The mean of its corners would jump where a corner parts in two that lie
+   !> together, and with it what all of them carry.
    pure function centre(normal, corner) result(middle)
       real(wp), intent(in) :: normal(3)
       real(wp), intent(in) :: corner(:, :)       !! (3, n) [m]
