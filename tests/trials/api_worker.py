@@ -92,6 +92,32 @@ def plates(xyz, held, connect, thickness, young, nu, band, strength, energy, lay
         return events.load, model.displacement(load), model.report(load), model.residual(), model.damage()
 
 
+def jointed_plates(connect, normal, along, out, area, stiffness, shear, friction, cohesion, energy, layers, through, band, reference,
+                   room, load, threads) -> Any:  # fmt: skip
+    """Two shells side by side, and the joint between them, which tears or slides."""
+    corner = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [1.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0]])
+    xyz = np.column_stack([corner[:, 0], np.zeros(8), corner[:, 1]])
+    plates = np.array([[0, 1, 2, 3], [4, 5, 6, 7]])
+    frames, flat = shell.node_frames(xyz, [plates])
+    soft = sla.Softening(3e5, 50.0)
+    shells = sla.Shells("Q4", plates, 0.2, 1e9, 0.2, band, soft, frames=frames, flat=flat, layers=3, bends=True)
+    height, share = shell.layers_of(layers, through)
+    each = np.repeat(np.asarray(connect), len(height), axis=0)
+    axes = [np.repeat(np.asarray(axis, dtype=float), len(height), axis=0) for axis in (normal, along, out)]
+    joint = sla.ShellJoints(
+        each, np.tile([1.0, 0.0], (len(each), 1)), area * np.tile(share, len(connect))[:, None] * np.ones(2), stiffness, shear, friction,
+        tension=soft, cohesion=sla.Softening(cohesion, energy, "exponential", 0.1),
+        row=sla.ShellJoints.rows(*axes, np.tile(height, len(connect)) * 0.2, frames[each]),
+    )  # fmt: skip
+    held = [(node, d) for node in (0, 3) for d in range(6)] + [(node, 5) for node in (1, 2, 4, 5, 6, 7)]
+    with sla.Model(
+        xyz, sla.Freedoms.make(8, held, of_node=6), [shells, joint], sla.Behaviour(), threads=threads
+    ) as model:
+        model.loads(np.zeros((8, 6)), reference)
+        events = model.run(room, [sla.Monitor.of(6, 2)], sla.Stop(load=load))
+        return events.load, model.displacement(load), model.residual()
+
+
 def joints(connect, normal, area, stiffness, shear, friction, cohesion, energy, dry, small, ripple, push, pressure, room, slip,
            load, moved, travel, rate) -> Any:  # fmt: skip
     """A joint pressed and sheared; then its most overloaded points, all at once."""
@@ -332,6 +358,12 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
             connect=np.array([[0, 1, 2, 3]]), thickness=0.2, young=1e9, nu=0.2, band=0.5, strength=1e5, energy=50.0, layers=5,
             through="lobatto", bends=True, reference=np.column_stack([np.zeros((4, 1)), push[:, [0]], np.zeros((4, 4))]), room=4,
             watch=np.array([2]), way=np.array([1]), share=np.array([1.0]), load=1e9, threads=2,
+        )),
+        (jointed_plates, dict(
+            connect=np.array([[1, 2, 7, 4]]), normal=np.array([[1.0, 0.0, 0.0]]), along=np.array([[0.0, 0.0, 1.0]]),
+            out=np.array([[0.0, -1.0, 0.0]]), area=0.1, stiffness=8e10, shear=4e10, friction=0.75, cohesion=3e5, energy=120.0, layers=3,
+            through="lobatto", band=0.5, reference=np.column_stack([np.zeros((8, 2)), np.repeat([0.0, -1e3], [6, 2]), np.zeros((8, 3))]),
+            room=6, load=1e9, threads=2,
         )),
         (joints, dict(
             connect=np.array([[0, 1, 2, 3]]), normal=np.array([[0.0, 1.0]]), area=np.array([[0.5, 0.5]]), stiffness=8e10, shear=4e10,

@@ -194,7 +194,7 @@ def test_a_set_of_motions_on_a_plan_takes_the_first() -> None:
 def test_a_strategy_that_a_deck_names_and_that_cannot_look_is_told() -> None:
     r = extrados.run(on_plan(assess={"strategies": ["code-checks", "dem"]}))["assess"]
     assert [(v.strategy, v.status) for v in r.verdicts] == [("code-checks", "ok"), ("dem", "left out")]
-    assert "does not look at a structure of kind 'building'" in r.verdicts[1].reason
+    assert "cannot analyse a structure of kind 'building'" in r.verdicts[1].reason
     assert "dem" in [
         v.strategy for v in extrados.run(deck(assess={"strategies": ["tilt", "push-x", "dem"]}))["assess"].verdicts
     ]

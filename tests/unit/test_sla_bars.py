@@ -175,8 +175,10 @@ def test_a_load_that_only_grows_with_metres_is_no_capacity() -> None:
     moved, load = np.array([0.01, 0.1, 1.0]), np.array([1e3, 1e4, 1e5])
 
     def told(before: float, scale: float) -> str | None:
-        events = SimpleNamespace(monitors=scale * moved[:, None] + before, equilibrium=np.ones(3, bool))
-        curve = SimpleNamespace(events=events, peak=2, before=before, force=lambda unit: load)
+        events = SimpleNamespace(
+            monitors=scale * moved[:, None] + before, equilibrium=np.ones(3, bool), compliance=np.ones(3)
+        )
+        curve = SimpleNamespace(events=events, peak=2, most_compliance=np.inf, before=before, force=lambda unit: load)
         return far_away(SimpleNamespace(mesh=mesh, unit=1.0), curve)
 
     assert "no capacity" in told(0.0, 1.0) and "no capacity" in told(5.0, 0.3)
