@@ -16,7 +16,9 @@ import apart
 
 #: Tests that call the core, room by room
 TESTS = ("unit/test_border.py", "unit/test_block.py", "unit/test_dem_core.py", "unit/test_mechanism.py", "unit/test_motion_core.py",
-         "unit/test_sla_elements.py", "unit/test_sla_events.py", "unit/test_sla_teeth.py")  # fmt: skip
+         "unit/test_sla_elements.py", "unit/test_sla_events.py", "unit/test_sla_teeth.py", "unit/test_vertex.py", "unit/test_stack.py",
+         "unit/test_soft_base.py", "unit/test_restraints.py", "unit/test_dem3_core.py", "unit/test_dem_nonsmooth.py",
+         "unit/test_dem3_nonsmooth.py", "unit/test_shell_elements.py", "unit/test_shell_events.py", "unit/test_shell_joints.py")  # fmt: skip
 BUILDS = {
     "sanitized": ("-Dsanitize=true", "-Dbuildtype=plain", "-Doptimization=1"),
     "checked": ("-Dchecks=true", "-Dbuildtype=plain", "-Doptimization=1"),
