@@ -243,8 +243,15 @@ def test_forgotten_and_failed_objects_are_given_back() -> None:
     assert model.closed and _core.api_support.handle_count() == before
 
 
+def until_busy(handle: int, thread: threading.Thread) -> None:
+    """Wait until the run of another thread has taken its model."""
+    while status_list()[_core.api_dem_run.summary(handle)[2]][0] != "busy":
+        assert thread.is_alive(), "the run ended before it was seen"
+
+
 def long_run() -> tuple[dem.Model, MotionSet]:
     """A model that shakes for an hour."""
+    _core.api_support.set_cancel(0)  # whatever another test has left: calls past `core` do not clear it
     box = np.array([[-0.5, 0.0], [0.5, 0.0], [0.5, 4.0], [-0.5, 4.0]])
     floor = np.array([[-20.0, -1.0], [20.0, -1.0], [20.0, 0.0], [-20.0, 0.0]])
     bodies = dem.Bodies(
@@ -263,10 +270,7 @@ def test_an_object_in_use_is_neither_used_nor_closed_by_another_thread() -> None
     thread = threading.Thread(target=lambda: runs.append(model.run(motions)))
     thread.start()
     try:
-        while True:  # until the run has taken its model
-            _, _, status = _core.api_dem_run.summary(model.handle)
-            if status_list()[status][0] == "busy":
-                break
+        until_busy(model.handle, thread)
         with pytest.raises(HandleError, match="another call is using it"):
             model.close()
         with pytest.raises(HandleError, match="another call is using it"):
@@ -294,8 +298,7 @@ def test_an_owner_that_is_gone_does_not_pull_the_object_from_under_a_call() -> N
     thread = threading.Thread(target=_core.api_dem_run.run, args=(model.handle, motions.handle, 1, 0, 1.0, 0))
     handle = model.handle
     thread.start()
-    while status_list()[_core.api_dem_run.summary(handle)[2]][0] != "busy":
-        pass
+    until_busy(handle, thread)
     del model
     assert status_list()[_core.api_dem_run.summary(handle)[2]][0] == "closed_handle"
     assert _core.api_support.handle_count() == before
@@ -312,8 +315,7 @@ def test_an_error_is_not_hidden_by_an_object_in_use() -> None:
     assert _core.api_dem_run.start(model.handle, np.zeros(1)) == 0
     thread = threading.Thread(target=_core.api_dem_run.run, args=(model.handle, motions.handle, 1, 0, 1.0, 0))
     thread.start()
-    while status_list()[_core.api_dem_run.summary(model.handle)[2]][0] != "busy":
-        pass
+    until_busy(model.handle, thread)
     with pytest.raises(KeyboardInterrupt), model, motions:
         raise KeyboardInterrupt
     assert model.closed and motions.closed
