@@ -1,5 +1,6 @@
 """The border to the core under abuse: every wrong use is an exception, and the interpreter lives on."""
 
+import contextlib
 import subprocess
 import sys
 import threading
@@ -249,9 +250,14 @@ def until_busy(handle: int, thread: threading.Thread) -> None:
         assert thread.is_alive(), "the run ended before it was seen"
 
 
+def shake(model: int, motions: int) -> None:
+    """Run a model until that is stopped; again where who looks whether it runs had it at that moment."""
+    while status_list()[_core.api_dem_run.run(model, motions, 1, 0, 1.0, 0)[2]][0] == "busy":
+        pass
+
+
 def long_run() -> tuple[dem.Model, MotionSet]:
     """A model that shakes for an hour."""
-    _core.api_support.set_cancel(0)  # whatever another test has left: calls past `core` do not clear it
     box = np.array([[-0.5, 0.0], [0.5, 0.0], [0.5, 4.0], [-0.5, 4.0]])
     floor = np.array([[-20.0, -1.0], [20.0, -1.0], [20.0, 0.0], [-20.0, 0.0]])
     bodies = dem.Bodies(
@@ -267,7 +273,13 @@ def long_run() -> tuple[dem.Model, MotionSet]:
 def test_an_object_in_use_is_neither_used_nor_closed_by_another_thread() -> None:
     model, motions = long_run()
     runs: list[dem.Run] = []
-    thread = threading.Thread(target=lambda: runs.append(model.run(motions)))
+
+    def run() -> None:
+        while not runs:
+            with contextlib.suppress(HandleError):  # who looks whether it runs has it at that moment
+                runs.append(model.run(motions))
+
+    thread = threading.Thread(target=run)
     thread.start()
     try:
         until_busy(model.handle, thread)
@@ -295,7 +307,7 @@ def test_an_owner_that_is_gone_does_not_pull_the_object_from_under_a_call() -> N
     model, motions = long_run()
     before = _core.api_support.handle_count()
     assert _core.api_dem_run.start(model.handle, np.zeros(1)) == 0
-    thread = threading.Thread(target=_core.api_dem_run.run, args=(model.handle, motions.handle, 1, 0, 1.0, 0))
+    thread = threading.Thread(target=shake, args=(model.handle, motions.handle))
     handle = model.handle
     thread.start()
     until_busy(handle, thread)
@@ -313,7 +325,7 @@ def test_an_error_is_not_hidden_by_an_object_in_use() -> None:
     before = _core.api_support.handle_count()
     model, motions = long_run()
     assert _core.api_dem_run.start(model.handle, np.zeros(1)) == 0
-    thread = threading.Thread(target=_core.api_dem_run.run, args=(model.handle, motions.handle, 1, 0, 1.0, 0))
+    thread = threading.Thread(target=shake, args=(model.handle, motions.handle))
     thread.start()
     until_busy(model.handle, thread)
     with pytest.raises(KeyboardInterrupt), model, motions:
