@@ -53,7 +53,7 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
         ("test_dem",), ("unit/test_dem_core.py", "unit/test_dem_rules.py", "unit/test_dem_analysis.py"), "dem/",
     ),
     "fortran/dem3": ((), ("unit/test_dem3_core.py", "unit/test_dem3_nonsmooth.py", "unit/test_dem_solids.py"), "solid/dem"),
-    "fortran/nonsmooth": ((), ("unit/test_dem_nonsmooth.py", "unit/test_dem3_nonsmooth.py"), "dem/nonsmooth"),
+    "fortran/nonsmooth": ((), ("unit/test_dem_nonsmooth.py", "unit/test_dem3_nonsmooth.py"), "solid/dem-nonsmooth"),
     "fortran/limit": (
         (),
         ("unit/test_vertex.py", "unit/test_limit_arches.py", "unit/test_limit_vaults.py", "unit/test_limit_loads.py"),
