@@ -8,7 +8,7 @@
 !>
 !> With the parting velocities raised by c = mu |w_t| this says that impulses lie in the friction cone and velocities in
 !> its dual, at right angles (de Saxce and Feng 1998). For c held it is a convex problem, and c follows from round to
-!> round (Acary, Cadoux, Lemarechal and Malick 2011); where it creeps or swings for long in space, it is taken to where
+!> round (Acary, Cadoux, Lemarechal and Malick 2011); where it creeps or swings in space, it is taken to where
 !> the last two rounds point (Anderson 1965). The convex problem is solved by augmented Lagrangians (Alart and
 !> Curnier 1991): with weights r the impulses are those which the projection on the cone
 !>
@@ -36,12 +36,16 @@ module nonsmooth_impulses
    integer, parameter, public :: in_plane = 2, in_space = 3
    !> Friction of points that never slide, nor where they part: the cone is a half space (its square does not overflow)
    real(wp), parameter, public :: no_sliding = 1.0e100_wp
-   real(wp), parameter :: growth = 10.0_wp       !! of the weights where impulses have far to go
+   !> Weights over masses at the start, in the plane and in space, where the round cones ask for Newton's method anyway
+   real(wp), parameter :: heavy(in_plane:in_space) = [1.0e2_wp, 1.0e4_wp]
+   real(wp), parameter :: growth = 10.0_wp       !! of those of the plane where impulses have far to go
    integer, parameter :: patience = 15           !! rounds before that
    integer, parameter :: most_growth = 2         !! times
+   integer, parameter :: creeping = 4            !! rounds in space before c is taken to where the last ones point
    integer, parameter :: most_newton = 60
    integer, parameter :: now = 1, before = 2     !! round
-   integer, parameter :: most_halvings = 30
+   integer, parameter :: most_tries = 30
+   real(wp), parameter :: close = 0.01_wp        !! of the violation that is let pass: to that Newton's method goes on
    !> What a point does. A cone in the plane has two edges; on the round one in space that is one state
    integer, parameter :: parts = 0, sticks = 1, slides = 2, slides_back = 3
 
@@ -50,7 +54,7 @@ module nonsmooth_impulses
       integer :: freedoms = 0                       !! of a body: 3 or 6
       integer :: nodes = 0                          !! bodies that move
       integer :: points = 0
-      real(wp) :: heavy = 1.0e2_wp                  !! weights over the mass that a point feels
+      real(wp) :: heavy = 0.0_wp                    !! weights over the mass that a point feels
       real(wp), allocatable :: mass(:)              !! (freedoms nodes) by rank: of each freedom, mass or inertia
       real(wp), allocatable :: free(:)              !! (freedoms nodes) velocities without contacts
       real(wp), allocatable :: rate(:)              !! (freedoms nodes) velocities: a guess in, the answer out
@@ -67,7 +71,10 @@ module nonsmooth_impulses
       real(wp), allocatable :: change(:, :)         !! (points, now and before) of c that was so asked for [m/s]
       real(wp), allocatable :: rate_at(:, :)        !! (direction, points) w [m/s]
       real(wp), allocatable :: trial(:, :)          !! (direction, points) p - r (w_n + c, w_t)
+      real(wp), allocatable :: near(:, :)           !! (direction, points) the points of the cones nearest to these
       real(wp), allocatable :: try(:), load(:)      !! (freedoms nodes)
+      real(wp), allocatable :: missing(:)           !! (freedoms nodes) [N s]
+      real(wp), allocatable :: block(:, :)          !! (of both bodies, first point of a pair) of the matrix
       integer, allocatable :: state(:), was(:)      !! (points) what they do, and did when the matrix was factored
    end type impulse_problem
 
@@ -92,11 +99,12 @@ contains
       problem%nodes = nodes
       problem%directions = directions
       problem%freedoms = merge(3, 6, directions == in_plane)
+      problem%heavy = heavy(directions)
       call skyline_new(nodes, problem%freedoms, link, problem%matrix, status)
       if (status /= status_ok) return
       count = problem%freedoms * nodes
       allocate (problem%mass(count), problem%free(count), problem%rate(count), problem%try(count), &
-         problem%load(count), stat=failed)
+         problem%load(count), problem%missing(count), stat=failed)
       if (failed /= 0) status = status_out_of_memory
    end subroutine problem_new
 
@@ -108,12 +116,13 @@ contains
       integer :: failed
       if (allocated(problem%node)) deallocate (problem%node, problem%row, problem%shift, problem%friction, &
          problem%impulse, problem%best, problem%weight, problem%raised, problem%asked, problem%change, &
-         problem%rate_at, problem%trial, problem%state, problem%was)
+         problem%rate_at, problem%trial, problem%near, problem%block, problem%state, problem%was)
       allocate (problem%node(2, points), problem%row(problem%freedoms, 2, problem%directions, points), &
          problem%shift(problem%directions, points), problem%friction(points), &
          problem%impulse(problem%directions, points), problem%best(problem%directions, points), &
          problem%weight(points), problem%raised(points), problem%asked(points, 2), problem%change(points, 2), &
          problem%rate_at(problem%directions, points), problem%trial(problem%directions, points), &
+         problem%near(problem%directions, points), problem%block((2 * problem%freedoms)**2, points), &
          problem%state(points), problem%was(points), stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
    end subroutine problem_room
@@ -146,12 +155,16 @@ contains
          call follow(problem, effort%rounds)
          effort%converged = effort%residual <= tolerance
          if (effort%converged) exit
+         if (problem%directions == in_space) cycle
          if (mod(effort%rounds, patience) > 0 .or. effort%rounds > patience * most_growth) cycle
          problem%weight(:n) = growth * problem%weight(:n)
          problem%was(:n) = -1
       end do
       problem%impulse(:, :n) = problem%best(:, :n)
-      call velocities(problem)
+      ! The velocities that follow from these impulses alone
+      problem%near(:, :n) = problem%best(:, :n)
+      call give_impulses(problem, problem%mass * problem%free, problem%rate)
+      problem%rate(:) = problem%rate / problem%mass
    end subroutine solve_impulses
 
    !> Weights: many times the mass that a point feels
@@ -173,52 +186,100 @@ contains
       end do
    end subroutine weigh
 
-   !> Velocities at the points, trial impulses, and what the points do, at some velocities of the bodies
+   !> Whether a point is of other bodies than the one before it: points of one pair lie together
+   pure function is_next_pair(problem, k) result(is_next)
+      type(impulse_problem), intent(in) :: problem
+      integer, intent(in) :: k                      !! point
+      logical :: is_next
+      is_next = k == 1
+      if (.not. is_next) is_next = any(problem%node(:, k) /= problem%node(:, k - 1))
+   end function is_next_pair
+
+   !> Velocities at the points, trial impulses and the points of the cones nearest to them, and what the points do, at
+   !> some velocities of the bodies
    pure subroutine look(problem, rate)
       type(impulse_problem), intent(inout) :: problem
       real(wp), intent(in) :: rate(:)
-      integer :: k, d, side, at
-      real(wp) :: w
+      real(wp) :: both(12)
+      integer :: k, n, side, at
+
+      n = problem%freedoms
       do k = 1, problem%points
-         do d = 1, problem%directions
-            w = problem%shift(d, k)
+         if (is_next_pair(problem, k)) then
+            both = 0.0_wp
             do side = 1, 2
-               if (problem%node(side, k) == 0) cycle
-               at = problem%freedoms * (problem%node(side, k) - 1)
-               w = w + dot_product(problem%row(:, side, d, k), rate(at + 1:at + problem%freedoms))
+               at = n * (problem%node(side, k) - 1)
+               if (at >= 0) both(n * (side - 1) + 1:n * side) = rate(at + 1:at + n)
             end do
-            problem%rate_at(d, k) = w
-            problem%trial(d, k) = problem%impulse(d, k) &
-               - problem%weight(k) * (w + merge(problem%raised(k), 0.0_wp, d == along_normal))
-         end do
-         problem%state(k) = state_of(problem%friction(k), problem%trial(:, k))
+         end if
+         if (problem%directions == in_plane) then
+            call look_at(problem, k, 6, 2, problem%row(:, :, :, k), both, problem%rate_at(:, k), problem%trial(:, k), &
+               problem%near(:, k))
+         else
+            call look_at(problem, k, 12, 3, problem%row(:, :, :, k), both, problem%rate_at(:, k), problem%trial(:, k), &
+               problem%near(:, k))
+         end if
       end do
    end subroutine look
+
+   !> The same of one point
+   pure subroutine look_at(problem, k, n, m, row, both, w, trial, near)
+      type(impulse_problem), intent(inout) :: problem
+      integer, intent(in) :: k                      !! point
+      integer, value :: n                           !! freedoms of both bodies: known where it is called, for speed
+      integer, value :: m                           !! directions
+      real(wp), intent(in) :: row(n, m)
+      real(wp), intent(in) :: both(n)               !! velocities of both bodies
+      real(wp), intent(out) :: w(m)
+      real(wp), intent(out) :: trial(m)
+      real(wp), intent(out) :: near(m)
+      integer :: d, i
+      do d = 1, m
+         w(d) = problem%shift(d, k)
+         do i = 1, n
+            w(d) = w(d) + row(i, d) * both(i)
+         end do
+         trial(d) = problem%impulse(d, k) - problem%weight(k) * w(d)
+      end do
+      trial(along_normal) = trial(along_normal) - problem%weight(k) * problem%raised(k)
+      call project(m, problem%friction(k), trial, problem%state(k), near)
+   end subroutine look_at
 
    !> Length of what a point slides by, or of the impulse that opposes it
    pure function length(along) result(l)
       real(wp), intent(in) :: along(:)              !! (1) in the plane, (2) in space
       real(wp) :: l
-      l = abs(along(1))
-      if (size(along) > 1) l = hypot(along(1), along(2))
+      if (size(along) > 1) then
+         l = sqrt(along(1)**2 + along(2)**2)        ! hypot guards against overflow, at several times the cost
+      else
+         l = abs(along(1))
+      end if
    end function length
 
-   !> Where a trial impulse lies: in the friction cone, in its polar cone, or beside
-   pure function state_of(friction, trial) result(state)
+   !> The point of the friction cone nearest to a trial impulse: itself where it lies in the cone, the apex where it
+   !> lies in the polar cone, else a point of the edge beside it
+   pure subroutine project(m, friction, trial, state, near)
+      integer, value :: m                           !! directions
       real(wp), intent(in) :: friction
-      real(wp), intent(in) :: trial(:)
-      integer :: state
-      real(wp) :: across
+      real(wp), intent(in) :: trial(m)
+      integer, intent(out) :: state
+      real(wp), intent(out) :: near(m)
+      real(wp) :: across, push
       across = length(trial(along_tangent:))
       if (trial(along_normal) >= 0.0_wp .and. across <= friction * trial(along_normal)) then
          state = sticks
+         near = trial
       else if (friction * across <= -trial(along_normal)) then
          state = parts
+         near = 0.0_wp
       else
          state = slides
-         if (size(trial) == in_plane .and. trial(along_tangent) < 0.0_wp) state = slides_back
+         if (m == in_plane .and. trial(along_tangent) < 0.0_wp) state = slides_back
+         push = (trial(along_normal) + friction * across) / (1.0_wp + friction**2)
+         near(along_normal) = push
+         near(along_tangent:) = (friction * push / across) * trial(along_tangent:)
       end if
-   end function state_of
+   end subroutine project
 
    !> c: by how much the parting velocity is raised where a point slides
    pure function raising(friction, sliding) result(c)
@@ -229,92 +290,19 @@ contains
       if (friction < no_sliding) c = friction * length(sliding)
    end function raising
 
-   !> The edge of the friction cone on which a point slides: unit vector of its impulse; and by what share the edge
-   !> turns as the trial impulse turns about the normal
-   pure subroutine edge_of(friction, trial, edge, turning)
-      real(wp), intent(in) :: friction
-      real(wp), intent(in) :: trial(:)
-      real(wp), intent(out) :: edge(in_space)       !! the last is 0 in the plane
-      real(wp), intent(out) :: turning              !! 0 to 1; of no account in the plane
-      real(wp) :: across, root
-      integer :: d
-      across = length(trial(along_tangent:))
-      root = sqrt(1.0_wp + friction**2)
-      edge(in_space) = 0.0_wp
-      edge(along_normal) = 1.0_wp / root
-      do d = along_tangent, size(trial)
-         edge(d) = friction * (trial(d) / across) / root
-      end do
-      turning = friction / (1.0_wp + friction**2) * (trial(along_normal) / across + friction)
-   end subroutine edge_of
-
-   !> The derivative of the projection on the cone at a trial impulse, applied to an impulse. Of the trial itself that
-   !> is the point of the cone nearest to it
-   pure function projected(friction, state, trial, impulse) result(near)
-      real(wp), intent(in) :: friction
-      integer, intent(in) :: state
-      real(wp), intent(in) :: trial(:)
-      real(wp), intent(in) :: impulse(in_space)     !! the last is 0 in the plane
-      real(wp) :: near(in_space)
-      real(wp) :: edge(in_space), turning, across(2)
-      select case (state)
-      case (sticks)
-         near = impulse
-      case (parts)
-         near = 0.0_wp
-      case default
-         call edge_of(friction, trial, edge, turning)
-         near = edge * dot_product(edge, impulse)
-         if (size(trial) == in_plane) return
-         across = across_of(trial)
-         near(2:3) = near(2:3) + turning * dot_product(across, impulse(2:3)) * across
-      end select
-   end function projected
-
-   !> In space: the direction of sliding at a right angle to a trial impulse
-   pure function across_of(trial) result(across)
-      real(wp), intent(in) :: trial(:)
-      real(wp) :: across(2)
-      across = [-trial(3), trial(2)] / length(trial(along_tangent:))
-   end function across_of
-
-   !> The function that is least at the velocities sought, at velocities that have been looked at
-   pure function energy(problem, rate) result(total)
-      type(impulse_problem), intent(in) :: problem
-      real(wp), intent(in) :: rate(:)
-      real(wp) :: total
-      integer :: k
-      total = sum(problem%mass * (rate - problem%free)**2)
-      do k = 1, problem%points
-         total = total + sum(nearest_point(problem, k)**2) / problem%weight(k)
-      end do
-      total = 0.5_wp * total
-   end function energy
-
-   !> The point of the friction cone nearest to a trial impulse
-   pure function nearest_point(problem, k) result(near)
-      type(impulse_problem), intent(in) :: problem
-      integer, intent(in) :: k                      !! point
-      real(wp) :: near(in_space)
-      real(wp) :: trial(in_space)
-      trial(in_space) = 0.0_wp
-      trial(:problem%directions) = problem%trial(:, k)
-      near = projected(problem%friction(k), problem%state(k), problem%trial(:, k), trial)
-   end function nearest_point
-
-   !> Newton's method for the velocities at which that function is least
+   !> Newton's method for the velocities at which that function is least. What it lacks of its slope of nought are the
+   !> impulses that are missing
    pure subroutine least_energy(problem, tolerance, effort)
       type(impulse_problem), intent(inout) :: problem
       real(wp), intent(in) :: tolerance             !! [m/s]
       type(impulse_effort), intent(inout) :: effort
-      integer :: n, round, halving
-      real(wp) :: present, next, off
-      logical :: whole, still, same
+      integer :: n, round
+      logical :: whole
       integer(c_int) :: status
 
       n = problem%points
       call look(problem, problem%rate)
-      present = energy(problem, problem%rate)
+      call find_missing(problem, problem%rate)
       do round = 1, most_newton
          if (.not. unchanged(problem)) then
             call assemble(problem)
@@ -323,43 +311,60 @@ contains
             effort%factors = effort%factors + 1
             if (status /= status_ok) return          ! not finite: the caller sees velocities that are not
          end if
-         call right_side(problem)
-         problem%try(:) = problem%load
-         call skyline_solve(problem%matrix, problem%try)
-         do halving = 0, most_halvings
-            call look(problem, problem%try)
-            next = energy(problem, problem%try)
-            if (.not. next > present + 1.0e-12_wp * abs(present)) exit
-            problem%try(:) = 0.5_wp * (problem%try + problem%rate)
-         end do
-         whole = halving == 0
-         ! Points on the verge of sliding may change sides for ever and move nothing.
-         still = whole .and. maxval(abs(problem%try - problem%rate)) < 0.01_wp * tolerance
-         problem%rate(:) = problem%try
-         present = next
-         same = whole
-         if (same) same = unchanged(problem)
-         if (still .or. same) return
-         ! On a round cone: has what slides turned no farther than the matrix knew?
-         if (whole .and. problem%directions == in_space) then
-            call missing(problem, off)
-            if (off < 0.01_wp * tolerance) return
-         end if
+         problem%load(:) = problem%missing
+         call skyline_solve(problem%matrix, problem%load)
+         call go_along(problem, whole)
+         if (.not. whole) cycle
+         if (unchanged(problem)) return
+         ! Points on the verge of sliding may change sides for ever and move nothing. And no velocity is farther off
+         ! than by the impulses that are missing: what slides on a round cone has turned little.
+         if (maxval(abs(problem%load)) < close * tolerance) return
+         if (maxval(abs(problem%missing / problem%mass)) < close * tolerance) return
       end do
    end subroutine least_energy
 
-   !> The impulses that are missing at velocities that have been looked at, as the greatest change of a velocity by
-   !> them; the minimum is no farther
-   pure subroutine missing(problem, greatest)
+   !> From the velocities along the step of Newton's method to where the function rises no more; it is convex
+   pure subroutine go_along(problem, whole)
       type(impulse_problem), intent(inout) :: problem
-      real(wp), intent(out) :: greatest             !! [m/s]
-      integer :: k
-      problem%load(:) = problem%mass * (problem%free - problem%rate)
-      do k = 1, problem%points
-         if (problem%state(k) /= parts) call add_impulse(problem, k, nearest_point(problem, k), problem%load)
-      end do
-      greatest = maxval(abs(problem%load / problem%mass))
-   end subroutine missing
+      logical, intent(out) :: whole                 !! to the end of the step
+      real(wp), parameter :: flat = 0.1_wp          !! of the slope at the start
+      real(wp) :: slope, slope_low, slope_high, low, high, t
+      integer :: tries
+
+      low = 0.0_wp
+      high = 1.0_wp
+      t = 1.0_wp
+      slope_low = -dot_product(problem%missing, problem%load)
+      slope_high = 0.0_wp
+      associate (enough => -flat * slope_low)
+         do tries = 0, most_tries
+            problem%try(:) = problem%rate + t * problem%load
+            call look(problem, problem%try)
+            call find_missing(problem, problem%try)
+            slope = -dot_product(problem%missing, problem%load)
+            whole = tries == 0
+            if (.not. slope > enough .and. (whole .or. slope > -enough)) exit
+            if (slope > 0.0_wp) then
+               high = t
+               slope_high = slope
+            else
+               low = t
+               slope_low = slope
+            end if
+            ! Where the slope would be nought if it changed evenly, but not all too near to an end
+            t = slope_high / (slope_high - slope_low)
+            t = high - min(0.9_wp, max(0.1_wp, t)) * (high - low)
+         end do
+      end associate
+      problem%rate(:) = problem%try
+   end subroutine go_along
+
+   !> The impulses that are missing at velocities that have been looked at: minus the slope of the function
+   pure subroutine find_missing(problem, rate)
+      type(impulse_problem), intent(inout) :: problem
+      real(wp), intent(in) :: rate(:)
+      call give_impulses(problem, problem%mass * (problem%free - rate), problem%missing)
+   end subroutine find_missing
 
    !> Whether the matrix is that of what the points do now: where one slides on a round cone it changes all the time
    pure function unchanged(problem) result(same)
@@ -374,105 +379,164 @@ contains
    !> M + sum of r row row' over the directions in which points resist
    pure subroutine assemble(problem)
       type(impulse_problem), intent(inout) :: problem
-      integer :: i, k, d, n
-      real(wp) :: edge(in_space), across(2), row(6, 2), turning
-      n = problem%freedoms
+      integer :: i, k, first, n
       problem%matrix%a(:) = 0.0_wp
       do i = 1, problem%matrix%n
          problem%matrix%a(problem%matrix%start(i) + i) = problem%mass(i)
       end do
+      n = 2 * problem%freedoms
+      first = 1
       do k = 1, problem%points
-         select case (problem%state(k))
-         case (sticks)
-            do d = 1, problem%directions
-               call add_row(problem, k, problem%weight(k), problem%row(:, :, d, k))
-            end do
-         case (slides, slides_back)
-            call edge_of(problem%friction(k), problem%trial(:, k), edge, turning)
-            row(:n, :) = edge(1) * problem%row(:, :, 1, k)
-            do d = along_tangent, problem%directions
-               row(:n, :) = row(:n, :) + edge(d) * problem%row(:, :, d, k)
-            end do
-            call add_row(problem, k, problem%weight(k), row(:n, :))
-            if (problem%directions == in_plane) cycle
-            across = across_of(problem%trial(:, k))
-            row(:n, :) = across(1) * problem%row(:, :, 2, k) + across(2) * problem%row(:, :, 3, k)
-            call add_row(problem, k, turning * problem%weight(k), row(:n, :))
-         case default
-            cycle
-         end select
+         if (k < problem%points) then
+            if (.not. is_next_pair(problem, k + 1)) cycle
+         end if
+         call assemble_pair(problem, first, k, n, problem%block(:n * n, first))
+         call skyline_add(problem%matrix, problem%node(:, k), problem%block(:n * n, first))
+         first = k + 1
       end do
    end subroutine assemble
 
-   pure subroutine add_row(problem, k, weight, row)
-      type(impulse_problem), intent(inout) :: problem
-      integer, intent(in) :: k                      !! point
-      real(wp), intent(in) :: weight
-      real(wp), intent(in) :: row(:, :)             !! (freedoms, 2) of both bodies
-      associate (node => problem%node(:, k))
-         if (node(1) > 0) call skyline_add(problem%matrix, node(1), node(1), weight, row(:, 1), row(:, 1))
-         if (node(2) > 0) call skyline_add(problem%matrix, node(2), node(2), weight, row(:, 2), row(:, 2))
-         if (all(node > 0)) call skyline_add(problem%matrix, node(1), node(2), weight, row(:, 1), row(:, 2))
-      end associate
-   end subroutine add_row
-
-   !> M f + what the points give at rest
-   pure subroutine right_side(problem)
-      type(impulse_problem), intent(inout) :: problem
-      integer :: k
-      real(wp) :: rest(in_space)
-      rest(in_space) = 0.0_wp
-      problem%load(:) = problem%mass * problem%free
-      do k = 1, problem%points
-         if (problem%state(k) == parts) cycle
-         rest(:problem%directions) = problem%shift(:, k)
-         rest(along_normal) = rest(along_normal) + problem%raised(k)
-         rest(:problem%directions) = problem%impulse(:, k) - problem%weight(k) * rest(:problem%directions)
-         call add_impulse(problem, k, projected(problem%friction(k), problem%state(k), problem%trial(:, k), rest), &
-            problem%load)
-      end do
-   end subroutine right_side
-
-   !> Add an impulse at a point to the momentum of both bodies
-   pure subroutine add_impulse(problem, k, impulse, momentum)
+   !> What the points of a pair resist with, unless it is what they did when last it was asked for
+   pure subroutine assemble_pair(problem, first, last, n, block)
       type(impulse_problem), intent(in) :: problem
-      integer, intent(in) :: k
-      real(wp), intent(in) :: impulse(in_space)     !! the last is 0 in the plane [N s]
-      real(wp), intent(inout) :: momentum(:)
-      integer :: side, at, d, i
-      real(wp) :: given
-      do side = 1, 2
-         if (problem%node(side, k) == 0) cycle
-         at = problem%freedoms * (problem%node(side, k) - 1)
-         do i = 1, problem%freedoms
-            given = momentum(at + i)
-            do d = 1, problem%directions
-               given = given + impulse(d) * problem%row(i, side, d, k)
+      integer, intent(in) :: first
+      integer, intent(in) :: last
+      integer, intent(in) :: n                      !! freedoms of both bodies
+      real(wp), intent(inout) :: block(n, n)
+      integer :: k
+      logical :: same
+      same = .true.
+      do k = first, last
+         same = same .and. problem%state(k) == problem%was(k)
+         if (problem%directions == in_space) same = same .and. problem%state(k) /= slides
+      end do
+      if (same) return
+      block = 0.0_wp
+      do k = first, last
+         if (problem%state(k) == parts) cycle
+         if (problem%directions == in_plane) then
+            call resist(6, 2, problem%state(k), problem%friction(k), problem%weight(k), problem%trial(:, k), &
+               problem%row(:, :, :, k), block)
+         else
+            call resist(12, 3, problem%state(k), problem%friction(k), problem%weight(k), problem%trial(:, k), &
+               problem%row(:, :, :, k), block)
+         end if
+      end do
+   end subroutine assemble_pair
+
+   !> Add to a block what a point resists with, in velocities of both bodies
+   pure subroutine resist(n, m, state, friction, weight, trial, row, block)
+      integer, value :: n                           !! freedoms of both
+      integer, value :: m                           !! directions
+      integer, intent(in) :: state
+      real(wp), intent(in) :: friction
+      real(wp), intent(in) :: weight
+      real(wp), intent(in) :: trial(m)
+      real(wp), intent(in) :: row(n, m)
+      real(wp), intent(inout) :: block(n, n)
+      real(wp) :: edge(m), way(n, 2), turning, root, across
+      if (state == sticks) then
+         if (m == in_plane) then
+            call add_outer(n, 2, [weight, weight], row, block)
+         else
+            call add_outer(n, 3, [weight, weight, weight], row, block)
+         end if
+         return
+      end if
+      ! On the edge of the cone; and as far as the edge turns with the trial impulse, at a right angle to it
+      across = length(trial(along_tangent:))
+      root = sqrt(1.0_wp + friction**2)
+      edge(along_normal) = 1.0_wp / root
+      edge(along_tangent:) = (friction / (root * across)) * trial(along_tangent:)
+      way(:, 1) = edge(1) * row(:, 1) + edge(2) * row(:, 2)
+      if (m == in_plane) then
+         call add_outer(n, 1, [weight], way, block)
+      else
+         turning = friction / (1.0_wp + friction**2) * (trial(along_normal) / across + friction)
+         way(:, 1) = way(:, 1) + edge(m) * row(:, m)
+         way(:, 2) = (trial(2) * row(:, m) - trial(m) * row(:, 2)) / across
+         call add_outer(n, 2, [weight, turning * weight], way, block)
+      end if
+   end subroutine resist
+
+   !> Add the sum of weight * row * row' to a block
+   pure subroutine add_outer(n, m, weight, row, block)
+      integer, value :: n
+      integer, value :: m
+      real(wp), intent(in) :: weight(m)
+      real(wp), intent(in) :: row(n, m)
+      real(wp), intent(inout) :: block(n, n)
+      integer :: i, j, d
+      real(wp) :: factor(m), total
+      do j = 1, n
+         factor = weight * row(j, :)
+         do i = 1, n
+            total = block(i, j)
+            do d = 1, m
+               total = total + factor(d) * row(i, d)
             end do
-            momentum(at + i) = given
+            block(i, j) = total
          end do
       end do
-   end subroutine add_impulse
+   end subroutine add_outer
+
+   !> Momenta with the impulses that were found at the points [N s]
+   pure subroutine give_impulses(problem, before, momentum)
+      type(impulse_problem), intent(in) :: problem
+      real(wp), intent(in) :: before(:)
+      real(wp), intent(out) :: momentum(:)
+      real(wp) :: both(12)
+      integer :: k, n, side, at
+      n = problem%freedoms
+      momentum(:) = before
+      both = 0.0_wp
+      do k = 1, problem%points
+         if (problem%directions == in_plane) then
+            call add_momentum(6, 2, problem%row(:, :, :, k), problem%near(:, k), both)
+         else
+            call add_momentum(12, 3, problem%row(:, :, :, k), problem%near(:, k), both)
+         end if
+         if (k < problem%points) then
+            if (.not. is_next_pair(problem, k + 1)) cycle
+         end if
+         do side = 1, 2
+            at = n * (problem%node(side, k) - 1)
+            if (at >= 0) momentum(at + 1:at + n) = momentum(at + 1:at + n) + both(n * (side - 1) + 1:n * side)
+         end do
+         both = 0.0_wp
+      end do
+   end subroutine give_impulses
+
+   !> Momenta of both bodies by an impulse at a point
+   pure subroutine add_momentum(n, m, row, impulse, both)
+      integer, value :: n
+      integer, value :: m
+      real(wp), intent(in) :: row(n, m)
+      real(wp), intent(in) :: impulse(m)
+      real(wp), intent(inout) :: both(n)
+      integer :: d
+      do d = 1, m
+         both = both + impulse(d) * row(:, d)
+      end do
+   end subroutine add_momentum
 
    !> New impulses from the trial ones, and by how much the law was violated
    pure subroutine take_impulses(problem, residual)
       type(impulse_problem), intent(inout) :: problem
       real(wp), intent(out) :: residual             !! [m/s]
-      real(wp) :: impulse(in_space), raised
-      integer :: k, n
-      n = problem%directions
+      real(wp) :: raised
+      integer :: k
       residual = 0.0_wp
       do k = 1, problem%points
-         impulse = nearest_point(problem, k)
          raised = raising(problem%friction(k), problem%rate_at(along_tangent:, k))
-         residual = max(residual, maxval(abs(impulse(:n) - problem%impulse(:, k))) / problem%weight(k))
+         residual = max(residual, maxval(abs(problem%near(:, k) - problem%impulse(:, k))) / problem%weight(k))
          if (problem%state(k) > sticks) residual = max(residual, abs(raised - problem%raised(k)))
-         problem%impulse(:, k) = impulse(:n)
+         problem%impulse(:, k) = problem%near(:, k)
          problem%asked(k, now) = raised
       end do
    end subroutine take_impulses
 
-   !> c for the next round: as was found, and where that comes no nearer for long in space, as it would come to rest if
+   !> c for the next round: as was found, and where that comes no nearer in space, as it would come to rest if
    !> every change were that share of the one before it that the last two show (Anderson 1965, of one round). In the
    !> plane, where what slides cannot turn, more steps converge so, but the others miss by more
    pure subroutine follow(problem, rounds)
@@ -482,7 +546,7 @@ contains
       real(wp) :: back, square, share
       logical :: far
       integer :: k
-      far = problem%directions == in_space .and. rounds > patience * most_growth + 1
+      far = problem%directions == in_space .and. rounds > creeping
       back = 0.0_wp
       square = 0.0_wp
       do k = 1, problem%points
@@ -501,19 +565,5 @@ contains
       problem%asked(:problem%points, before) = problem%asked(:problem%points, now)
       problem%change(:problem%points, before) = problem%change(:problem%points, now)
    end subroutine follow
-
-   !> Velocities that follow from the impulses
-   pure subroutine velocities(problem)
-      type(impulse_problem), intent(inout) :: problem
-      real(wp) :: impulse(in_space)
-      integer :: k
-      impulse(in_space) = 0.0_wp
-      problem%rate(:) = problem%mass * problem%free
-      do k = 1, problem%points
-         impulse(:problem%directions) = problem%impulse(:, k)
-         call add_impulse(problem, k, impulse, problem%rate)
-      end do
-      problem%rate(:) = problem%rate / problem%mass
-   end subroutine velocities
 
 end module nonsmooth_impulses

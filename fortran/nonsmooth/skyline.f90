@@ -151,33 +151,35 @@ contains
 
    end subroutine order
 
-   !> Add factor * one * other' to the block of two bodies, and its transpose where they differ
-   pure subroutine skyline_add(matrix, first_rank, second_rank, factor, one, other)
+   !> Add a symmetric matrix of the freedoms of two bodies, of which one may be prescribed
+   pure subroutine skyline_add(matrix, rank, block)
       type(skyline), intent(inout) :: matrix
-      integer, intent(in) :: first_rank
-      integer, intent(in) :: second_rank
-      real(wp), intent(in) :: factor
-      real(wp), intent(in) :: one(:)             !! (freedoms) of the first body
-      real(wp), intent(in) :: other(:)           !! (freedoms) of the second
-      integer :: i, j, row, column, freedoms
-      freedoms = matrix%freedoms
-      if (first_rank < second_rank) then
-         do i = 1, freedoms
-            row = freedoms * (second_rank - 1) + i
-            column = matrix%start(row) + freedoms * (first_rank - 1)
-            do j = 1, freedoms
-               matrix%a(column + j) = matrix%a(column + j) + factor * other(i) * one(j)
+      integer, intent(in) :: rank(2)             !! of the bodies, 0 where one is prescribed
+      real(wp), intent(in) :: block(2 * matrix%freedoms, 2 * matrix%freedoms)
+      integer :: i, j, side, row, column, at, beside, n
+      n = matrix%freedoms
+      do side = 1, 2
+         if (rank(side) == 0) cycle
+         at = n * (side - 1)
+         do i = 1, n
+            row = n * (rank(side) - 1) + i
+            column = matrix%start(row) + n * (rank(side) - 1)
+            do j = 1, i
+               matrix%a(column + j) = matrix%a(column + j) + block(at + j, at + i)
             end do
          end do
-      else
-         do i = 1, freedoms
-            row = freedoms * (first_rank - 1) + i
-            column = matrix%start(row) + freedoms * (second_rank - 1)
-            do j = 1, merge(i, freedoms, first_rank == second_rank)
-               matrix%a(column + j) = matrix%a(column + j) + factor * one(i) * other(j)
-            end do
+      end do
+      if (any(rank == 0)) return
+      side = maxloc(rank, dim=1)                 ! whose rows hold what couples them
+      at = n * (side - 1)
+      beside = n - at
+      do i = 1, n
+         row = n * (rank(side) - 1) + i
+         column = matrix%start(row) + n * (minval(rank) - 1)
+         do j = 1, n
+            matrix%a(column + j) = matrix%a(column + j) + block(beside + j, at + i)
          end do
-      end if
+      end do
    end subroutine skyline_add
 
    !> Cholesky factors in place of the matrix; singular where it is not positive definite
