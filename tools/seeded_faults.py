@@ -40,17 +40,20 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
     ),
     "fortran/mechanism": (
         ("test_mechanism",),
-        ("unit/test_mechanism.py", "unit/test_impact.py", "verification/test_vault_rocking.py"),
+        ("unit/test_mechanism.py", "unit/test_impact.py", "unit/test_restraints.py", "verification/test_vault_rocking.py"),
         "arch/ or vault/",
     ),
     "fortran/rocking": (
         ("test_rocking",),
-        ("unit/test_block.py", "verification/test_rocking_reference.py", "unit/test_statistics.py", "unit/test_fragility.py"),
+        ("unit/test_block.py", "unit/test_soft_base.py", "unit/test_stack.py", "unit/test_restraints.py",
+         "verification/test_rocking_reference.py", "unit/test_statistics.py", "unit/test_fragility.py"),
         "rocking/ or arch/",
     ),
     "fortran/motion": (("test_motion",), ("unit/test_motion_core.py", "unit/test_generated.py"), "motion/"),
     "fortran/dem": (
-        ("test_dem",), ("unit/test_dem_core.py", "unit/test_dem_rules.py", "unit/test_dem_analysis.py"), "dem/",
+        ("test_dem",),
+        ("unit/test_dem_core.py", "unit/test_dem_rules.py", "unit/test_dem_nonsmooth.py", "unit/test_dem_analysis.py"),
+        "dem/",
     ),
     "fortran/dem3": ((), ("unit/test_dem3_core.py", "unit/test_dem3_nonsmooth.py", "unit/test_dem_solids.py"), "solid/dem"),
     "fortran/nonsmooth": ((), ("unit/test_dem_nonsmooth.py", "unit/test_dem3_nonsmooth.py"), "solid/dem-nonsmooth"),

@@ -297,6 +297,7 @@ def test_bars_that_cross_rest_on_each_other_by_their_edges() -> None:
     model = replace(model, mass=np.array([model.mass[0], 0.0]))
     run = dem3.run(model, Options(end_time=0.05, output_step=0.01), rate=np.zeros((2, 6)))
     assert abs(run.place[-1, 0, 2] - 0.2) < 1e-3  # in free fall it would be 12 mm lower
+    assert run.turn[-1, 0] == pytest.approx(run.turn[0, 0], abs=1e-6)  # they touch under its centroid
     apart = replace(
         model,
         centroid=model.centroid + np.array([[0, 0, 0.05], [0, 0, 0]]),
@@ -304,6 +305,39 @@ def test_bars_that_cross_rest_on_each_other_by_their_edges() -> None:
     )
     free = dem3.run(apart, Options(end_time=0.05, output_step=0.01), rate=np.zeros((2, 6)))
     assert free.place[-1, 0, 2] - free.place[0, 0, 2] == pytest.approx(-0.5 * GRAVITY * free.time[-1] ** 2, rel=1e-3)
+
+
+def test_the_critical_step_knows_which_neighbour_moves() -> None:
+    """Between two equal blocks a spring is felt twice: the step is smaller by the root of two."""
+    cubes, law = [box((0, 0, k), (1, 1, k + 1)) for k in range(2)], Law(1e9, 1e9, 0.5)
+    floating = Options(end_time=1e-3, fraction=0.1, gravity=(0, 0, 0))
+    fixed = solids(cubes, law, floor=False)
+    fixed = replace(fixed, mass=np.array([0.0, fixed.mass[1]]))
+    steps = [dem3.run(m, floating, rate=np.zeros((2, 6))).step for m in (fixed, solids(cubes, law, floor=False))]
+    assert steps[0] / steps[1] == pytest.approx(np.sqrt(2.0), rel=5e-3)
+
+
+def test_dashpots_between_blocks_that_both_move() -> None:
+    """Two cubes meet with half of critical damping at a large step: each feels what one feels that meets a support with
+    twice the stiffness and half of beta, at the same place of the step."""
+    stiffness, apart, speed, step = 1e9, 1e-4, 0.1, 2e-4
+    mass = DENSITY
+    beta = 2.0 * 0.5 * np.sqrt(0.5 * mass / stiffness)  # of the reduced mass m / 2
+    given = Options(end_time=0.02, output_step=0.001, step=step, gravity=(0, 0, 0), residual_limit=1e9)
+    cubes = [box((0, 0, 0), (1, 1, 1)), box((0, 0, 1 + apart), (1, 1, 2 + apart))]
+    both = dem3.run(
+        solids(cubes, Law(stiffness, stiffness, 0.0, beta), floor=False), given,
+        rate=np.array([[0, 0, speed, 0, 0, 0], [0, 0, -speed, 0, 0, 0]]),
+    )  # fmt: skip
+    wall = solids(
+        [cubes[0], box((0, 0, 1 + 0.5 * apart), (1, 1, 2))], Law(2 * stiffness, 2 * stiffness, 0.0, beta), floor=False
+    )
+    one = dem3.run(
+        replace(wall, mass=np.array([mass, 0.0])), given, rate=np.array([[0, 0, speed, 0, 0, 0], [0, 0, 0, 0, 0, 0]])
+    )
+    assert both.rate[-1, 0, 2] == pytest.approx(-both.rate[-1, 1, 2], rel=1e-9)
+    assert -speed < one.rate[-1, 0, 2] < -0.05 * speed
+    assert both.rate[-1, 0, 2] == pytest.approx(one.rate[-1, 0, 2], rel=1e-6)
 
 
 def test_wrong_models_are_refused() -> None:
