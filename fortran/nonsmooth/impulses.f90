@@ -212,38 +212,43 @@ contains
                if (at >= 0) both(n * (side - 1) + 1:n * side) = rate(at + 1:at + n)
             end do
          end if
-         if (problem%directions == in_plane) then
-            call look_at(problem, k, 6, 2, problem%row(:, :, :, k), both, problem%rate_at(:, k), problem%trial(:, k), &
-               problem%near(:, k))
-         else
-            call look_at(problem, k, 12, 3, problem%row(:, :, :, k), both, problem%rate_at(:, k), problem%trial(:, k), &
-               problem%near(:, k))
-         end if
+         associate (row => problem%row(:, :, :, k), shift => problem%shift(:, k), w => problem%rate_at(:, k), &
+                    weight => problem%weight(k), raised => problem%raised(k), impulse => problem%impulse(:, k), &
+                    trial => problem%trial(:, k), near => problem%near(:, k), friction => problem%friction(k))
+            ! The numbers say what the compiler may count on.
+            if (problem%directions == in_plane) then
+               call try_impulse(6, 2, row, both, shift, weight, raised, impulse, w, trial)
+               call project(2, friction, trial, problem%state(k), near)
+            else
+               call try_impulse(12, 3, row, both, shift, weight, raised, impulse, w, trial)
+               call project(3, friction, trial, problem%state(k), near)
+            end if
+         end associate
       end do
    end subroutine look
 
-   !> The same of one point
-   pure subroutine look_at(problem, k, n, m, row, both, w, trial, near)
-      type(impulse_problem), intent(inout) :: problem
-      integer, intent(in) :: k                      !! point
-      integer, value :: n                           !! freedoms of both bodies: known where it is called, for speed
+   !> Velocities at a point, and its trial impulse
+   pure subroutine try_impulse(n, m, row, both, shift, weight, raised, impulse, w, trial)
+      integer, value :: n                           !! freedoms of both bodies
       integer, value :: m                           !! directions
       real(wp), intent(in) :: row(n, m)
       real(wp), intent(in) :: both(n)               !! velocities of both bodies
+      real(wp), intent(in) :: shift(m)
+      real(wp), intent(in) :: weight
+      real(wp), intent(in) :: raised
+      real(wp), intent(in) :: impulse(m)
       real(wp), intent(out) :: w(m)
       real(wp), intent(out) :: trial(m)
-      real(wp), intent(out) :: near(m)
       integer :: d, i
       do d = 1, m
-         w(d) = problem%shift(d, k)
+         w(d) = shift(d)
          do i = 1, n
             w(d) = w(d) + row(i, d) * both(i)
          end do
-         trial(d) = problem%impulse(d, k) - problem%weight(k) * w(d)
+         trial(d) = impulse(d) - weight * w(d)
       end do
-      trial(along_normal) = trial(along_normal) - problem%weight(k) * problem%raised(k)
-      call project(m, problem%friction(k), trial, problem%state(k), near)
-   end subroutine look_at
+      trial(along_normal) = trial(along_normal) - weight * raised
+   end subroutine try_impulse
 
    !> Length of what a point slides by, or of the impulse that opposes it
    pure function length(along) result(l)
