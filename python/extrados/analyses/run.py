@@ -11,6 +11,7 @@ from extrados.analyses.needs import complaints
 from extrados.analyses.table import Analysis
 from extrados.building.building import Building
 from extrados.building.errors import WHOLE, BadGeometry
+from extrados.core import room
 from extrados.core.errors import Cancelled, CoreError
 from extrados.decks.reader import Deck
 from extrados.limit.errors import Immovable, NoAnswer
@@ -77,8 +78,8 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
     except (CoreError, NoAnswer, StoreError) as error:
         result = Result(options.kind, "failed", str(error))
     except Exception as error:
-        if isinstance(error, ImportError) and "failed to map" in str(error):  # a library that is loaded when needed
-            result = Result(options.kind, "failed", f"not enough memory: {error}")
+        if room.is_short() or (isinstance(error, ImportError) and "failed to map" in str(error)):
+            result = Result(options.kind, "failed", f"not enough memory: {type(error).__name__}: {error}")
         elif len(interrupts.asked) > signals:  # a library that was interrupted while it is loaded says what it likes
             result = Result(options.kind, "interrupted", "interrupted before it had a result")
         else:  # a fault of ours: the other analyses of the deck still count

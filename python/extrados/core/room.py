@@ -8,16 +8,23 @@ from collections.abc import Sequence
 from importlib.abc import MetaPathFinder
 from types import ModuleType
 
-#: Addresses that a thread takes, buffer and stack; and what the libraries themselves do [bytes]
-_THREAD, _LIBRARIES = 40 << 20, 128 << 20
+#: Packages of SciPy with modules that are linked with it
+_USERS = {
+    f"scipy.{name}" for name in ("integrate", "interpolate", "linalg", "odr", "optimize", "sparse.linalg", "special")
+}
+#: Addresses that a thread takes, buffer and stack; what the libraries themselves do; less than this is short [bytes]
+_THREAD, _LIBRARIES, _SHORT = 40 << 20, 128 << 20, 16 << 20
 
 
 class _Room(MetaPathFinder):
-    """Finds nothing; looks whether there is room before others find SciPy's linear algebra."""
+    """Finds nothing; looks whether there is room before others find what loads it the first time."""
 
     def find_spec(self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None) -> None:
-        if fullname == "scipy.linalg":
-            see_room(_LIBRARIES + _THREAD * _threads())
+        if fullname in _USERS:
+            size = _LIBRARIES + _THREAD * _threads()
+            if not _has(size):
+                raise MemoryError(f"not enough memory: SciPy's linear algebra takes {size >> 20} MB of addresses")
+            sys.meta_path.remove(self)
 
 
 def _threads() -> int:
@@ -27,12 +34,19 @@ def _threads() -> int:
     return min(cores, int(asked)) if asked.isascii() and asked.isdigit() and int(asked) else cores
 
 
-def see_room(size: int) -> None:
-    """MemoryError where the system has not so many bytes of addresses left; they are not taken."""
+def _has(size: int) -> bool:
+    """Whether the system has so many bytes of addresses left; they are not taken."""
     try:
         mmap.mmap(-1, size, mmap.MAP_PRIVATE, 0).close()
-    except (OSError, ValueError):
-        raise MemoryError(f"not enough memory: SciPy's linear algebra takes {size >> 20} MB of addresses") from None
+    except (OSError, ValueError, MemoryError):
+        return False
+    return True
+
+
+def is_short() -> bool:
+    """Whether memory is so short that whatever else failed will have failed for it: Python and its libraries then raise
+    SystemError, OSError, ImportError and others."""
+    return not _has(_SHORT)
 
 
 sys.meta_path.insert(0, _Room())
