@@ -7,6 +7,8 @@ import importlib
 from dataclasses import dataclass
 from typing import Any
 
+from extrados import room
+
 
 @dataclass(frozen=True)
 class AnalysisKind:
@@ -119,9 +121,14 @@ TABLES: dict[str, dict[str, str]] = {
 
 
 def load(place: str) -> Any:
-    """What stands at "module:name" within the package."""
+    """What stands at "module:name" within the package; MemoryError where there is no room to load it."""
     module, name = place.split(":")
-    return getattr(importlib.import_module(f"extrados.{module}"), name)
+    try:
+        return getattr(importlib.import_module(f"extrados.{module}"), name)
+    except Exception as error:
+        if room.is_short():  # imports then raise SystemError, OSError and ImportError too
+            raise MemoryError(f"not enough memory: {type(error).__name__}: {error}") from None
+        raise
 
 
 def table(section: str, kind: str) -> Any:

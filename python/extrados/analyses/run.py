@@ -2,7 +2,7 @@
 
 import time
 
-from extrados import interrupts, kinds
+from extrados import interrupts, kinds, room
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import concluded, faulty
 from extrados.analyses.context import Context, Refused
@@ -11,7 +11,6 @@ from extrados.analyses.needs import complaints
 from extrados.analyses.table import Analysis
 from extrados.building.building import Building
 from extrados.building.errors import WHOLE, BadGeometry
-from extrados.core import room
 from extrados.core.errors import Cancelled, CoreError
 from extrados.decks.reader import Deck
 from extrados.limit.errors import Immovable, NoAnswer

@@ -11,7 +11,6 @@ import numpy as np
 import numpy.typing as npt
 
 from extrados import _core, interrupts
-from extrados.core import room  # noqa: F401  for what it sees to
 from extrados.core.errors import check
 
 check(_core.api_support.init_libraries(), "loading the core")
