@@ -15,8 +15,9 @@ PACKAGE = ROOT / "python" / "extrados"
 #: room -> rooms it may import; a room may always import itself. "" is the package's own top level.
 MAY_IMPORT = {
     "schema": set(),
-    "kinds": set(),
+    "kinds": {"room"},
     "interrupts": set(),
+    "room": set(),
     "_build_info": set(),  # made by the build; it lies among the sources where a tool builds apart
     "core": {"_core", "interrupts", "schema"},
     "geometry": {"errors", "schema"},
@@ -30,7 +31,7 @@ MAY_IMPORT = {
     "results": {"kinds", "schema", "_build_info"},
     "analyses": {
         "kinds", "tables", "decks", "building", "geometry", "errors", "rockers", "motions", "limit", "core", "results",
-        "schema", "interrupts",
+        "schema", "interrupts", "room",
     },
     "plots": {"kinds", "results", "schema"},
     "running": {"objects", "kinds", "analyses", "tables", "building", "geometry", "errors", "decks", "motions", "results", "plots", "schema", "_build_info"},
