@@ -19,12 +19,14 @@ _THREAD, _LIBRARIES, _SHORT = 40 << 20, 128 << 20, 16 << 20
 class _Room(MetaPathFinder):
     """Finds nothing; looks whether there is room before others find what loads it the first time."""
 
+    seen = False
+
     def find_spec(self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None) -> None:
-        if fullname in _USERS:
+        if fullname in _USERS and not self.seen:
             size = _LIBRARIES + _THREAD * _threads()
             if not _has(size):
                 raise MemoryError(f"not enough memory: SciPy's linear algebra takes {size >> 20} MB of addresses")
-            sys.meta_path.remove(self)
+            self.seen = True  # it stays in the list, which is being walked through
 
 
 def _threads() -> int:

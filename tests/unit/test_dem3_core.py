@@ -319,7 +319,7 @@ def test_the_critical_step_knows_which_neighbour_moves() -> None:
 
 def test_dashpots_between_blocks_that_both_move() -> None:
     """Two cubes meet with half of critical damping at a large step: each feels what one feels that meets a support with
-    twice the stiffness and half of beta, at the same place of the step."""
+    twice the stiffness and the same beta."""
     stiffness, apart, speed, step = 1e9, 1e-4, 0.1, 2e-4
     mass = DENSITY
     beta = 2.0 * 0.5 * np.sqrt(0.5 * mass / stiffness)  # of the reduced mass m / 2
