@@ -152,7 +152,7 @@ def one(name: str, case: Case) -> None:
             flush=True,
         )
         if ahead:
-            aheads[f"{solver} at {run.step:.0e} s"] = ahead
+            aheads[f"{solver} at {run.step:.2g} s"] = ahead
     if not has("mujoco"):
         print("  MuJoCo    not installed")
         return

@@ -5,6 +5,8 @@ import signal
 import subprocess
 import sys
 
+import pytest
+
 import trials
 from extrados import kinds
 
@@ -30,6 +32,7 @@ print(json.dumps(told))
 """
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="the size of a process is read from /proc")
 def test_memory_that_is_lowered_after_the_start() -> None:
     """Every size from none to plenty: OpenBLAS would wait for ever, or crash, where its buffer finds no room, and OpenMP
     would end the process where a thread finds none. SciPy's OpenBLAS is loaded amid the run (by dem and many others)."""
