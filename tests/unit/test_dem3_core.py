@@ -288,14 +288,17 @@ def test_a_wobbling_cylinder_keeps_its_energy_and_its_swing_about_the_vertical()
     assert np.ptp(np.unwrap(low)) > 0.5 and run.turn[:, 0, 2, 2].min() > 0.9
 
 
-def test_bars_that_cross_rest_on_each_other_by_their_edges() -> None:
+@pytest.mark.parametrize("angle", [90.0, 50.0])
+def test_bars_that_cross_rest_on_each_other_by_their_edges(angle: float) -> None:
     """Two bars on edge, one across the other: no face bears the upper one."""
     side = np.array([[0.0, -0.1], [0.1, 0.0], [0.0, 0.1], [-0.1, 0.0]])
     lower = prism(side, -1.0, 1.0).moved(Rotation.from_rotvec([0, np.pi / 2, 0]).as_matrix())
-    upper = prism(side, -1.0, 1.0).moved(Rotation.from_rotvec([np.pi / 2, 0, 0]).as_matrix(), np.array([0, 0, 0.2]))
+    across = Rotation.from_rotvec([0, 0, np.radians(angle)]) * Rotation.from_rotvec([0, np.pi / 2, 0])
+    upper = prism(side, -1.5, 1.5).moved(across.as_matrix(), np.array([0, 0, 0.2]))
     model = solids([upper, lower], Law(1e10, 1e10, 0.5, 1e-4), floor=False)
     model = replace(model, mass=np.array([model.mass[0], 0.0]))
     run = dem3.run(model, Options(end_time=0.05, output_step=0.01), rate=np.zeros((2, 6)))
+    assert run.reason == "end"
     assert abs(run.place[-1, 0, 2] - 0.2) < 1e-3  # in free fall it would be 12 mm lower
     assert run.turn[-1, 0] == pytest.approx(run.turn[0, 0], abs=1e-6)  # they touch under its centroid
     apart = replace(
