@@ -1,12 +1,12 @@
 !> Discrete elements in space: blocks behind a handle, built in steps, and what a run leaves of them.
 !>
-!> create, laws, surroundings; then api_dem_run; then bodies and attitudes tell more of the last run.
+!> create, laws, dowels if any, surroundings; then api_dem_run; then bodies, attitudes and slips tell more of the last run.
 !> Body numbers are 1-based; mass 0 marks a support.
 module api_dem3
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: create, laws, surroundings, bodies, attitudes
+   public :: create, laws, dowels, surroundings, bodies, attitudes, slips
 
 contains
 
@@ -40,7 +40,7 @@ contains
       use dem3_law, only : joint_law
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: nlaw
-      real(c_double), intent(in) :: law(4, nlaw)              !! see joint_law
+      real(c_double), intent(in) :: law(6, nlaw)              !! see joint_law
       integer(c_int), intent(in) :: njoint
       integer(c_int), intent(in) :: joint(3, njoint)          !! two bodies, the lower first, and the law
       integer(c_int), intent(out) :: status
@@ -53,12 +53,31 @@ contains
       status = status_out_of_memory
       if (failed == 0) then
          do k = 1, nlaw
-            given(k) = joint_law(law(1, k), law(2, k), law(3, k), law(4, k))
+            given(k) = joint_law(law(1, k), law(2, k), law(3, k), law(4, k), law(5, k), law(6, k))
          end do
          call set_laws(built, given, joint, status)
       end if
       call handle_leave(handle)
    end subroutine laws
+
+   !> Dowels across joints
+   subroutine dowels(handle, n, body, place, axis, value, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use dem3_handle, only : built_solids, set_dowels, solids_take
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: n
+      integer(c_int), intent(in) :: body(2, n)                !! that it stands in, and that it reaches into
+      real(c_double), intent(in) :: place(3, n)               !! [m]
+      real(c_double), intent(in) :: axis(3, n)                !! from the first body to the second
+      real(c_double), intent(in) :: value(4, n)               !! stiffness [N/m], strength [N], reach [m], damping beta [s]
+      integer(c_int), intent(out) :: status
+      type(built_solids), pointer :: built
+      call solids_take(handle, built, status)
+      if (status /= status_ok) return
+      call set_dowels(built, body, place, axis, value, status)
+      call handle_leave(handle)
+   end subroutine dowels
 
    !> Gravity, the direction of horizontal ground motion, the scene, and velocities at the start
    subroutine surroundings(handle, gravity, way, domain, nb, rate, status)
@@ -136,5 +155,30 @@ contains
       end if
       call handle_leave(handle)
    end subroutine attitudes
+
+   !> What became of the dowels in the last run
+   subroutine slips(handle, n, slip, is_out, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_invalid_argument
+      use dem3_handle, only : solids_run_take
+      use dem3_run, only : solid_simulation
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: n                         !! dowels
+      real(c_double), intent(out) :: slip(n)                  !! farthest that each gave way [m]
+      integer(c_int), intent(out) :: is_out(n)                !! 1: the stones have parted farther than it reaches
+      integer(c_int), intent(out) :: status
+      type(solid_simulation), pointer :: run
+      slip = 0.0_c_double
+      is_out = 0
+      call solids_run_take(handle, run, status)
+      if (status /= status_ok) return
+      status = status_invalid_argument
+      if (n == size(run%model%dowels)) then
+         status = status_ok
+         slip = run%model%dowels%most_slip
+         is_out = merge(1, 0, run%model%dowels%is_out)
+      end if
+      call handle_leave(handle)
+   end subroutine slips
 
 end module api_dem3

@@ -8,17 +8,19 @@ module dem3_handle
    use dem_rigid, only : set_rigid
    use dem_run, only : run_record_new
    use dem3_bodies, only : body_set, body_set_new, copy_bodies
+   use dem3_dowels, only : dowel
    use dem3_law, only : joint_law
    use dem3_run, only : solid_simulation
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: built_solids, solids_new, solids_take, solids_run_take, set_laws, set_surroundings
+   public :: built_solids, solids_new, solids_take, solids_run_take, set_laws, set_dowels, set_surroundings
 
    type, extends(built_model) :: built_solids
       type(body_set) :: set
       type(joint_law), allocatable :: law(:)          !! the first is that of contacts that form later
       integer, allocatable :: law_of(:, :)            !! (3, joints): bodies, the lower first, and law
+      type(dowel), allocatable :: dowels(:)           !! not allocated: none
       real(wp), allocatable :: rate(:, :)             !! (6, bodies) velocity and spin at the start
       real(wp) :: gravity(3) = 0.0_wp                 !! [m/s^2]
       real(wp) :: way(3) = [1.0_wp, 0.0_wp, 0.0_wp]   !! of the horizontal ground motion
@@ -113,7 +115,7 @@ contains
       status = status_invalid_argument
       if (size(law) < 1) return
       if (.not. all(law%normal_stiffness > 0.0_wp .and. law%shear_stiffness > 0.0_wp)) return
-      if (.not. all(min(law%friction, law%damping) >= 0.0_wp)) return
+      if (.not. all(min(law%friction, law%cohesion, law%tension, law%damping) >= 0.0_wp)) return
       status = status_out_of_memory
       allocate (laws(size(law)), law_of(3, size(joint, 2)), stat=failed)
       if (failed /= 0) return
@@ -123,6 +125,42 @@ contains
       call move_alloc(law_of, built%law_of)
       status = status_ok
    end subroutine set_laws
+
+   !> Dowels across joints, from where they stand in space
+   subroutine set_dowels(built, body, place, axis, value, status)
+      type(built_solids), intent(inout) :: built
+      integer(c_int), intent(in) :: body(:, :)        !! (2, dowels)
+      real(wp), intent(in) :: place(:, :)             !! (3, dowels) [m]
+      real(wp), intent(in) :: axis(:, :)              !! (3, dowels) from the first body to the second
+      real(wp), intent(in) :: value(:, :)             !! (4, dowels) stiffness, strength, reach and damping, see dowel
+      integer(c_int), intent(out) :: status
+      type(dowel), allocatable :: found(:)
+      integer :: k, side, failed
+      status = status_bad_index
+      if (any(body < 1) .or. any(body > size(built%set%item))) return
+      status = status_invalid_argument
+      if (any(body(1, :) == body(2, :))) return
+      if (.not. (all(value(1:2, :) > 0.0_wp) .and. all(value(3:4, :) >= 0.0_wp))) return
+      if (.not. all(abs(norm2(axis, dim=1) - 1.0_wp) < 1.0e-9_wp)) return
+      status = status_out_of_memory
+      allocate (found(size(body, 2)), stat=failed)
+      if (failed /= 0) return
+      do k = 1, size(found)
+         associate (one => found(k), item => built%set%item)
+            one%body = body(:, k)
+            do side = 1, 2
+               one%place(:, side) = matmul(place(:, k) - item(one%body(side))%x, item(one%body(side))%turn)
+            end do
+            one%axis = matmul(axis(:, k), item(one%body(1))%turn)
+            one%stiffness = value(1, k)
+            one%strength = value(2, k)
+            one%reach = value(3, k)
+            one%damping = value(4, k)
+         end associate
+      end do
+      call move_alloc(found, built%dowels)
+      status = status_ok
+   end subroutine set_dowels
 
    !> Gravity, the way of the ground, how far the scene reaches, and velocities at the start
    subroutine set_surroundings(built, gravity, way, domain, rate, status)
@@ -153,7 +191,7 @@ contains
       real(wp), intent(in) :: wanted(:)               !! output times [s]
       integer(c_int), intent(out) :: status
       type(solid_simulation), allocatable :: run
-      integer :: k, axis, failed
+      integer :: k, axis, failed, dowels
       status = status_not_ready
       if (.not. (allocated(built%law) .and. allocated(built%rate))) return
       status = status_out_of_memory
@@ -164,9 +202,12 @@ contains
       associate (model => run%model)
          call copy_bodies(built%set, model%set, status)
          if (status /= status_ok) return
-         allocate (model%law(size(built%law)), model%law_of(3, size(built%law_of, 2)), stat=failed)
+         dowels = 0
+         if (allocated(built%dowels)) dowels = size(built%dowels)
+         allocate (model%law(size(built%law)), model%law_of(3, size(built%law_of, 2)), model%dowels(dowels), stat=failed)
          if (failed /= 0) status = status_out_of_memory
          if (failed /= 0) return
+         if (dowels > 0) model%dowels(:) = built%dowels
          model%law(:) = built%law
          model%law_of(:, :) = built%law_of
          model%gravity = built%gravity

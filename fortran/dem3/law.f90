@@ -1,15 +1,16 @@
-!> The force at the points of a contact: a spring that knows no tension, Coulomb friction on a shear spring in the
-!> plane of the contact, and dashpots in parallel with both, taken implicitly: the law of the plane room with a cone
-!> (dem/law.f90).
+!> The force at the points of a contact: a spring that knows no tension beyond that of mortar, Coulomb friction on a
+!> shear spring in the plane of the contact, and dashpots in parallel with both, taken implicitly: the law of the plane
+!> room with a cone (dem/law.f90).
 !>
 !> With the normal n from body 1 to body 2, the gap g (negative where bodies overlap), the velocity u of body 2 relative
 !> to body 1 at the point and the area a that it carries:
 !>
 !>    N  = -k_n a g
-!>    S += -k_s a u_t dt,   |S| <= mu N            S turns with the contact
+!>    S += -k_s a u_t dt,   |S| <= mu N + c a      S turns with the contact
 !>    D  = -beta k a u                              in both directions
 !>
-!> on body 2, the opposite on body 1. Dry joints: no cohesion, no tension. The dashpots are implicit as in the plane:
+!> on body 2, the opposite on body 1. The cohesion c and the tensile strength f_t of mortar (N >= -f_t a) are lost point
+!> by point at its first failure in shear or tension. The dashpots are implicit as in the plane:
 !> D = -beta k a u* / (1 + beta k a dt w), with u* the velocity after the step without it and w that of a unit impulse.
 module dem3_law
    use common_kinds, only : wp
@@ -19,18 +20,22 @@ module dem3_law
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: joint_law, contact_point, contact_pair, act, find_points, elastic_energy, drop_points
+   public :: joint_law, contact_point, contact_pair, act, bond, find_points, elastic_energy, drop_points
+   public :: answers, bounded, give, length_of
 
    type :: joint_law
       real(wp) :: normal_stiffness = 0.0_wp    !! [Pa/m]
       real(wp) :: shear_stiffness = 0.0_wp     !! [Pa/m]
       real(wp) :: friction = 0.0_wp            !! coefficient
       real(wp) :: damping = 0.0_wp             !! stiffness-proportional, beta [s]
+      real(wp) :: cohesion = 0.0_wp            !! of a bonded joint [Pa]
+      real(wp) :: tension = 0.0_wp             !! strength of a bonded joint [Pa]
    end type joint_law
 
    type :: contact_point
       type(feature) :: what
       logical :: closed = .false.
+      logical :: bonded = .false.                          !! cohesion and tension not lost yet
       real(wp) :: spring_n = 0.0_wp, dash_n = 0.0_wp       !! compression positive [N]
       real(wp) :: spring_s(3) = 0.0_wp, dash_s(3) = 0.0_wp !! on the second body [N]
       real(wp) :: force(3) = 0.0_wp                        !! all of it, in the step before [N]
@@ -170,6 +175,22 @@ contains
       end do
    end function partner
 
+   !> Mortar binds the points of a pair whose gap is less than a margin, where its law has any
+   pure subroutine bond(law, margin, a, b, pair)
+      type(joint_law), intent(in) :: law
+      real(wp), intent(in) :: margin            !! [m]
+      type(body), intent(in) :: a
+      type(body), intent(in) :: b
+      type(contact_pair), intent(inout) :: pair
+      real(wp) :: normal(3), gap, at(3)
+      integer :: i
+      if (.not. max(law%cohesion, law%tension) > 0.0_wp) return
+      do i = 1, pair%points
+         call measure(pair%point(i)%what, a, b, normal, gap, at)
+         pair%point(i)%bonded = gap <= margin
+      end do
+   end subroutine bond
+
    !> Forces of a pair at its present overlap, added to both bodies; predicted velocities follow
    pure subroutine act(law, kick, drift, a, b, pair)
       type(joint_law), intent(in) :: law
@@ -184,19 +205,24 @@ contains
       do i = 1, pair%points
          associate (point => pair%point(i))
             call measure(point%what, a, b, normal, gap, at)
-            if (gap >= 0.0_wp .and. .not. point%closed) cycle
+            if (gap >= 0.0_wp) then
+               ! Mortar that is torn farther than its strength is gone for good.
+               point%bonded = point%bonded .and. law%normal_stiffness * gap <= law%tension
+               if (.not. (point%closed .or. point%bonded)) cycle
+            end if
             arm_a = at - a%x
             arm_b = at - b%x
             ! Velocity over the position step before: it has moved the springs.
             u = b%v - a%v + cross(b%spin, arm_b) - cross(a%spin, arm_a)
-            if (gap < 0.0_wp) then
+            if (gap < 0.0_wp .or. point%bonded) then
                point%closed = .true.
                call press(law, kick, drift, normal, gap, u, arm_a, arm_b, a, b, point, pair%friction_loss, force, dash)
                if (.not. a%fixed) a%touched = .true.
                if (.not. b%fixed) b%touched = .true.
-            else   ! it opens: what its shear spring held is lost
-               pair%friction_loss = pair%friction_loss + 0.5_wp * dot_product(point%spring_s, point%spring_s) &
-                  / (law%shear_stiffness * point%what%area)
+            else   ! it opens: what its shear spring held is lost, and its other one if mortar was torn
+               pair%friction_loss = pair%friction_loss &
+                  + 0.5_wp * (dot_product(point%spring_s, point%spring_s) / law%shear_stiffness &
+                  + min(point%spring_n, 0.0_wp)**2 / law%normal_stiffness) / point%what%area
                point%closed = .false.
                point%spring_n = 0.0_wp
                point%spring_s = 0.0_wp
@@ -235,7 +261,7 @@ contains
       real(wp), intent(out) :: force(3)         !! on the second body [N]
       real(wp), intent(out) :: dash(3)          !! the dashpots' part of it
       real(wp) :: slip(3), predicted(3), star(3), trial(3), held(3), new(3), change(3), answer(3, 3)
-      real(wp) :: stiff_n, stiff_s, viscous, w, along(3), bound, length, push_n, spring_n, dash_n
+      real(wp) :: stiff_n, stiff_s, viscous, w, along(3), bound, length, push_n, spring_n, dash_n, held_by_mortar
 
       stiff_n = law%normal_stiffness * point%what%area
       stiff_s = law%shear_stiffness * point%what%area
@@ -249,16 +275,22 @@ contains
       answer = answers(arm_a, arm_b, a, b)
       predicted = b%p - a%p + cross(b%pspin, arm_b) - cross(a%pspin, arm_a)
       ! Normal dashpot: the predicted velocity holds the old force of this point, of the others what is decided by now.
-      bound = law%friction * max(spring_n + point%dash_n, 0.0_wp)
+      held_by_mortar = merge(law%cohesion * point%what%area, 0.0_wp, point%bonded)
+      bound = law%friction * max(spring_n + point%dash_n, 0.0_wp) + held_by_mortar
       new = bounded(trial + point%dash_s, bound)
       change = (spring_n + point%dash_n) * normal + new - point%force
       star = predicted + kick * matmul(answer, change)
       w = dot_product(normal, matmul(answer, normal))
       viscous = law%damping * stiff_n
       dash_n = -viscous * (dot_product(star, normal) - kick * w * point%dash_n) / (1.0_wp + viscous * kick * w)
-      push_n = max(spring_n + dash_n, 0.0_wp)
-      ! Shear, now that the normal force is known.
-      bound = law%friction * push_n
+      ! A dashpot never pulls more than the mortar can bear.
+      push_n = max(spring_n + dash_n, merge(-law%tension * point%what%area, 0.0_wp, point%bonded))
+      ! Shear, now that the normal force is known; mortar may break.
+      bound = max(law%friction * push_n + held_by_mortar, 0.0_wp)
+      if (point%bonded .and. dot_product(trial, trial) > bound**2) then
+         point%bonded = .false.
+         bound = max(law%friction * push_n, 0.0_wp)
+      end if
       if (dot_product(trial, trial) >= bound**2) then
          new = bounded(trial, bound)
          ! Mean force over the step times the slip.

@@ -6,12 +6,13 @@ module dem3_model
    use dem_energy, only : energy_terms
    use dem_rigid, only : rigid_solver
    use dem3_bodies, only : body, body_set, cross, place, spin_of, turn_freely
-   use dem3_law, only : act, contact_pair, contact_point, drop_points, elastic_energy, find_points, joint_law
+   use dem3_dowels, only : act_dowel, dowel, dowel_energy
+   use dem3_law, only : act, bond, contact_pair, contact_point, drop_points, elastic_energy, find_points, joint_law
    use dem3_patch, only : measure
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: solid_model, rigid_contacts, set_distances, search, colour, advance, critical_step, energy_now, prepare, &
+   public :: solid_model, rigid_contacts, set_distances, search, set_mortar, colour, advance, critical_step, energy_now, prepare, &
       predict, move, look_anew
 
    !> Contacts without springs, see dem3_moreau
@@ -29,6 +30,7 @@ module dem3_model
       integer :: colours = 0
       type(joint_law), allocatable :: law(:)          !! the first is that of contacts that form later
       integer, allocatable :: law_of(:, :)            !! (3, joints): two bodies, the lower first, law; ascending
+      type(dowel), allocatable :: dowels(:)
       real(wp) :: way(3) = [1.0_wp, 0.0_wp, 0.0_wp]   !! of the horizontal ground motion
       real(wp) :: gravity(3) = 0.0_wp                 !! [m/s^2]
       real(wp) :: pull(3) = 0.0_wp                    !! body force of the last step [m/s^2]
@@ -42,6 +44,9 @@ module dem3_model
       real(wp) :: support_work = 0.0_wp               !! of them [J]
       type(rigid_contacts) :: rigid
    end type solid_model
+
+   !> Of the skin: a narrower gap is filled by mortar
+   real(wp), parameter :: touching = 0.05_wp
 
 contains
 
@@ -130,6 +135,19 @@ contains
       model%stale = .false.
       call colour(model, status)
    end subroutine search
+
+   !> Mortar binds what touches at the start
+   subroutine set_mortar(model)
+      type(solid_model), intent(inout) :: model
+      integer :: k
+      do k = 1, model%pairs
+         associate (pair => model%pair(k), parts => model%set%parts)
+            call find_points(model%set, model%far, model%margin, pair)
+            call bond(model%law(pair%law), touching * model%skin, model%set%item(parts(pair%part(1))%owner), &
+               model%set%item(parts(pair%part(2))%owner), pair)
+         end associate
+      end do
+   end subroutine set_mortar
 
    !> A pair goes: what it lost is kept
    subroutine forget(model, number)
@@ -311,6 +329,7 @@ contains
          do c = 1, model%pairs
             call touch(model, model%pair(model%sweep(c)))
          end do
+         call bear_on_dowels(model)
          do k = 1, size(model%set%item)
             call move(model, model%set%item(k), model%stale)
          end do
@@ -350,6 +369,7 @@ contains
          do k = model%colour_first(model%colours + 1), model%pairs
             call touch(model, model%pair(model%sweep(k)))
          end do
+         call bear_on_dowels(model)
          !$omp end single
          !$omp do schedule(static) reduction(.or. : stale)
          do k = 1, size(model%set%item)
@@ -375,6 +395,17 @@ contains
          if (pair%points > 0) call act(model%law(pair%law), model%kick, model%drift, a, b, pair)
       end associate
    end subroutine touch
+
+   !> Forces of the dowels, one after the other: they are few
+   subroutine bear_on_dowels(model)
+      type(solid_model), intent(inout) :: model
+      integer :: k
+      do k = 1, size(model%dowels)
+         associate (one => model%dowels(k))
+            call act_dowel(model%kick, model%drift, model%set%item(one%body(1)), model%set%item(one%body(2)), one)
+         end associate
+      end do
+   end subroutine bear_on_dowels
 
    !> Geometry of a pair, where a body has moved far enough
    pure subroutine look_anew(model, pair)
@@ -443,6 +474,7 @@ contains
       integer(c_int), intent(out) :: status
       real(wp), allocatable :: stiffness(:, :, :)
       real(wp) :: greatest, share, normal(3), gap, at(3), area
+      type(joint_law) :: spring
       integer :: k, i, side, who, failed
       step = 0.0_wp
       allocate (stiffness(6, 6, size(model%set%item)), stat=failed)
@@ -472,6 +504,17 @@ contains
             area = maxval(model%set%area(one%face_first:one%face_last))
             call stiffen(model%law(1), 2.0_wp * area, [0.0_wp, 0.0_wp, 1.0_wp], b%x + b%radius * b%turn(:, 1), b, &
                stiffness(:, :, who))
+         end associate
+      end do
+      do k = 1, size(model%dowels)
+         associate (one => model%dowels(k))
+            share = merge(1.0_wp, 2.0_wp, any(model%set%item(one%body)%fixed))
+            spring = joint_law(normal_stiffness=0.0_wp, shear_stiffness=one%stiffness)
+            normal = matmul(model%set%item(one%body(1))%turn, one%axis)
+            at = model%set%item(one%body(2))%x + matmul(model%set%item(one%body(2))%turn, one%place(:, 2))
+            do side = 1, 2
+               call stiffen(spring, share, normal, at, model%set%item(one%body(side)), stiffness(:, :, one%body(side)))
+            end do
          end associate
       end do
       greatest = 0.0_wp
@@ -562,6 +605,14 @@ contains
             now%friction = now%friction + pair%friction_loss
             now%damping = now%damping + pair%damping_loss
             now%work = now%work + pair%support_work
+         end associate
+      end do
+      do k = 1, size(model%dowels)
+         associate (one => model%dowels(k))
+            now%elastic = now%elastic + dowel_energy(one)
+            now%friction = now%friction + one%friction_loss
+            now%damping = now%damping + one%damping_loss
+            now%work = now%work + one%support_work
          end associate
       end do
    end function energy_now

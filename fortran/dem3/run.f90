@@ -11,7 +11,8 @@ module dem3_run
    use dem3_bodies, only : body, spin_of, turn_freely
    use dem3_law, only : contact_point
    use dem3_moreau, only : advance_rigid, quickest
-   use dem3_model, only : advance, colour, critical_step, model_energy => energy_now, search, set_distances, solid_model
+   use dem3_model, only : advance, colour, critical_step, model_energy => energy_now, search, set_distances, set_mortar, &
+      solid_model
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
@@ -68,7 +69,10 @@ contains
          end do
          if (first_time) call set_distances(model)
          call search(model, status)
+         if (status /= status_ok) return
          run%record%pairs = model%pairs
+         if (first_time) call set_mortar(model)
+         if (any(model%pair(:model%pairs)%lacks_memory)) status = status_out_of_memory
       end associate
    end subroutine find_pairs
 
@@ -231,6 +235,12 @@ contains
                end do
             end associate
          end do
+         model%dowels%friction_loss = 0.0_wp
+         model%dowels%damping_loss = 0.0_wp
+         model%dowels%support_work = 0.0_wp
+         do k = 1, size(model%dowels)
+            model%dowels(k)%dash = 0.0_wp
+         end do
          model%lost = 0.0_wp
          model%support_work = 0.0_wp
          model%set%item%work = 0.0_wp
@@ -265,7 +275,7 @@ contains
       type(body) :: one
       type(contact_point) :: point
       told = int([storage_size(one), storage_size(point), size(run%model%set%item), size(run%model%set%parts), &
-         run%model%pairs, 0, 0, 0], c_int64_t)
+         run%model%pairs, size(run%model%dowels), 0, 0], c_int64_t)
    end function sizes
 
    subroutine make_room(run, sizes, most, status)
@@ -275,7 +285,7 @@ contains
       integer(c_int), intent(out) :: status
       integer :: failed
       status = status_invalid_argument
-      if (sizes(5) < 0 .or. sizes(5) > most) return
+      if (sizes(5) < 0 .or. sizes(5) > most .or. sizes(6) /= size(run%model%dowels)) return
       allocate (run%model%pair(sizes(5)), stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
       if (failed == 0) run%model%pairs = int(sizes(5))
@@ -298,6 +308,7 @@ contains
          call on%pass(model%wander, storage_size(model%wander))
          call on%pass(model%lost, storage_size(model%lost))
          call on%pass(model%support_work, storage_size(model%support_work))
+         call on%pass(model%dowels, storage_size(model%dowels))
          do k = 1, model%pairs
             associate (pair => model%pair(k))
                call on%pass(pair%part, storage_size(pair%part))

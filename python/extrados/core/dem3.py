@@ -1,6 +1,6 @@
 """Discrete elements in space in the core (fortran/dem3): rigid polyhedra, their joints, and what a run leaves of them."""
 
-from dataclasses import dataclass, field
+from dataclasses import astuple, dataclass, field
 
 import numpy as np
 
@@ -17,20 +17,41 @@ MOST_CORNERS = 96
 
 @dataclass(frozen=True)
 class Law:
-    """A type of dry joint. Stiffnesses [Pa/m]; damping: beta of stiffness-proportional damping [s]."""
+    """A type of joint. Stiffnesses [Pa/m]; damping: beta of stiffness-proportional damping [s]; cohesion, tension: of its
+    mortar [Pa]."""
 
     normal_stiffness: float
     shear_stiffness: float
     friction: float
     damping: float = 0.0
+    cohesion: float = 0.0
+    tension: float = 0.0
 
     def __post_init__(self) -> None:
         if not (self.normal_stiffness > 0.0 and self.shear_stiffness > 0.0):
             raise ValueError(
                 f"joint stiffnesses are {self.normal_stiffness:g} and {self.shear_stiffness:g} Pa/m, expected above 0"
             )
-        if min(self.friction, self.damping) < 0.0:
-            raise ValueError("friction and damping of a joint must not be negative")
+        if min(self.friction, self.damping, self.cohesion, self.tension) < 0.0:
+            raise ValueError("friction, damping, cohesion and tension of a joint must not be negative")
+
+
+@dataclass(frozen=True)
+class Dowels:
+    """Dowels across joints, which bear shear and no pull.
+
+    body (nk, 2): that each stands in, and that it reaches into; place (nk, 3) [m]; axis (nk, 3): unit vectors from the first
+    to the second; stiffness (nk) [N/m]; strength (nk) [N] beyond which it gives way, infinite where it does not; reach (nk)
+    [m]: once the bodies part farther it is out for good, infinite where it never is; damping: beta [s].
+    """
+
+    body: np.ndarray
+    place: np.ndarray
+    axis: np.ndarray
+    stiffness: np.ndarray
+    strength: np.ndarray
+    reach: np.ndarray
+    damping: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -40,6 +61,7 @@ class Solids:
     centroid (n, 3) [m]; mass (n) [kg], 0 for a support; inertia (n, 3, 3) about the centroids [kg m^2]. Part k is the
     polyhedron of vertices[k] (nv, 3) [m] and faces[k], the numbers of the vertices of each face, counter-clockwise from
     outside; it belongs to body owner[k]. joints: (body, body) -> index of its law; law 0 is that of contacts that form later.
+    Mortar binds what touches at the start.
     """
 
     centroid: np.ndarray
@@ -50,6 +72,7 @@ class Solids:
     owner: list[int]
     laws: list[Law]
     joints: dict[tuple[int, int], int] = field(default_factory=dict)
+    dowels: Dowels | None = None
 
 
 @dataclass(frozen=True)
@@ -64,10 +87,13 @@ class Options(RunOptions):
 
 @dataclass(frozen=True, kw_only=True)
 class Run(FoundRun):
-    """A run. turn (t, n, 3, 3): rotation matrices from the attitude at the start, settled_turn (n, 3, 3) after settling."""
+    """A run. turn (t, n, 3, 3): rotation matrices from the attitude at the start, settled_turn (n, 3, 3) after settling.
+    dowel_slip (nk) [m]: how far each dowel gave way at most; dowel_out (nk): whether the bodies have parted from it."""
 
     turn: np.ndarray
     settled_turn: np.ndarray
+    dowel_slip: np.ndarray
+    dowel_out: np.ndarray
 
 
 class Model(BodyModel[Run]):
@@ -116,15 +142,16 @@ class Model(BodyModel[Run]):
         super().__init__(handle)
         self.count, self.options, self._axes = n, options, axes
         try:
-            rows = [[law.normal_stiffness, law.shear_stiffness, law.friction, law.damping] for law in solids.laws]
+            rows = [astuple(law) for law in solids.laws]
             pairs = sorted((*sorted(pair), law) for pair, law in solids.joints.items())
             joints = np.array(pairs, dtype=int).reshape(-1, 3).T
             if pairs:
                 indices("joints", joints[:2], n, (2, None))
             status = _core.api_dem3.laws(
-                self.handle, real("laws", np.transpose(rows), (4, None)), np.asfortranarray(joints + 1, dtype=np.int32)
+                self.handle, real("laws", np.transpose(rows), (6, None)), np.asfortranarray(joints + 1, dtype=np.int32)
             )
             check(status, "laws of the joints")
+            self._put_dowels(solids.dowels)
             status = _core.api_dem3.surroundings(
                 self.handle, real("gravity", options.gravity, (3,)), real("way", options.way, (3,)), float(options.domain),
                 real("rate", np.transpose(np.zeros((n, 6)) if rate is None else rate), (6, n)),
@@ -135,17 +162,35 @@ class Model(BodyModel[Run]):
             self.close()
             raise
 
+    def _put_dowels(self, dowels: Dowels | None) -> None:
+        self._dowels = 0 if dowels is None else len(dowels.body)
+        if dowels is None:
+            return
+        n = self._dowels
+        body = indices("body", np.transpose(dowels.body), self.count, (2, n))
+        bounded = [
+            np.minimum(values, np.finfo(float).max)
+            for values in (dowels.stiffness, dowels.strength, dowels.reach, np.full(n, dowels.damping))
+        ]
+        status = _core.api_dem3.dowels(
+            self.handle, body, real("place", np.transpose(dowels.place), (3, n)),
+            real("axis", np.transpose(dowels.axis), (3, n)), real("values", np.array(bounded), (4, n)),
+        )  # fmt: skip
+        check(status, "dowels")
+
     def _last_run(self, interrupted: bool) -> Run:
         recorded = self._recorded(interrupted)
         settled, settled_turn, bounces, airborne, status = _core.api_dem3.bodies(self.handle, self.count)
         check(status, "bodies after the run")
         turn, status = _core.api_dem3.attitudes(self.handle, self.count, len(recorded["time"]))
         check(status, "history of the run")
+        slip, is_out, status = _core.api_dem3.slips(self.handle, self._dowels)
+        check(status, "dowels after the run")
         axes = np.moveaxis(turn, (2, 3), (1, 0))  # (t, n, 3, 3): columns are the own axes
         start = np.swapaxes(self._axes, 1, 2)
         return Run(
             **recorded, settled=settled.T, bounces=bounces, airborne=airborne, turn=axes @ start,
-            settled_turn=np.moveaxis(settled_turn, 2, 0) @ start,
+            settled_turn=np.moveaxis(settled_turn, 2, 0) @ start, dowel_slip=slip, dowel_out=is_out.astype(bool),
         )  # fmt: skip
 
 
