@@ -74,7 +74,7 @@ contains
             bodies(:, k) = model%contacts%pair(k)%bodies
          end do
          call number_bodies(rigid, in_plane, model%set%item%fixed, bodies, status)
-         if (status == status_ok) call problem_room(rigid%problem, 2 * pairs, status)
+         if (status == status_ok) call problem_room(rigid%problem, 2 * pairs, pairs, status)
          if (status /= status_ok) return
          do k = 1, size(model%set%item)
             if (rigid%node(k) == 0) cycle

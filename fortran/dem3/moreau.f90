@@ -99,13 +99,14 @@ contains
       status = status_ok
       associate (rigid => model%rigid)
          room = 0
+         ! After a search the problem is new, and has none
          if (allocated(rigid%problem%friction)) room = size(rigid%problem%friction)
          if (room >= points .and. allocated(rigid%number)) return
          room = points + points / 2
          if (allocated(rigid%number)) deallocate (rigid%number)
          allocate (rigid%number(room), stat=failed)
          status = merge(status_ok, status_out_of_memory, failed == 0)
-         if (status == status_ok) call problem_room(rigid%problem, room, status)
+         if (status == status_ok) call problem_room(rigid%problem, room, model%pairs, status)
       end associate
    end subroutine make_room
 

@@ -52,7 +52,7 @@ contains
       end do
       call problem_new(size(mass), in_plane, link(:, :links), problem, status)
       if (status /= status_ok) return
-      call problem_room(problem, 2 * size(side, 2), status)
+      call problem_room(problem, 2 * size(side, 2), size(side, 2), status)
       if (status /= status_ok) return
       problem%points = 2 * size(side, 2)
       problem%heavy = heavy

@@ -38,7 +38,7 @@ module nonsmooth_impulses
    real(wp), parameter, public :: no_sliding = 1.0e100_wp
    !> Weights over masses at the start, in the plane and in space, where the round cones ask for Newton's method anyway
    real(wp), parameter :: heavy(in_plane:in_space) = [1.0e2_wp, 1.0e4_wp]
-   real(wp), parameter :: growth = 10.0_wp       !! of those of the plane where impulses have far to go
+   real(wp), parameter :: growth = 10.0_wp       !! factor on the weights in the plane where impulses have far to go
    integer, parameter :: patience = 15           !! rounds before that
    integer, parameter :: most_growth = 2         !! times
    integer, parameter :: creeping = 4            !! rounds in space before c is taken to where the last ones point
@@ -74,7 +74,7 @@ module nonsmooth_impulses
       real(wp), allocatable :: near(:, :)           !! (direction, points) the points of the cones nearest to these
       real(wp), allocatable :: try(:), load(:)      !! (freedoms nodes)
       real(wp), allocatable :: missing(:)           !! (freedoms nodes) [N s]
-      real(wp), allocatable :: block(:, :)          !! (of both bodies, first point of a pair) of the matrix
+      real(wp), allocatable :: block(:, :)          !! ((2 freedoms)**2, pairs) what each pair adds to the matrix
       integer, allocatable :: state(:), was(:)      !! (points) what they do, and did when the matrix was factored
    end type impulse_problem
 
@@ -108,10 +108,11 @@ contains
       if (failed /= 0) status = status_out_of_memory
    end subroutine problem_new
 
-   !> Room for `points` contact points, instead of what there was
-   subroutine problem_room(problem, points, status)
+   !> Room for `points` contact points of `pairs` pairs, instead of what there was
+   subroutine problem_room(problem, points, pairs, status)
       type(impulse_problem), intent(inout) :: problem
       integer, intent(in) :: points
+      integer, intent(in) :: pairs
       integer(c_int), intent(out) :: status
       integer :: failed
       if (allocated(problem%node)) deallocate (problem%node, problem%row, problem%shift, problem%friction, &
@@ -122,7 +123,7 @@ contains
          problem%impulse(problem%directions, points), problem%best(problem%directions, points), &
          problem%weight(points), problem%raised(points), problem%asked(points, 2), problem%change(points, 2), &
          problem%rate_at(problem%directions, points), problem%trial(problem%directions, points), &
-         problem%near(problem%directions, points), problem%block((2 * problem%freedoms)**2, points), &
+         problem%near(problem%directions, points), problem%block((2 * problem%freedoms)**2, pairs), &
          problem%state(points), problem%was(points), stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
    end subroutine problem_room
@@ -163,8 +164,9 @@ contains
       problem%impulse(:, :n) = problem%best(:, :n)
       ! The velocities that follow from these impulses alone
       problem%near(:, :n) = problem%best(:, :n)
-      call give_impulses(problem, problem%mass * problem%free, problem%rate)
-      problem%rate(:) = problem%rate / problem%mass
+      problem%missing(:) = problem%mass * problem%free
+      call give_impulses(problem)
+      problem%rate(:) = problem%missing / problem%mass
    end subroutine solve_impulses
 
    !> Weights: many times the mass that a point feels
@@ -215,7 +217,7 @@ contains
          associate (row => problem%row(:, :, :, k), shift => problem%shift(:, k), w => problem%rate_at(:, k), &
                     weight => problem%weight(k), raised => problem%raised(k), impulse => problem%impulse(:, k), &
                     trial => problem%trial(:, k), near => problem%near(:, k), friction => problem%friction(k))
-            ! The numbers say what the compiler may count on.
+            ! Constant sizes let the compiler unroll the loops.
             if (problem%directions == in_plane) then
                call try_impulse(6, 2, row, both, shift, weight, raised, impulse, w, trial)
                call project(2, friction, trial, problem%state(k), near)
@@ -295,8 +297,8 @@ contains
       if (friction < no_sliding) c = friction * length(sliding)
    end function raising
 
-   !> Newton's method for the velocities at which that function is least. What it lacks of its slope of nought are the
-   !> impulses that are missing
+   !> Newton's method for the velocities at which that function is least. Minus its slope are the impulses that are
+   !> still missing
    pure subroutine least_energy(problem, tolerance, effort)
       type(impulse_problem), intent(inout) :: problem
       real(wp), intent(in) :: tolerance             !! [m/s]
@@ -314,7 +316,8 @@ contains
             call skyline_factor(problem%matrix, status)
             problem%was(:n) = problem%state(:n)
             effort%factors = effort%factors + 1
-            if (status /= status_ok) return          ! not finite: the caller sees velocities that are not
+            if (status /= status_ok) problem%was(:n) = -1
+            if (status /= status_ok) return          ! what is missing counts as violation, and no number spreads
          end if
          problem%load(:) = problem%missing
          call skyline_solve(problem%matrix, problem%load)
@@ -328,7 +331,8 @@ contains
       end do
    end subroutine least_energy
 
-   !> From the velocities along the step of Newton's method to where the function rises no more; it is convex
+   !> From the velocities along the step of Newton's method to where the slope of the function, which is convex, is a
+   !> small share of that at the start
    pure subroutine go_along(problem, whole)
       type(impulse_problem), intent(inout) :: problem
       logical, intent(out) :: whole                 !! to the end of the step
@@ -356,7 +360,7 @@ contains
                low = t
                slope_low = slope
             end if
-            ! Where the slope would be nought if it changed evenly, but not all too near to an end
+            ! Secant step, kept away from both ends
             t = slope_high / (slope_high - slope_low)
             t = high - min(0.9_wp, max(0.1_wp, t)) * (high - low)
          end do
@@ -368,7 +372,8 @@ contains
    pure subroutine find_missing(problem, rate)
       type(impulse_problem), intent(inout) :: problem
       real(wp), intent(in) :: rate(:)
-      call give_impulses(problem, problem%mass * (problem%free - rate), problem%missing)
+      problem%missing(:) = problem%mass * (problem%free - rate)
+      call give_impulses(problem)
    end subroutine find_missing
 
    !> Whether the matrix is that of what the points do now: where one slides on a round cone it changes all the time
@@ -384,30 +389,30 @@ contains
    !> M + sum of r row row' over the directions in which points resist
    pure subroutine assemble(problem)
       type(impulse_problem), intent(inout) :: problem
-      integer :: i, k, first, n
+      integer :: i, k, first, pair
       problem%matrix%a(:) = 0.0_wp
       do i = 1, problem%matrix%n
          problem%matrix%a(problem%matrix%start(i) + i) = problem%mass(i)
       end do
-      n = 2 * problem%freedoms
       first = 1
+      pair = 0
       do k = 1, problem%points
          if (k < problem%points) then
             if (.not. is_next_pair(problem, k + 1)) cycle
          end if
-         call assemble_pair(problem, first, k, n, problem%block(:n * n, first))
-         call skyline_add(problem%matrix, problem%node(:, k), problem%block(:n * n, first))
+         pair = pair + 1
+         call assemble_pair(problem, first, k, pair)
+         call skyline_add(problem%matrix, problem%node(:, k), problem%block(:, pair))
          first = k + 1
       end do
    end subroutine assemble
 
    !> What the points of a pair resist with, unless it is what they did when last it was asked for
-   pure subroutine assemble_pair(problem, first, last, n, block)
-      type(impulse_problem), intent(in) :: problem
-      integer, intent(in) :: first
+   pure subroutine assemble_pair(problem, first, last, pair)
+      type(impulse_problem), intent(inout) :: problem
+      integer, intent(in) :: first                  !! points
       integer, intent(in) :: last
-      integer, intent(in) :: n                      !! freedoms of both bodies
-      real(wp), intent(inout) :: block(n, n)
+      integer, intent(in) :: pair
       integer :: k
       logical :: same
       same = .true.
@@ -416,15 +421,15 @@ contains
          if (problem%directions == in_space) same = same .and. problem%state(k) /= slides
       end do
       if (same) return
-      block = 0.0_wp
+      problem%block(:, pair) = 0.0_wp
       do k = first, last
          if (problem%state(k) == parts) cycle
          if (problem%directions == in_plane) then
             call resist(6, 2, problem%state(k), problem%friction(k), problem%weight(k), problem%trial(:, k), &
-               problem%row(:, :, :, k), block)
+               problem%row(:, :, :, k), problem%block(:, pair))
          else
             call resist(12, 3, problem%state(k), problem%friction(k), problem%weight(k), problem%trial(:, k), &
-               problem%row(:, :, :, k), block)
+               problem%row(:, :, :, k), problem%block(:, pair))
          end if
       end do
    end subroutine assemble_pair
@@ -485,15 +490,12 @@ contains
       end do
    end subroutine add_outer
 
-   !> Momenta with the impulses that were found at the points [N s]
-   pure subroutine give_impulses(problem, before, momentum)
-      type(impulse_problem), intent(in) :: problem
-      real(wp), intent(in) :: before(:)
-      real(wp), intent(out) :: momentum(:)
+   !> Add the impulses that were found at the points to what is missing [N s]
+   pure subroutine give_impulses(problem)
+      type(impulse_problem), intent(inout) :: problem
       real(wp) :: both(12)
       integer :: k, n, side, at
       n = problem%freedoms
-      momentum(:) = before
       both = 0.0_wp
       do k = 1, problem%points
          if (problem%directions == in_plane) then
@@ -506,7 +508,7 @@ contains
          end if
          do side = 1, 2
             at = n * (problem%node(side, k) - 1)
-            if (at >= 0) momentum(at + 1:at + n) = momentum(at + 1:at + n) + both(n * (side - 1) + 1:n * side)
+            if (at >= 0) problem%missing(at + 1:at + n) = problem%missing(at + 1:at + n) + both(n * (side - 1) + 1:n * side)
          end do
          both = 0.0_wp
       end do
@@ -525,7 +527,8 @@ contains
       end do
    end subroutine add_momentum
 
-   !> New impulses from the trial ones, and by how much the law was violated
+   !> New impulses from the trial ones, and by how much the law was violated, at the velocities that follow from the
+   !> impulses: Newton's method may have left some of these missing
    pure subroutine take_impulses(problem, residual)
       type(impulse_problem), intent(inout) :: problem
       real(wp), intent(out) :: residual             !! [m/s]
@@ -534,12 +537,38 @@ contains
       residual = 0.0_wp
       do k = 1, problem%points
          raised = raising(problem%friction(k), problem%rate_at(along_tangent:, k))
-         residual = max(residual, maxval(abs(problem%near(:, k) - problem%impulse(:, k))) / problem%weight(k))
-         if (problem%state(k) > sticks) residual = max(residual, abs(raised - problem%raised(k)))
+         residual = max(residual, maxval(abs(problem%near(:, k) - problem%impulse(:, k))) / problem%weight(k), &
+            not_reached(problem, k))
+         if (problem%state(k) == parts) then
+            residual = max(residual, -problem%rate_at(along_normal, k))
+         else
+            residual = max(residual, abs(raised - problem%raised(k)))
+         end if
          problem%impulse(:, k) = problem%near(:, k)
          problem%asked(k, now) = raised
       end do
    end subroutine take_impulses
+
+   !> By how much the velocities at a point change if the bodies are given what is missing [m/s]
+   pure function not_reached(problem, k) result(change)
+      type(impulse_problem), intent(in) :: problem
+      integer, intent(in) :: k
+      real(wp) :: change
+      real(wp) :: w
+      integer :: d, i, side, at
+      change = 0.0_wp
+      do d = 1, problem%directions
+         w = 0.0_wp
+         do side = 1, 2
+            at = problem%freedoms * (problem%node(side, k) - 1)
+            if (at < 0) cycle
+            do i = 1, problem%freedoms
+               w = w + problem%row(i, side, d, k) * problem%missing(at + i) / problem%mass(at + i)
+            end do
+         end do
+         change = max(change, abs(w))
+      end do
+   end function not_reached
 
    !> c for the next round: as was found, and where that comes no nearer in space, as it would come to rest if
    !> every change were that share of the one before it that the last two show (Anderson 1965, of one round). In the
@@ -547,7 +576,7 @@ contains
    pure subroutine follow(problem, rounds)
       type(impulse_problem), intent(inout) :: problem
       integer, intent(in) :: rounds                 !! so far
-      real(wp), parameter :: farthest = 100.0_wp     !! changes at once
+      real(wp), parameter :: farthest = 100.0_wp    !! changes at once
       real(wp) :: back, square, share
       logical :: far
       integer :: k
@@ -556,12 +585,12 @@ contains
       square = 0.0_wp
       do k = 1, problem%points
          problem%change(k, now) = problem%asked(k, now) - problem%raised(k)
-         if (.not. far) cycle
+         if (.not. far .or. problem%state(k) == parts) cycle
          back = back + problem%change(k, now) * (problem%change(k, now) - problem%change(k, before))
          square = square + (problem%change(k, now) - problem%change(k, before))**2
       end do
       share = 0.0_wp
-      if (square > 0.0_wp) share = max(-farthest, back / square)
+      if (square > 0.0_wp) share = max(-farthest, min(farthest, back / square))
       do k = 1, problem%points
          problem%raised(k) = problem%asked(k, now)
          if (abs(share) > 0.0_wp) problem%raised(k) = max(0.0_wp, &
