@@ -135,6 +135,7 @@ contains
       integer, intent(in) :: most_rounds
       type(impulse_effort), intent(out) :: effort
       real(wp) :: residual
+      logical :: exact
       integer :: k, n
 
       n = problem%points
@@ -147,8 +148,8 @@ contains
       end do
       do while (effort%rounds < most_rounds)
          effort%rounds = effort%rounds + 1
-         call least_energy(problem, tolerance, effort)
-         call take_impulses(problem, residual)
+         call least_energy(problem, tolerance, effort, exact)
+         call take_impulses(problem, exact, residual)
          if (effort%rounds == 1 .or. residual < effort%residual) then
             effort%residual = residual
             problem%best(:, :n) = problem%impulse(:, :n)
@@ -299,14 +300,16 @@ contains
 
    !> Newton's method for the velocities at which that function is least. Minus its slope are the impulses that are
    !> still missing
-   pure subroutine least_energy(problem, tolerance, effort)
+   pure subroutine least_energy(problem, tolerance, effort, exact)
       type(impulse_problem), intent(inout) :: problem
       real(wp), intent(in) :: tolerance             !! [m/s]
       type(impulse_effort), intent(inout) :: effort
+      logical, intent(out) :: exact                 !! nothing is missing but what rounding leaves
       integer :: n, round
       logical :: whole
       integer(c_int) :: status
 
+      exact = .false.
       n = problem%points
       call look(problem, problem%rate)
       call find_missing(problem, problem%rate)
@@ -323,7 +326,8 @@ contains
          call skyline_solve(problem%matrix, problem%load)
          call go_along(problem, whole)
          if (.not. whole) cycle
-         if (unchanged(problem)) return
+         exact = unchanged(problem)
+         if (exact) return
          ! Points on the verge of sliding may change sides for ever and move nothing. And no velocity is farther off
          ! than by the impulses that are missing: what slides on a round cone has turned little.
          if (maxval(abs(problem%load)) < close * tolerance) return
@@ -529,16 +533,17 @@ contains
 
    !> New impulses from the trial ones, and by how much the law was violated, at the velocities that follow from the
    !> impulses: Newton's method may have left some of these missing
-   pure subroutine take_impulses(problem, residual)
+   pure subroutine take_impulses(problem, exact, residual)
       type(impulse_problem), intent(inout) :: problem
+      logical, intent(in) :: exact                  !! see least_energy
       real(wp), intent(out) :: residual             !! [m/s]
       real(wp) :: raised
       integer :: k
       residual = 0.0_wp
       do k = 1, problem%points
          raised = raising(problem%friction(k), problem%rate_at(along_tangent:, k))
-         residual = max(residual, maxval(abs(problem%near(:, k) - problem%impulse(:, k))) / problem%weight(k), &
-            not_reached(problem, k))
+         residual = max(residual, maxval(abs(problem%near(:, k) - problem%impulse(:, k))) / problem%weight(k))
+         if (.not. exact) residual = max(residual, not_reached(problem, k))
          if (problem%state(k) == parts) then
             residual = max(residual, -problem%rate_at(along_normal, k))
          else
