@@ -62,6 +62,8 @@ module dem3_law
    real(wp), parameter :: same = 0.5_wp
    !> and carry on as they are where they are of the same features and their area is the same but for this share
    real(wp), parameter :: still_same = 0.1_wp
+   !> What rounding leaves of a gap [m]: joints begin without one, and mortar may have no tensile strength
+   real(wp), parameter :: grain = 1.0e-12_wp
 
 contains
 
@@ -207,7 +209,7 @@ contains
             call measure(point%what, a, b, normal, gap, at)
             if (gap >= 0.0_wp) then
                ! Mortar that is torn farther than its strength is gone for good.
-               point%bonded = point%bonded .and. law%normal_stiffness * gap <= law%tension
+               point%bonded = point%bonded .and. law%normal_stiffness * (gap - grain) <= law%tension
                if (.not. (point%closed .or. point%bonded)) cycle
             end if
             arm_a = at - a%x

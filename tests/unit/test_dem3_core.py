@@ -363,3 +363,130 @@ def test_wrong_models_are_refused() -> None:
         dem3.run(replace(good, vertices=[good.vertices[0] * np.nan, good.vertices[1]]), options)
     with pytest.raises(CoreError, match="outside its range"):
         dem3.run(replace(good, faces=[((0, 1, 99), *good.faces[0][1:]), good.faces[1]]), options)
+
+
+def hanging(law: Law) -> Solids:
+    """A cube of a metre below a support of the same size."""
+    model = solids([box((-0.5, -0.5, k), (0.5, 0.5, k + 1)) for k in (0, 1)], law, floor=False)
+    dry = replace(law, cohesion=0.0, tension=0.0)
+    return replace(model, mass=np.array([model.mass[0], 0.0]), laws=[dry, law], joints={(0, 1): 1})
+
+
+@pytest.mark.parametrize("share", [0.95, 1.6])
+def test_mortar_bears_the_weight_that_hangs_on_it(share: float) -> None:
+    """Below its strength a cube hangs, drawn out by weight over stiffness; above it falls freely and the ledger closes."""
+    weight, stiffness = DENSITY * GRAVITY, 1e9
+    law = Law(stiffness, stiffness, 0.5, 2e-3, cohesion=weight, tension=share * weight)
+    run = dem3.run(hanging(law), Options(end_time=0.3, output_step=0.01), rate=np.zeros((2, 6)))
+    fall = run.place[0, 0, 2] - run.place[-1, 0, 2]
+    if share > 1.0:
+        assert fall == pytest.approx(weight / stiffness, rel=1e-2)
+    else:
+        assert fall == pytest.approx(0.5 * GRAVITY * 0.3**2, rel=0.03)
+    assert run.residual < 5e-3
+
+
+@pytest.mark.parametrize("share", [0.9, 2.5])
+def test_mortar_bears_shear_by_cohesion(share: float) -> None:
+    """On a slope without enough friction a cube sticks by cohesion; once that is broken for good, friction alone brakes it."""
+    weight, mu, slope = DENSITY * GRAVITY, 0.2, np.radians(35.0)
+    pull = GRAVITY * np.array([np.sin(slope), 0.0, -np.cos(slope)])
+    needed = weight * (np.sin(slope) - mu * np.cos(slope))
+    law = Law(1e9, 1e9, mu, 2e-3, cohesion=share * needed, tension=weight)
+    cubes = solids([box((-0.5, -0.5, 0), (0.5, 0.5, 1))], law)
+    model = replace(cubes, laws=[replace(law, cohesion=0.0, tension=0.0), law], joints={(0, 1): 1})
+    run = dem3.run(model, Options(end_time=0.5, output_step=0.01, gravity=tuple(pull)), rate=np.zeros((2, 6)))
+    way = run.place[-1, 0, 0] - run.place[0, 0, 0]
+    if share > 1.0:
+        assert way < 1e-4
+    else:
+        assert way == pytest.approx(0.5 * needed / DENSITY * 0.5**2, rel=0.03)
+    assert run.residual < 5e-3
+
+
+def doweled_cube(strength: float, reach: float = np.inf, stiffness: float = 1e9) -> Solids:
+    """A cube on a floor, with a dowel in the middle of its base."""
+    model = solids([box((-0.5, -0.5, 0), (0.5, 0.5, 1))], Law(1e9, 1e9, 0.2, 1e-4))
+    one = dem3.Dowels(
+        np.array([[1, 0]]), np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]), np.array([stiffness]), np.array([strength]),
+        np.array([reach]), 1e-4,
+    )  # fmt: skip
+    return replace(model, dowels=one)
+
+
+@pytest.mark.parametrize("way", [0.0, 50.0, 200.0])
+def test_a_dowel_bears_shear_in_any_direction(way: float) -> None:
+    """On a slope: an unbroken dowel holds what friction does not, drawn out by that over its stiffness; one that gives way
+    brakes with its strength."""
+    weight, mu, slope = DENSITY * GRAVITY, 0.2, np.radians(35.0)
+    down = np.array([np.cos(np.radians(way)), np.sin(np.radians(way)), 0.0])
+    pull = tuple(GRAVITY * (np.sin(slope) * down - [0.0, 0.0, np.cos(slope)]))
+    needed = weight * (np.sin(slope) - mu * np.cos(slope))
+    given = Options(end_time=0.5, output_step=0.01, gravity=pull)
+    held = dem3.run(doweled_cube(np.inf), given)
+    assert np.linalg.norm(held.place[-1, 0] - held.place[0, 0]) < 1e-6
+    assert held.dowel_slip[0] == 0.0
+    strength = 0.4 * needed
+    run = dem3.run(doweled_cube(strength), given, rate=np.zeros((2, 6)))
+    moved = run.place[-1, 0] - run.place[0, 0]
+    assert moved @ down == pytest.approx(0.5 * (needed - strength) / DENSITY * 0.5**2, rel=5e-3)
+    assert np.linalg.norm(moved[:2] - (moved @ down) * down[:2]) < 1e-4
+    assert run.dowel_slip[0] == pytest.approx(moved @ down, abs=2e-3)  # but for what the cube leans
+    assert run.residual < 1e-3
+
+
+def test_a_dowel_keeps_momentum_and_energy() -> None:
+    """Two cubes that float, turning apart, held in the joint by a dowel alone: momentum, moment of momentum and energy."""
+    cubes = [box((-0.5, -0.5, k), (0.5, 0.5, k + 0.99)) for k in range(2)]
+    model = solids(cubes, Law(1e9, 1e9, 0.0), floor=False)
+    one = dem3.Dowels(
+        np.array([[0, 1]]), np.array([[0.2, 0.1, 0.995]]), np.array([[0.0, 0.0, 1.0]]), np.array([1e6]), np.array([np.inf]),
+        np.array([np.inf]),
+    )  # fmt: skip
+    rate = np.array([[0.05, 0.02, -0.2, 0.1, 0.0, 0.3], [-0.05, 0.0, 0.2, 0.0, -0.1, -0.2]])
+    options = Options(end_time=0.5, output_step=0.05, gravity=(0, 0, 0), step=1e-5)
+    run = dem3.run(replace(model, dowels=one), options, rate=rate)
+    inertia = run.turn @ model.inertia @ np.swapaxes(run.turn, 2, 3)
+    spin = np.einsum("tnij,tnj->tni", inertia, run.rate[:, :, 3:])
+    linear = model.mass[:, None] * run.rate[:, :, :3]
+    moment = (spin + np.cross(run.place, linear)).sum(axis=1)
+    assert np.abs(np.diff(linear.sum(axis=1), axis=0)).max() < 1e-9 * np.abs(linear).max()
+    assert np.abs(moment - moment[0]).max() < 1e-3 * np.abs(spin).max()
+    assert run.energy["elastic"].max() > 5e-3 * run.energy["kinetic"][0]
+    total = run.energy["kinetic"] + run.energy["elastic"]
+    assert total == pytest.approx(total[0], rel=1e-4)
+
+
+def test_a_dowel_comes_out_where_stones_part_farther_than_it_reaches() -> None:
+    """Thrown up by less than the reach it lands on its dowel, by more it has lost it and is free to slide."""
+    slope = np.radians(35.0)
+    pull = (GRAVITY * np.sin(slope), 0.0, -GRAVITY * np.cos(slope))
+    for speed, out in ((0.5, False), (2.0, True)):
+        height = 0.5 * speed**2 / (GRAVITY * np.cos(slope))
+        assert (height > 0.1) == out
+        run = dem3.run(
+            doweled_cube(np.inf, 0.1), Options(end_time=0.8, output_step=0.01, gravity=pull, residual_limit=1.0),
+            rate=np.array([[0, 0, speed, 0, 0, 0], [0, 0, 0, 0, 0, 0]]),
+        )  # fmt: skip
+        assert bool(run.dowel_out[0]) == out
+        assert (run.place[-1, 0, 0] > 0.2) == out
+
+
+def test_dowels_are_checked_and_threads_and_pauses_change_no_bit() -> None:
+    drums = [box((-0.5, -0.5, 0.5 * k), (0.5, 0.5, 0.5 * k + 0.5)) for k in range(3)]
+    model = solids(drums, Law(1e9, 1e9, 0.3, 1e-4, tension=1e4, cohesion=1e4))
+    pairs = np.array([[3, 0], [0, 1], [1, 2]])
+    places, axes, n = np.array([[0, 0, 0.0], [0, 0, 0.5], [0, 0, 1.0]]), np.tile([0.0, 0.0, 1.0], (3, 1)), np.ones(3)
+    whole = replace(model, dowels=dem3.Dowels(pairs, places, axes, 1e8 * n, 2e3 * n, 0.05 * n, 1e-4))
+    options = Options(end_time=0.6, output_step=0.01, residual_limit=1.0)
+    runs = [dem3.run(whole, replace(options, threads=k), shaken(0.6)) for k in (1, 2)]
+    assert (runs[0].place == runs[1].place).all()
+    assert (runs[0].dowel_slip == runs[1].dowel_slip).all()
+    assert runs[0].dowel_slip.max() > 0.0
+    for wrong, error in (
+        (replace(whole.dowels, body=pairs + 9), IndexError), (replace(whole.dowels, body=pairs * 0), CoreError),
+        (replace(whole.dowels, stiffness=-n), CoreError), (replace(whole.dowels, axis=2 * axes), CoreError),
+        (replace(whole.dowels, place=places * np.nan), ValueError), (replace(whole.dowels, reach=n[:2]), ValueError),
+    ):  # fmt: skip
+        with pytest.raises(error):
+            dem3.Model(replace(model, dowels=wrong), options)

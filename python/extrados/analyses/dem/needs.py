@@ -74,7 +74,8 @@ def _needs_of_solids(context: Context, options: tables.SpatialDem, stones: Solid
 
     for text, key in refusals(building, options):
         yield partial(refuse, text, key)
-    yield lambda: refuse_stones(building, stones)
+    both = isinstance(options, tables.DemDomain) and options.cross_check
+    yield lambda: refuse_stones(building, stones, options.rigid or both)
     if not isinstance(options, tables.Dem):
         return
     if context.deck.motion is not None and options.test == "motion":

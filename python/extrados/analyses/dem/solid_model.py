@@ -24,6 +24,8 @@ class SolidValues:
     stiffness: np.ndarray
     shear_stiffness: np.ndarray
     friction: np.ndarray
+    cohesion: np.ndarray
+    tension: np.ndarray
     beta: float
     impact: impact_rules.Impact
 
@@ -59,13 +61,12 @@ class SolidModel:
         return [*self.assembly.block_names, *(f"support {k + 1}" for k in range(len(self.supports.bodies)))]
 
     def bodies(self) -> dem3.Solids:
-        """Bodies and laws for the core; contacts that form later take the median of the joints."""
+        """Bodies and laws for the core; contacts that form later take the median of the joints, without mortar."""
         one, v = self.assembly, self.values
         below = self.supports.bodies
         parts = [*one.parts, *below]
-        laws = [
-            _law(float(np.median(v.stiffness)), float(np.median(v.shear_stiffness)), float(np.median(v.friction)), v)
-        ]
+        dry = [float(np.median(x)) for x in (v.stiffness, v.shear_stiffness, v.friction)]
+        laws = [_law(v, *dry)]
         numbers: dict[dem3.Law, int] = {}
         joints: dict[tuple[int, int], int] = {}
         weight: dict[tuple[int, int], list[int]] = {}
@@ -74,9 +75,8 @@ class SolidModel:
             weight.setdefault((min(one_of, other), max(one_of, other)), []).append(j)
         for pair, shared in weight.items():
             area = one.area[shared]
-            law = _law(
-                *(float(np.average(x[shared], weights=area)) for x in (v.stiffness, v.shear_stiffness, v.friction)), v
-            )
+            of_pair = (v.stiffness, v.shear_stiffness, v.friction, v.cohesion, v.tension)
+            law = _law(v, *(float(np.average(x[shared], weights=area)) for x in of_pair))
             if law not in numbers:
                 numbers[law] = len(laws)
                 laws.append(law)
@@ -87,11 +87,30 @@ class SolidModel:
             np.concatenate([one.centroid, np.reshape(middle, (-1, 3))]), np.concatenate([one.mass, np.zeros(count)]),
             np.concatenate([one.inertia, np.tile(np.eye(3), (count, 1, 1))]), [p.vertices for p in parts],
             [p.faces for p in parts], [*one.owner.tolist(), *range(self.count, self.count + count)], laws, joints,
+            self._dowels(),
         )  # fmt: skip
 
+    def _dowels(self) -> dem3.Dowels | None:
+        """The keys, each as stiff as the shear springs of all contacts of the two stones that it holds together."""
+        one, v = self.assembly, self.values
+        if one.keys is None:
+            return None
+        j = one.keys.joint
+        pair = np.column_stack([one.b[j], one.a[j]])  # the normal of a contact points into a
+        together = [(one.a == a) & (one.b == b) for b, a in pair]
+        stiffness = [float((v.shear_stiffness * one.area)[shared].sum()) for shared in together]
+        return dem3.Dowels(
+            pair, one.keys.point, one.normal[j], np.array(stiffness), one.keys.strength, one.keys.reach, v.beta
+        )
 
-def _law(stiffness: float, shear: float, friction: float, values: SolidValues) -> dem3.Law:
-    return dem3.Law(*(float(f"{x:.12g}") for x in (stiffness, shear, friction)), values.beta)
+
+def _law(
+    values: SolidValues, stiffness: float, shear: float, friction: float, cohesion: float = 0.0, tension: float = 0.0
+) -> dem3.Law:
+    of_joint, of_mortar = (
+        (float(f"{x:.12g}") for x in group) for group in ((stiffness, shear, friction), (cohesion, tension))
+    )
+    return dem3.Law(*of_joint, values.beta, *of_mortar)
 
 
 def make_solid_model(building: Building, options: SpatialDem) -> SolidModel:
@@ -129,19 +148,20 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
     ]
 
 
-def refuse_stones(building: Building, assembly: SolidAssembly) -> None:
-    """Refused where the blocks have mortar, dowels or fill, which the elements in space do not know, or too many corners."""
+def refuse_stones(building: Building, assembly: SolidAssembly, rigid: bool) -> None:
+    """Refused where the blocks have fill or too many corners, and mortar or dowels where contacts are to be rigid."""
     for part, owner in zip(assembly.parts, assembly.owner.tolist(), strict=True):
         if (most := max(map(len, part.faces))) > dem3.MOST_CORNERS:
             raise Refused(
                 f"{assembly.block_names[owner]} has a face of {most} corners: dem of solids takes up to {dem3.MOST_CORNERS}; cut it, or "
                 "draw it with fewer", ("structure",),
             )  # fmt: skip
-    for name in ("cohesion", "tension"):
-        if np.nanmax(building.joint_property(name, assembly), initial=0.0) > 0.0:
-            raise Refused(f"joints.{name}: dem of solids knows dry joints alone", ("joints", name))
-    if assembly.keys is not None:
-        raise Refused("dowels: dem of solids cannot take them into account; leave them out", ("structure", "dowels"))
+    if rigid:
+        for name in ("cohesion", "tension"):
+            if np.nanmax(building.joint_property(name, assembly), initial=0.0) > 0.0:
+                raise Refused('rigid contacts (solver = "nonsmooth") know no mortar', ("joints", name))
+        if assembly.keys is not None:
+            raise Refused('rigid contacts (solver = "nonsmooth") know no dowels', ("structure", "dowels"))
     if len(assembly.fill):
         raise Refused(
             "fill: dem of solids cannot take what rests on the stones into account; leave it out", ("structure", "fill")
@@ -161,7 +181,10 @@ def solid_values(building: Building, assembly: SolidAssembly) -> SolidValues:
     shear = (
         np.full_like(stiffness, joints.shear_stiffness) if joints.shear_stiffness else stiffness * joints.shear_ratio
     )
-    return SolidValues(stiffness, shear, building.joint_property("friction", assembly), beta, impact)
+    friction, cohesion, tension = (
+        building.joint_property(name, assembly) for name in ("friction", "cohesion", "tension")
+    )
+    return SolidValues(stiffness, shear, friction, np.nan_to_num(cohesion), np.nan_to_num(tension), beta, impact)
 
 
 def _sides(assembly: SolidAssembly) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -5,6 +5,7 @@ import numpy as np
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.common import loads_of
 from extrados.building.building import Building
+from extrados.building.geometry.solids.assembly import SolidAssembly
 from extrados.limit.answer import why_not
 from extrados.limit.equilibrium import Disconnected
 from extrados.limit.errors import NoAnswer
@@ -36,11 +37,15 @@ def against_limit_analysis(building: Building, stands: bool) -> str:
         return "" if stands else WEDGED
     if not stands:
         return f"limit analysis agrees: {reason}"
-    glued = any(np.nanmax(building.joint_property(name), initial=0.0) > 0.0 for name in ("cohesion", "tension"))
-    held = (
-        "by the cohesion and tension of its joints, which limit analysis leaves out" if glued else "for no reason known"
-    )
-    return f"elements stand {held}, but limit analysis finds that it cannot stand under its own weight: {reason}"
+    return f"elements stand {_held(building, None)}, but limit analysis finds that it cannot stand under its own weight: {reason}"
+
+
+def _held(building: Building, assembly: SolidAssembly | None) -> str:
+    """By what a building stands that limit analysis finds to fall."""
+    for name in ("cohesion", "tension"):
+        if np.nanmax(building.joint_property(name, assembly), initial=0.0) > 0.0:
+            return "by the cohesion and tension of its joints, which limit analysis leaves out"
+    return "for no reason known"
 
 
 def solids_against_limit_analysis(building: Building, stands: bool) -> str:
@@ -58,4 +63,4 @@ def solids_against_limit_analysis(building: Building, stands: bool) -> str:
     reason = f"a motion, fastest at {name}, that no contact hinders and by which the weights do work"
     if not stands:
         return f"limit analysis agrees: {reason}"
-    return f"elements stand for no reason known, but limit analysis finds that it cannot stand under its own weight: {reason}"
+    return f"elements stand {_held(building, assembly)}, but limit analysis finds that it cannot stand under its own weight: {reason}"

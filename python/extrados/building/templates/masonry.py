@@ -77,6 +77,9 @@ class Column(Structure):
     dowels: Annotated[Force, Field(gt=0)] | Literal["unbroken"] | None = key(
         None, 'dowels in the axis between the drums: the shear each bears, or "unbroken"'
     )
+    dowel_reach: Length | None = key(
+        None, "how far the dowels reach into the drum above: parted farther, it has lost them; default: never", gt=0
+    )
 
     @model_validator(mode="after")
     def _one_height(self) -> "Column":
@@ -91,6 +94,8 @@ class Column(Structure):
             raise ValueError(f'{min(wrong)} is of round drums: section = "round"')
         if self.section == "round" and "depth" in given:
             raise ValueError("depth is of rectangular drums; round ones have their width as a diameter")
+        if self.dowel_reach is not None and self.dowels is None:
+            raise ValueError("dowel_reach is of dowels: say what shear they bear")
         if self.flute_depth >= 0.25 * self.width:
             raise ValueError(f"flute_depth {self.flute_depth:g} m is not below a quarter of the width {self.width:g} m")
         return self
@@ -121,6 +126,6 @@ class Column(Structure):
             made = drums(self.width, self._heights, self.top_width, self.sides, self.flute_depth, density)
         else:
             made = drawn_out(make_column(self.width, self._heights, self.top_width, density, self.depth))
-        return (
-            made if self.dowels is None else doweled(made, np.inf if self.dowels == "unbroken" else float(self.dowels))
-        )
+        if self.dowels is None:
+            return made
+        return doweled(made, np.inf if self.dowels == "unbroken" else float(self.dowels), self.dowel_reach or np.inf)

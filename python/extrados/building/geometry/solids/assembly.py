@@ -20,12 +20,14 @@ MOST_TOLD = 6  # faults of a kind that are told by name
 
 @dataclass(frozen=True)
 class Keys:
-    """Dowels and other keys across contacts: where they stand (nk, 3) [m], the contact that each crosses, and the shear
-    that each bears [N], infinite where it is not to give way."""
+    """Dowels and other keys across contacts: where they stand (nk, 3) [m], the contact that each crosses, the shear that
+    each bears [N], infinite where it is not to give way, and how far each reaches into the stone above [m], infinite where
+    it never comes out."""
 
     point: np.ndarray
     joint: np.ndarray
     strength: np.ndarray
+    reach: np.ndarray
 
 
 @dataclass(frozen=True)

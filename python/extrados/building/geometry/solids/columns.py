@@ -47,8 +47,9 @@ def drums(
     return assemble(stones, ground=[0.0], what="column")
 
 
-def doweled(column: SolidAssembly, strength: float) -> SolidAssembly:
-    """The column with a dowel of a shear strength [N] in the middle of each joint between two of its stones."""
+def doweled(column: SolidAssembly, strength: float, reach: float) -> SolidAssembly:
+    """The column with a dowel of a shear strength [N], which reaches as far into the upper stone [m], in the middle of each
+    joint between two of its stones."""
     pairs: dict[tuple[int, int], list[int]] = {}
     for j, (one, two) in enumerate(zip(column.a.tolist(), column.b.tolist(), strict=True)):
         if two >= 0:
@@ -58,4 +59,5 @@ def doweled(column: SolidAssembly, strength: float) -> SolidAssembly:
         for joints in pairs.values()
     ]
     first = np.array([joints[0] for joints in pairs.values()], dtype=int)
-    return replace(column, keys=Keys(np.array(middle).reshape(-1, 3), first, np.full(len(first), strength)))
+    n = len(first)
+    return replace(column, keys=Keys(np.array(middle).reshape(-1, 3), first, np.full(n, strength), np.full(n, reach)))
