@@ -161,12 +161,16 @@ class SolidRuns(Job[dem3.Run]):
             "blamed": np.array([*found.blamed, -1][:1]),
             "turn": padded(found.turn, length),
             "settled_turn": found.settled_turn,
+            "dowel_slip": found.dowel_slip,
+            "dowel_out": found.dowel_out,
         }
 
     def run_of(self, rows: dict[str, np.ndarray], k: int = 0) -> dem3.Run:
         """The run of row k."""
         row = {name: values[k] for name, values in rows.items()}
-        return dem3.Run(**record_of(row), turn=row["turn"][: int(row["points"])], settled_turn=row["settled_turn"])
+        history = {"turn": row["turn"][: int(row["points"])]}
+        rest = {name: row[name] for name in ("settled_turn", "dowel_slip", "dowel_out")}
+        return dem3.Run(**record_of(row), **history, **rest)
 
 
 def recorded(found: dem_run.FoundRun, length: int) -> dict[str, np.ndarray]:
