@@ -590,7 +590,7 @@ contains
       square = 0.0_wp
       do k = 1, problem%points
          problem%change(k, now) = problem%asked(k, now) - problem%raised(k)
-         if (.not. far .or. problem%state(k) == parts) cycle
+         if (.not. far) cycle
          back = back + problem%change(k, now) * (problem%change(k, now) - problem%change(k, before))
          square = square + (problem%change(k, now) - problem%change(k, before))**2
       end do

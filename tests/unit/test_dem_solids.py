@@ -11,6 +11,7 @@ from extrados.building.geometry.solids.assembly import Stone, assemble
 from extrados.building.geometry.solids.polyhedra import box
 from extrados.building.geometry.solids.supports import supports_of
 from extrados.decks.reader import DeckError
+from extrados.schema.constants import GRAVITY
 
 COLUMN = """
 [structure]
@@ -87,8 +88,23 @@ def test_both_horizontal_components_of_a_record_act_at_once(tmp_path) -> None:
 )  # fmt: skip
 def test_tilt_is_that_of_limit_analysis(tmp_path, structure: str, direction: float, solver: str) -> None:
     """Within 1 % on stiff joints and on rigid contacts: a column, a wall out of its plane, an arch with depth."""
+    assert tilted_as_limit_analysis(tmp_path, structure, direction, solver, 0.7).opening_contacts
+
+
+@pytest.mark.verify
+def test_dowels_bear_as_in_limit_analysis(tmp_path) -> None:
+    """A drum that slides on a dowel: friction plus the dowel's strength over the weight, within 1 % by both."""
+    structure = 'kind = "column"\nsection = "round"\nsides = 16\nwidth = 1.0\nheight = 1.2\ndrums = 2\ndowels = "2 kN"'
+    structure += '\n[[joints.types]]\njoints = ["ground"]\nfriction = 1.0'  # the lower drum does not slide first
+    found = tilted_as_limit_analysis(tmp_path, structure, 20.0, "compliant", 0.25)
+    weight = 2000.0 * GRAVITY * 0.6 * 0.5 * 16 * 0.25 * np.sin(np.pi / 8)
+    assert found.collapse_acceleration_g == pytest.approx(0.25 + 2000.0 / weight, rel=0.01)
+
+
+def tilted_as_limit_analysis(tmp_path, structure: str, direction: float, solver: str, friction: float) -> Any:
+    """Results of elements, held against limit analysis."""
     text = (
-        f"[structure]\n{structure}\n[joints]\nnormal_stiffness = 1e11\n"
+        f"[structure]\n{structure}\n[material]\ndensity = 2000\n[joints]\nnormal_stiffness = 1e11\nfriction = {friction}\n"
         f'[[analysis]]\nkind = "tilt"\ndirection = {direction}\nrose = 4\n'
         f'[[analysis]]\nkind = "dem"\ntest = "tilt"\ndirection = {direction}\ntilt_limit = "0.8 g"\ntilt_accuracy = 5e-4\n'
         f'solver = "{solver}"\n'
@@ -98,7 +114,7 @@ def test_tilt_is_that_of_limit_analysis(tmp_path, structure: str, direction: flo
     limit, elements = (r.results for r in extrados.run(deck).results)
     for key in ("collapse_acceleration_g", "collapse_acceleration_opposite_g"):
         assert getattr(elements, key) == pytest.approx(getattr(limit, key), rel=0.01)
-    assert elements.opening_contacts
+    return elements
 
 
 def test_solids_of_a_file_stand_or_fall(tmp_path) -> None:
@@ -121,7 +137,7 @@ def test_solids_of_a_file_stand_or_fall(tmp_path) -> None:
         ("", "mass_damping = 1.0", "mass_damping"),
         ("", "vary_damping = [0.5]", "vary_damping"),
         ("[initial]\nrotation_ratio = 0.5\n", "", "rotation_ratio"),
-        ("cohesion = 1e5\n", "", "joints.cohesion: dem of solids knows dry joints alone"),
+        ("cohesion = 1e5\n", 'solver = "nonsmooth"', "know no mortar"),
         ("worn_corners = 0.01\n", "", "worn corners"),
         ("", 'track = ["drum 9"]', "names no block 'drum 9'"),
     ],
@@ -129,6 +145,24 @@ def test_solids_of_a_file_stand_or_fall(tmp_path) -> None:
 def test_what_solids_do_not_know_is_refused_by_name(tmp_path, more: str, of_dem: str, told: str) -> None:
     found = answered(tmp_path, f'{COLUMN}{more}[[analysis]]\nkind = "dem"\n{of_dem}\n')
     assert found.status == "refused" and told in found.reason
+
+
+def test_dowels_of_a_deck(tmp_path) -> None:
+    """They hold drums that friction does not, come out where told, and are told; rigid contacts refuse them."""
+    slippery = (
+        COLUMN
+        + 'friction = 0.1\n[[joints.types]]\njoints = ["ground"]\nfriction = 1.0\n'
+        + PULSE
+        + '[[analysis]]\nkind = "dem"\nend_time = 0.6\n'
+    )
+    doweled = slippery.replace("drums = 2", 'drums = 2\ndowels = "unbroken"\ndowel_reach = "5 cm"')
+    free, held = (answered(tmp_path, text).results for text in (slippery, doweled))
+    assert (free.dowels, held.dowels, held.dowels_out, held.dowel_slip_m) == (0, 1, 0, 0.0)
+    weak = answered(tmp_path, doweled.replace("unbroken", "1 kN"))
+    assert weak.results.dowel_slip_m > 1e-3
+    assert "1 dowels give way by up to" in weak.answer
+    refused = answered(tmp_path, doweled + 'solver = "nonsmooth"\n')
+    assert refused.status == "refused" and "know no dowels" in refused.reason
 
 
 RIGID = 'solver = "nonsmooth"\n'
