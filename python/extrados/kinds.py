@@ -126,8 +126,8 @@ def load(place: str) -> Any:
     try:
         return getattr(importlib.import_module(f"extrados.{module}"), name)
     except Exception as error:
-        if room.is_short():  # imports then raise SystemError, OSError and ImportError too
-            raise MemoryError(f"not enough memory: {type(error).__name__}: {error}") from None
+        if room.lacked(error):
+            raise MemoryError(f"not enough memory: {type(error).__name__}: {error}") from error
         raise
 
 

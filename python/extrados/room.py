@@ -1,6 +1,7 @@
 """Room for the OpenBLAS that SciPy brings: it is loaded with the first analysis that needs it, takes a buffer for each of
 its threads as it loads, and where the system has none left it asks for ever. Importing this installs the look at it."""
 
+import errno
 import mmap
 import os
 import re
@@ -75,10 +76,20 @@ def _has(*pieces: int) -> bool:
     return True
 
 
-def is_short() -> bool:
-    """Whether memory is so short that whatever else failed will have failed for it: Python and its libraries then raise
-    SystemError, OSError, ImportError and others."""
-    return not _has(_SHORT)
+def lacked(error: Exception) -> bool:
+    """Whether it was memory that lacked though the error says something else, as Python and its libraries do."""
+    if isinstance(error, OSError) and error.errno == errno.ENOMEM:
+        return True
+    if isinstance(error, ImportError) and "failed to map" in str(error):  # by the loader of libraries
+        return True
+    thread = isinstance(error, RuntimeError) and "can't start new thread" in str(error)
+    return (thread or isinstance(error, SystemError | OSError | ImportError)) and not _has(_SHORT)
+
+
+def words(error: MemoryError) -> str:
+    """What is told of it; Python's own says nothing, numpy's only what it could not allocate."""
+    said = str(error)
+    return said if "not enough memory" in said else ": ".join(filter(None, ("not enough memory", said)))
 
 
 if not any(type(finder).__module__ == __name__ for finder in sys.meta_path):  # a reload comes here again

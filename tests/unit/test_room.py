@@ -1,7 +1,10 @@
-"""The look at the room for OpenBLAS before SciPy loads it."""
+"""Memory that runs out while libraries are loaded: seen before where it can be, told as what it is where not, and faults that
+happen to come while memory is short stay faults."""
 
+import errno
 import importlib
 import importlib.util
+import json
 import os
 import subprocess
 import sys
@@ -9,7 +12,12 @@ from pathlib import Path
 
 import pytest
 
-from extrados import room
+from extrados import interrupts, kinds, room
+from extrados.analyses.context import Context
+from extrados.cli import main
+from extrados.decks.explain import starter
+from extrados.decks.reader import read_text
+from extrados.running.run import compute
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="limits and /proc are those of Linux")
 
@@ -130,3 +138,105 @@ def test_a_reload_adds_no_second_look() -> None:
     before = list(sys.meta_path)
     importlib.reload(room)
     assert sys.meta_path == before
+
+
+@pytest.mark.parametrize(
+    ("error", "when_short", "else_"),
+    [
+        (SystemError("returned NULL without setting an exception"), True, False),
+        (ImportError("x.so: cannot read file data"), True, False),
+        (ImportError("x.so: failed to map segment from shared object"), True, True),
+        (OSError("no words"), True, False),
+        (OSError(errno.ENOMEM, os.strerror(errno.ENOMEM)), True, True),
+        (RuntimeError("can't start new thread"), True, False),
+        (RuntimeError("no convergence"), False, False),
+        (ValueError("negative"), False, False),
+        (KeyError("name"), False, False),
+    ],
+    ids=str,
+)
+def test_what_is_told_as_memory_that_lacked(monkeypatch, error: Exception, when_short: bool, else_: bool) -> None:
+    monkeypatch.setattr(room, "_has", lambda *_: False)
+    assert room.lacked(error) is when_short
+    monkeypatch.setattr(room, "_has", lambda *_: True)
+    assert room.lacked(error) is else_
+
+
+def failing(monkeypatch, error: Exception, where: str = "run"):
+    """The result of a tilt whose driver, or the import of it, raises this while memory is short."""
+
+    def fail(*_: object) -> None:
+        raise error
+
+    context = Context(read_text(starter("tilt").encode(), "deck.toml", Path("/nowhere")))
+    if where == "run":
+        monkeypatch.setattr("extrados.analyses.limit.tilt.run", fail)
+    else:
+        monkeypatch.setattr(kinds.importlib, "import_module", fail)
+    monkeypatch.setattr(room, "_has", lambda *_: False)
+    (result,) = compute(context).results
+    return result
+
+
+@pytest.mark.parametrize("where", ["run", "import"])
+def test_lack_of_memory_is_told_and_where_it_was_met_is_kept(monkeypatch, where: str) -> None:
+    result = failing(monkeypatch, SystemError("of a library"), where)
+    assert result.status == "failed"
+    assert result.reason == "not enough memory: SystemError: of a library (internal-error-tilt.txt says where)"
+    assert b"in fail" in result.files["internal-error-tilt.txt"]
+
+
+def test_a_fault_of_ours_stays_one_while_memory_is_short(monkeypatch) -> None:
+    result = failing(monkeypatch, ZeroDivisionError("of ours"))
+    assert result.reason == "internal error, please report it with internal-error-tilt.txt: ZeroDivisionError: of ours"
+    assert b"in fail" in result.files["internal-error-tilt.txt"]
+
+
+def test_memory_that_python_itself_says_is_lacking_needs_no_report(monkeypatch) -> None:
+    result = failing(monkeypatch, MemoryError("Unable to allocate 3 MiB"))
+    assert result.reason == "not enough memory: Unable to allocate 3 MiB" and not result.files
+    assert failing(monkeypatch, MemoryError()).reason == "not enough memory"
+
+
+@pytest.mark.parametrize("error", [SystemError("of a library"), MemoryError()], ids=str)
+def test_an_interrupt_comes_before_memory(monkeypatch, error: Exception) -> None:
+    class Counted(list):
+        """As many as it was asked for, as if a signal came each time."""
+
+        def __len__(self) -> int:
+            self.append(0)
+            return super().__len__()
+
+    monkeypatch.setattr(interrupts, "asked", Counted())
+    assert failing(monkeypatch, error).status == "interrupted"
+
+
+@pytest.mark.parametrize("more", [[], ["--json"]], ids=str)
+def test_a_command_without_memory_ends_in_words(monkeypatch, capfd, tmp_path, more: list[str]) -> None:
+    (tmp_path / "deck.toml").write_text(starter("tilt"))
+
+    def fail(*_: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("extrados.decks.reader.read_deck", fail)
+    monkeypatch.setattr(sys, "argv", ["extrados", "run", str(tmp_path / "deck.toml"), *more])
+    monkeypatch.setattr(interrupts, "answer", lambda _: None)
+    with pytest.raises(SystemExit) as left:
+        main()
+    told = capfd.readouterr()
+    assert left.value.code == 3 and "Traceback" not in told.out + told.err
+    if more:
+        assert json.loads(told.out) == {"error": ["not enough memory"], "exit": 3}
+    else:
+        assert told.err.strip() == "not enough memory"
+
+
+def test_a_command_without_memory_for_anything_ends_in_words(monkeypatch, capfd) -> None:
+    def fail(*_: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("extrados.cli.app", fail)
+    monkeypatch.setattr(interrupts, "answer", lambda _: None)
+    with pytest.raises(SystemExit) as left:
+        main()
+    assert left.value.code == 3 and capfd.readouterr().err.strip() == "not enough memory"
