@@ -8,6 +8,7 @@ import json
 import os
 import subprocess
 import sys
+import traceback
 from pathlib import Path
 
 import pytest
@@ -184,6 +185,16 @@ def test_lack_of_memory_is_told_and_where_it_was_met_is_kept(monkeypatch, where:
     assert result.status == "failed"
     assert result.reason == "not enough memory: SystemError: of a library (internal-error-tilt.txt says where)"
     assert b"in fail" in result.files["internal-error-tilt.txt"]
+
+
+@pytest.mark.parametrize("error", [MemoryError(), SystemError("error return without exception set")], ids=repr)
+def test_where_there_is_no_room_for_the_file_the_reason_is_told(monkeypatch, error: Exception) -> None:
+    def fail(_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(traceback, "format_exception", fail)
+    result = failing(monkeypatch, SystemError("of a library"))
+    assert result.reason == "not enough memory: SystemError: of a library" and not result.files
 
 
 def test_a_fault_of_ours_stays_one_while_memory_is_short(monkeypatch) -> None:

@@ -73,14 +73,15 @@ def faulty(kind: str, error: Exception) -> Result:
     if isinstance(error, MemoryError) and error.__cause__ is None:
         return Result(kind, "failed", room.words(error))
     name, said = f"internal-error-{kind}.txt", f"{type(error).__name__}: {error}"
-    if isinstance(error, MemoryError):
-        found = Result(kind, "failed", f"{error} ({name} says where)")
-    elif room.lacked(error):
-        found = Result(kind, "failed", f"not enough memory: {said} ({name} says where)")
-    else:
-        found = Result(kind, "failed", f"internal error, please report it with {name}: {said}")
-    found.files[name] = "".join(traceback.format_exception(error)).encode()
-    return found
+    try:
+        files = {name: "".join(traceback.format_exception(error)).encode()}
+    except (MemoryError, SystemError):  # so little is left that there is no room for the file either
+        files = {}
+    if isinstance(error, MemoryError) or room.lacked(error):
+        reason = str(error) if isinstance(error, MemoryError) else f"not enough memory: {said}"
+        return Result(kind, "failed", f"{reason} ({name} says where)" if files else reason, files=files)
+    beside = f" with {name}" if files else ""
+    return Result(kind, "failed", f"internal error, please report it{beside}: {said}", files=files)
 
 
 def assumptions_of(options: Analysis, deck: Building, building: Building) -> dict[str, Assumption]:
