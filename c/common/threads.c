@@ -16,7 +16,8 @@ static void *wait_for(void *gate) {
 /* They are started and ended again; their stacks stay in the cache of the C library, from which OpenMP's come. */
 int extrados_threads(int wanted) {
   if (wanted < 2) return 1;
-  void *spare = mmap(NULL, SPARE, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  /* writable, or it would count to no limit but that of addresses; it is not touched */
+  void *spare = mmap(NULL, SPARE, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
   if (spare == MAP_FAILED) return 1;
   pthread_mutex_t gate = PTHREAD_MUTEX_INITIALIZER;
   pthread_t thread[MOST];

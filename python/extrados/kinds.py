@@ -7,7 +7,7 @@ import importlib
 from dataclasses import dataclass
 from typing import Any
 
-from extrados import room
+from extrados import room  # which also looks at the room for SciPy before it is loaded
 
 
 @dataclass(frozen=True)
@@ -60,10 +60,10 @@ MOTIONS: dict[str, str] = {
 }
 
 
-def _analysis(room: str, table: str, driver: str, figures: str, example: str) -> AnalysisKind:
+def _analysis(place: str, table: str, driver: str, figures: str, example: str) -> AnalysisKind:
     """The results of a kind are called as its table is."""
     return AnalysisKind(
-        f"analyses.{room}.tables:{table}", f"analyses.{room}.{driver}:run", f"results.{room}:{table}", f"plots.{figures}",
+        f"analyses.{place}.tables:{table}", f"analyses.{place}.{driver}:run", f"results.{place}:{table}", f"plots.{figures}",
         f"{example}.toml",
     )  # fmt: skip
 
@@ -126,8 +126,8 @@ def load(place: str) -> Any:
     try:
         return getattr(importlib.import_module(f"extrados.{module}"), name)
     except Exception as error:
-        if room.is_short():  # imports then raise SystemError, OSError and ImportError too
-            raise MemoryError(f"not enough memory: {type(error).__name__}: {error}") from None
+        if room.lacked(error):
+            raise MemoryError(f"not enough memory: {type(error).__name__}: {error}") from error
         raise
 
 

@@ -41,7 +41,7 @@ MAY_IMPORT = {
     },
     "objects": {"kinds", "decks", "schema"},
     "bridges": {"decks", "building", "geometry", "errors", "rockers", "schema", "_build_info"},
-    "cli": {"bridges", "interrupts", "kinds", "analyses", "decks", "results", "plots", "running", "explore", "schema", "_build_info"},
+    "cli": {"bridges", "interrupts", "kinds", "analyses", "decks", "results", "plots", "running", "explore", "schema", "_build_info", "room"},
     "__main__": {"cli", "interrupts"},
     "": {"analyses", "bridges", "decks", "objects", "results", "running", "explore"},
 }  # fmt: skip

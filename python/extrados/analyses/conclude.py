@@ -7,6 +7,7 @@ import traceback
 from dataclasses import replace
 from functools import cached_property
 
+from extrados import room
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.table import Analysis
 from extrados.building.building import Building
@@ -56,7 +57,7 @@ def concluded(result: Result, options: Analysis, context: Context, building: Bui
         if verdict is None and result.status != "refused":
             return result
         assumptions = assumptions_of(options, context.deck.building, building)
-    except Exception as error:  # a fault of ours: the other analyses of the deck still count
+    except Exception as error:  # the other analyses of the deck still count
         return replace(faulty(result.kind, error), seconds=result.seconds)
     if verdict is None:
         return replace(result, assumptions=assumptions)
@@ -65,11 +66,22 @@ def concluded(result: Result, options: Analysis, context: Context, building: Bui
 
 
 def faulty(kind: str, error: Exception) -> Result:
-    """What an analysis gives instead of a result where the program is at fault: the reason, and a file to report."""
-    name = f"internal-error-{kind}.txt"
-    found = Result(kind, "failed", f"internal error, please report it with {name}: {type(error).__name__}: {error}")
-    found.files[name] = "".join(traceback.format_exception(error)).encode()
-    return found
+    """What an analysis gives where memory lacked or the program is at fault: the reason, and a file to report.
+
+    A MemoryError that stands for no other error was foreseen and needs no file.
+    """
+    if isinstance(error, MemoryError) and error.__cause__ is None:
+        return Result(kind, "failed", room.words(error))
+    name, said = f"internal-error-{kind}.txt", f"{type(error).__name__}: {error}"
+    try:
+        files = {name: "".join(traceback.format_exception(error)).encode()}
+    except (MemoryError, SystemError):  # so little is left that there is no room for the file either
+        files = {}
+    if isinstance(error, MemoryError) or room.lacked(error):
+        reason = str(error) if isinstance(error, MemoryError) else f"not enough memory: {said}"
+        return Result(kind, "failed", f"{reason} ({name} says where)" if files else reason, files=files)
+    beside = f" with {name}" if files else ""
+    return Result(kind, "failed", f"internal error, please report it{beside}: {said}", files=files)
 
 
 def assumptions_of(options: Analysis, deck: Building, building: Building) -> dict[str, Assumption]:

@@ -2,7 +2,7 @@
 
 import time
 
-from extrados import interrupts, kinds, room
+from extrados import interrupts, kinds
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import concluded, faulty
 from extrados.analyses.context import Context, Refused
@@ -72,16 +72,12 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
         result = Result(options.kind, "interrupted" if error.interrupted else "failed", str(error))
     except (Cancelled, KeyboardInterrupt):
         result = Result(options.kind, "interrupted", "interrupted before it had a result")
-    except MemoryError as error:
-        result = Result(options.kind, "failed", str(error) or "not enough memory")
     except (CoreError, NoAnswer, StoreError) as error:
         result = Result(options.kind, "failed", str(error))
     except Exception as error:
-        if room.is_short() or (isinstance(error, ImportError) and "failed to map" in str(error)):
-            result = Result(options.kind, "failed", f"not enough memory: {type(error).__name__}: {error}")
-        elif len(interrupts.asked) > signals:  # a library that was interrupted while it is loaded says what it likes
+        if len(interrupts.asked) > signals:  # a library that was interrupted while it is loaded says what it likes
             result = Result(options.kind, "interrupted", "interrupted before it had a result")
-        else:  # a fault of ours: the other analyses of the deck still count
+        else:  # the other analyses of the deck still count
             result = faulty(options.kind, error)
     remarks, _ = building.told()
     result.warnings = [*remarks, *result.warnings]

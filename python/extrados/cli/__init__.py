@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from extrados import interrupts
+from extrados import interrupts, room
 from extrados.cli.checking import check
 from extrados.cli.elsewhere import explore, export
 from extrados.cli.reference import cases, explain, new, schema, version
@@ -55,6 +55,9 @@ def main() -> None:
             code = left.code
         except KeyboardInterrupt:
             code = interrupts.exit_code()
+        except MemoryError as error:
+            os.write(2, f"{room.words(error)}\n".encode(errors="replace"))  # a console may find no room either
+            code = NOT_DONE
         except Exception:
             if not interrupts.asked:  # a library that was interrupted may call it an error of its own
                 raise

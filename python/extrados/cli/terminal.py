@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
-from extrados import interrupts
+from extrados import interrupts, room
 from extrados.running.progress import Progress
 from extrados.schema.text import printable
 
@@ -83,6 +83,8 @@ def errors(json_out: bool = False):
         tell(error.complaints, WRONG_DECK)
     except StoreError as error:
         tell([str(error)], NOT_DONE)
+    except MemoryError as error:
+        tell([room.words(error)], NOT_DONE)
     except KeyboardInterrupt:
         tell(["interrupted"], interrupts.exit_code())
 
