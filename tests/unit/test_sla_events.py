@@ -518,3 +518,12 @@ def test_monitor_and_behaviour_defaults() -> None:
     assert Stop().fraction < 0
     assert Monitor.of(3, 1).share[0] == 1.0
     assert issubclass(Refused, Exception)
+
+
+@pytest.mark.parametrize("constant", [True, False])
+def test_forces_set_free_keep_the_energy_under_loads_that_are_forces(constant) -> None:
+    """Under a push that is a force, with and without constant loads, its work on the ways of release is in the balance."""
+    released = run_deck(wall(0.3, without_equilibrium="force-release", **({} if constant else {"constant": []})))
+    assert (released["event_equilibrium"] == 0).sum() > 100
+    assert released.results["energy_residual_ratio"] < 1e-12
+    assert released.results["dissipated_energy_J"] > released.results["crack_energy_J"] > 0.0
