@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from extrados.building.mesh.mesh import add_middles
+from extrados.core.errors import CoreError
 from extrados.core.sla import (
     BadElement,
     Bars,
@@ -348,3 +349,65 @@ def test_energy_of_cracks_that_turn() -> None:
         assert model.residual() < 1e-9
     turned = np.abs(np.sin(angles[-1] - angles[0]))
     assert np.nanmax(turned) > 0.05
+
+
+def test_a_crack_keeps_the_asked_part_of_the_shear_modulus() -> None:
+    """A square that only shears, cracked upright at all its points: what is left of its stiffness is the retention."""
+    xy, side, thickness, kept = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), 1.0, 0.07, 0.13
+    group = Plane("Q4", np.array([[0, 1, 2, 3]]), thickness, YOUNG, NU, 0.21, Softening(STRENGTH, ENERGY, ripple=0.3))
+    held = [(0, 0), (1, 0), *((n, 1) for n in range(4))]
+    force = np.zeros((4, 2))
+    force[2, 0] = 1.0
+    with Model(xy, Freedoms.make(4, held, [[(2, 0, 1.0), (3, 0, 1.0)]]), [group], Behaviour(retention=kept)) as model:
+        shear = thickness * side * 0.5 * YOUNG / (1.0 + NU)
+        model.loads(np.zeros((4, 2)), force)
+        assert model.displacement(1.0)[2, 0] * shear == pytest.approx(1.0, rel=1e-12)
+        damage = model.damage()
+        damage[0], damage[1], damage[2] = 1.0, 0.0, 1.0
+        damage[3] += 2.0
+        model.set_damage(damage)
+        model.loads(np.zeros((4, 2)), force)
+        assert model.displacement(1.0)[2, 0] * shear == pytest.approx(1.0 / kept, rel=1e-12)
+
+
+@pytest.mark.parametrize(("bears", "sense"), [("tension", 1.0), ("compression", -1.0)])
+def test_a_bar_of_one_sense_lets_go_where_its_force_turns(bears: str, sense: float) -> None:
+    """Beside a spring, stressed by a constant load that the other takes back: from there on the spring is alone, and as
+    the load turns again the bar bears anew."""
+    xy, area, stiffness, first = np.array([[0.0, 0.0], [1.7, 0.0]]), 0.0031, 4.9e6, 620.0
+    groups = [
+        Bars(np.array([[0, 1]]), area, YOUNG, bears=bears),
+        Springs(np.array([[1, -1]]), np.array([[0, 0]]), np.array([stiffness])),
+    ]
+    constant, reference = np.zeros((2, 2)), np.zeros((2, 2))
+    constant[1, 0], reference[1, 0] = sense * first, -sense
+    with Model(xy, Freedoms.make(2, [(0, 0), (0, 1), (1, 1)]), groups, Behaviour(closure=True)) as model:
+        model.loads(constant, reference)
+        events = model.run(1, [Monitor.of(1, 0)])
+        assert events.load == pytest.approx([first], rel=1e-9)
+        model.run(1, [Monitor.of(1, 0)], Stop(load=2.0 * first))
+        alone = model.displacement(2.0 * first)[1, 0]
+        assert alone == pytest.approx(-sense * first / stiffness, rel=1e-3)
+        model.loads(-constant, -reference)
+        events = model.run(1, [Monitor.of(1, 0)])
+        assert events.load == pytest.approx([first], rel=1e-6)
+        model.run(1, [Monitor.of(1, 0)], Stop(load=2.0 * first))
+        both = model.displacement(2.0 * first)[1, 0]
+        assert both == pytest.approx(sense * first / (YOUNG * area / 1.7 + stiffness), rel=1e-9)
+
+
+def test_stored_damage_that_cannot_be_is_refused_for_any_group() -> None:
+    """Teeth count from one, in the first group as in the last; what is refused changes nothing."""
+    xy = np.array([[0.0, 0.0], [0.2, 0.0], [0.2, 0.2], [0.0, 0.2]])
+    law = Softening(STRENGTH, ENERGY, ripple=0.3)
+    groups = [Plane("T3", np.array([at]), 0.07, YOUNG, NU, 0.2, law) for at in ([0, 1, 2], [0, 2, 3])]
+    with Model(xy, Freedoms.make(4, [(0, 0), (3, 0), (0, 1)]), groups) as model:
+        sound = model.damage()
+        assert sound.shape[1] == 2 and (sound[3] == 1.0).all()
+        for point in (0, 1):
+            for row in (3, 4, 5, 6):
+                damage = sound.copy()
+                damage[row, point] = 0.0
+                with pytest.raises(CoreError, match="stored damage"):
+                    model.set_damage(damage)
+                assert (model.damage() == sound).all()

@@ -226,6 +226,29 @@ def test_ties_go_to_the_first_point() -> None:
     assert events.point.tolist() == [0] * half + [1] * half
 
 
+@pytest.mark.parametrize("order", ["as they stand", "backwards", "shuffled"])
+def test_ties_between_regions_and_groups_go_to_the_first_point(order: str) -> None:
+    """A long chain of equal bars, every second one in another group, which all reach their strength together: the first
+    bar of the first group goes, wherever it is, then softens alone."""
+    from extrados.core.sla import Bars, Freedoms, Softening, teeth
+
+    n, law = 900, Softening(1.7e6, 130.0)
+    xy = np.column_stack([np.arange(n + 1.0), np.zeros(n + 1)])
+    number = {
+        "as they stand": np.arange(n), "backwards": np.arange(n)[::-1],
+        "shuffled": np.random.default_rng(5).permutation(n),
+    }[order]  # fmt: skip
+    bars = [Bars(np.column_stack([at, at + 1]), 0.02, 5.3e9, 0.25, law) for at in (number[::2], number[1::2])]
+    force = np.zeros((n + 1, 2))
+    force[-1, 0] = 1.0
+    freedoms = Freedoms.make(n + 1, [(0, 0), *((i, 1) for i in range(n + 1))])
+    with Model(xy, freedoms, bars, ordering="metis") as core:
+        core.loads(np.zeros((n + 1, 2)), force)
+        events = core.run(4, [Monitor.of(n, 0)])
+    assert events.point.tolist() == [0] * 4
+    assert events.load == pytest.approx(0.02 * teeth(law, 5.3e9, 0.25)[1][:4], rel=1e-9)
+
+
 def test_a_point_that_no_multiplier_relieves_goes_first() -> None:
     """Not in the thesis: A overloads a bar that B does not touch; it is damaged, without equilibrium, before B acts."""
     from extrados.core.sla import Bars, Freedoms, Softening
@@ -518,3 +541,12 @@ def test_monitor_and_behaviour_defaults() -> None:
     assert Stop().fraction < 0
     assert Monitor.of(3, 1).share[0] == 1.0
     assert issubclass(Refused, Exception)
+
+
+@pytest.mark.parametrize("constant", [True, False])
+def test_forces_set_free_keep_the_energy_under_loads_that_are_forces(constant) -> None:
+    """Under a push that is a force, with and without constant loads, its work on the ways of release is in the balance."""
+    released = run_deck(wall(0.3, without_equilibrium="force-release", **({} if constant else {"constant": []})))
+    assert (released["event_equilibrium"] == 0).sum() > 100
+    assert released.results["energy_residual_ratio"] < 1e-12
+    assert released.results["dissipated_energy_J"] > released.results["crack_energy_J"] > 0.0

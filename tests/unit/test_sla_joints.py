@@ -297,3 +297,33 @@ def test_bad_joints_are_refused() -> None:
     ):  # fmt: skip
         data = {"structure": arch, "joints": joints, "analysis": {"kind": "sla"}}
         assert word in run_analyses(Context(make_deck(data)))[0].reason
+
+
+@pytest.mark.parametrize("before", [1e-6, -2e-6])
+def test_a_joint_that_first_slides_in_a_later_stage_keeps_the_energy(before: float) -> None:
+    """A block pushed a little, without sliding, then on or back until it slides: the supports' work is in the balance,
+    and at the end all energies are those of the push at once."""
+
+    def push(*ends: float) -> dict:
+        last = run_analyses(Context(make_deck({
+            "structure": {"kind": "blocks", "depth": 1.0, "block": [
+                {"name": "base", "points": [[0, 0], [1, 0], [1, 0.25], [0, 0.25]]},
+                {"name": "top", "points": [[0, 0.25], [1, 0.25], [1, 0.5], [0, 0.5]]}]},
+            "material": {"density": 0.0, "young": 20e9, "poisson": 0.0},
+            "joints": {"friction": 0.5, "normal_stiffness": 1e10, "shear_stiffness": 5e9, "types": [
+                {"joints": ["ground"], "friction": "no-sliding", "tension": 1e8, "fracture_energy": 1e9}]},
+            "analysis": [{
+                "kind": "sla", "mesh": {"size": 0.25}, "events": 400,
+                "constant": [{"kind": "pressure", "edge": "top", "value": 1e5}],
+                "stages": [{"name": f"to {end}", "target_displacement": abs(end), "reference": [
+                    {"kind": "displacement", "direction": "x", "parts": [{"edge": "top", "ratio": float(np.sign(end))}]}]}
+                    for end in ends],
+            }],
+        })))[0].results["stages"]  # fmt: skip
+        assert all(stage["energy_residual_ratio"] < 1e-12 for stage in last)
+        return last[-1]
+
+    once, twice = push(2e-4), push(before, 2e-4)
+    assert twice["end_load_N"] == pytest.approx(0.5 * 1e5, rel=1e-6)
+    for name in ("end_load_N", "stored_energy_J", "external_work_J", "dissipated_energy_J"):
+        assert twice[name] == pytest.approx(once[name], rel=1e-9), name
