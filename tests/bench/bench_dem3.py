@@ -4,10 +4,10 @@ Rates are of processor time of one core, ours without settling, MuJoCo's without
 the machine counts little; threads are timed by the wall clock, and the load stands beside. The error is the greatest RMS distance of any block
 from a refined solution over a smooth stretch (before impacts make any two codes part), over the greatest displacement there.
 
-Few blocks are computed by rigid contacts, as MuJoCo has them too but for what its solver lets through: the refined solution is our own
-at a small step. How far springs of ten times the stiffness (at a third of the critical step) and MuJoCo at a fifth of its step are off
-it says what that is worth: all three come to one motion. Of many blocks, which take springs here, the refined solution has ten times
-the stiffness.
+Few blocks are computed by rigid contacts, as MuJoCo has them too but for what its solver lets through. The refined solution is our own at
+a small step, so that the error of rigid contacts is how far they are from where they converge to. Its worth shows in how near springs
+of ten times the stiffness (at a third of the critical step) and MuJoCo at a fifth of its step come to it. For many blocks (springs
+only) the refined solution has ten times the stiffness. Of few blocks every solver has three tries, of which the fastest counts.
 """
 
 import os
@@ -70,6 +70,11 @@ class Case:
     way: int = 0
     rigid_steps: tuple[float, ...] = ()  # of rigid contacts [s]; the last for the refined solution
 
+    @property
+    def tries(self) -> int:
+        """Of which the fastest counts."""
+        return 3 if self.rigid_steps else 1
+
 
 CASES = {
     "column of 12 drums": Case(
@@ -105,7 +110,7 @@ def run_of(solids: dem3.Solids, case: Case, rigid: bool = False, **keys: float) 
     for given, when in asked:
         with dem3.Model(solids, given) as model, as_motion_set([case.ground]) as motions:
             spent = []
-            for _ in range(5 if rigid else 1):
+            for _ in range(case.tries):
                 begin = time.process_time()
                 run = model.run(motions, times=when)
                 spent.append(time.process_time() - begin)
@@ -146,7 +151,7 @@ def one(name: str, case: Case) -> None:
     for solver, spent, run in runs:
         off = error(run.time, moved(run), exact, fine.time)
         ahead = case.seconds / spent
-        told = f"{ahead:9.2f} times real time" if ahead else 24 * " "
+        told = f"{ahead:9.2f} times real time" if ahead else 25 * " "
         print(
             f"  extrados  {told}  step {run.step:.1e} s  error {off:.1e}  energy residual {run.residual:.1e}  {solver}",
             flush=True,
@@ -157,9 +162,11 @@ def one(name: str, case: Case) -> None:
         print("  MuJoCo    not installed")
         return
     for dt in case.peer_steps:
-        peer = solid_peers.mujoco(
-            solids(case.stiffness, 0.0), *((STILL, case.ground) if case.way else (case.ground, STILL)), case.seconds, dt
-        )
+        grounds = (STILL, case.ground) if case.way else (case.ground, STILL)
+        runs_of_peer = [
+            solid_peers.mujoco(solids(case.stiffness, 0.0), *grounds, case.seconds, dt) for _ in range(case.tries)
+        ]
+        peer = min(runs_of_peer, key=lambda run: run.processor)
         rate = peer.time[-1] / peer.processor
         whole = peer.time[-1] > 0.99 * case.seconds
         off = (
