@@ -78,9 +78,9 @@ def _has(*pieces: int) -> bool:
 
 def lacked(error: Exception) -> bool:
     """Whether it was memory that lacked though the error says something else, as Python and its libraries do."""
-    if isinstance(error, OSError) and error.errno == errno.ENOMEM:
-        return True
-    if isinstance(error, ImportError) and "failed to map" in str(error):  # by the loader of libraries
+    if isinstance(error, OSError) and error.errno is not None:
+        return error.errno == errno.ENOMEM
+    if isinstance(error, ImportError | OSError) and "failed to map" in str(error):  # by the loader of libraries
         return True
     thread = isinstance(error, RuntimeError) and "can't start new thread" in str(error)
     return (thread or isinstance(error, SystemError | OSError | ImportError)) and not _has(_SHORT)

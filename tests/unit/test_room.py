@@ -149,6 +149,8 @@ def test_a_reload_adds_no_second_look() -> None:
         (ImportError("x.so: failed to map segment from shared object"), True, True),
         (OSError("no words"), True, False),
         (OSError(errno.ENOMEM, os.strerror(errno.ENOMEM)), True, True),
+        (OSError("x.so: failed to map segment from shared object"), True, True),
+        (FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT)), False, False),
         (RuntimeError("can't start new thread"), True, False),
         (RuntimeError("no convergence"), False, False),
         (ValueError("negative"), False, False),
@@ -207,6 +209,15 @@ def test_memory_that_python_itself_says_is_lacking_needs_no_report(monkeypatch) 
     result = failing(monkeypatch, MemoryError("Unable to allocate 3 MiB"))
     assert result.reason == "not enough memory: Unable to allocate 3 MiB" and not result.files
     assert failing(monkeypatch, MemoryError()).reason == "not enough memory"
+
+
+def test_an_end_that_found_no_room_to_be_told_is_told_after(monkeypatch) -> None:
+    def fail(*_: object) -> None:
+        raise SystemError("error return without exception set")
+
+    monkeypatch.setattr("extrados.analyses.run.run_one", fail)
+    reason = "not enough memory: SystemError: error return without exception set (internal-error-tilt.txt says where)"
+    assert failing(monkeypatch, MemoryError()).reason == reason
 
 
 @pytest.mark.parametrize("error", [SystemError("of a library"), MemoryError()], ids=str)

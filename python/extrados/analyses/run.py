@@ -37,7 +37,10 @@ def run_analyses(context: Context) -> list[Result]:
         if results and results[-1].status == "interrupted":
             results.append(Result(options.kind, "interrupted", "not run: interrupted before"))
             continue
-        result = concluded(run_one(context, options, building), options, context, building)
+        try:
+            result = concluded(run_one(context, options, building), options, context, building)
+        except (MemoryError, SystemError) as error:  # there was no room to tell the end before the analysis had let go
+            result = faulty(options.kind, error)
         _, notes = building.told()
         if notes != told:  # what was made of a survey is told once
             result.warnings, told = [*notes, *result.warnings], notes
