@@ -1,6 +1,7 @@
 !> Discrete elements in space: blocks behind a handle, built in steps, and what a run leaves of them.
 !>
-!> create, laws, dowels if any, surroundings; then api_dem_run; then bodies, attitudes and slips tell more of the last run.
+!> create, laws, dowels if any, surroundings; then api_dem_run; then bodies, attitudes and slips tell more of the last
+!> run.
 !> Body numbers are 1-based; mass 0 marks a support.
 module api_dem3
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
@@ -70,7 +71,7 @@ contains
       integer(c_int), intent(in) :: body(2, n)                !! that it stands in, and that it reaches into
       real(c_double), intent(in) :: place(3, n)               !! [m]
       real(c_double), intent(in) :: axis(3, n)                !! from the first body to the second
-      real(c_double), intent(in) :: value(4, n)               !! stiffness [N/m], strength [N], reach [m], damping beta [s]
+      real(c_double), intent(in) :: value(4, n)               !! stiffness [N/m], strength [N], reach [m], damping [s]
       integer(c_int), intent(out) :: status
       type(built_solids), pointer :: built
       call solids_take(handle, built, status)

@@ -6,8 +6,8 @@
 !>    S = -k (P d - s),   |S| <= F
 !>
 !> on body 2, the opposite on body 1, both at the place in body 2. What goes beyond F is slip s, which stays: a ductile
-!> dowel, as limit analysis takes it. Once the bodies part along n by more than the dowel reaches it is out for good. The
-!> force has a potential, and its dashpot is taken implicitly, as that of the shear springs is (dem3_law).
+!> dowel, as limit analysis takes it. Once the bodies part along n by more than the dowel reaches it is out for good.
+!> The force has a potential, and its dashpot is taken implicitly, as that of the shear springs is (dem3_law).
 module dem3_dowels
    use common_kinds, only : wp
    use dem3_bodies, only : body, cross

@@ -204,7 +204,8 @@ contains
          if (status /= status_ok) return
          dowels = 0
          if (allocated(built%dowels)) dowels = size(built%dowels)
-         allocate (model%law(size(built%law)), model%law_of(3, size(built%law_of, 2)), model%dowels(dowels), stat=failed)
+         allocate (model%law(size(built%law)), model%law_of(3, size(built%law_of, 2)), model%dowels(dowels), &
+            stat=failed)
          if (failed /= 0) status = status_out_of_memory
          if (failed /= 0) return
          if (dowels > 0) model%dowels(:) = built%dowels

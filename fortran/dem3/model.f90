@@ -12,8 +12,8 @@ module dem3_model
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: solid_model, rigid_contacts, set_distances, search, set_mortar, colour, advance, critical_step, energy_now, prepare, &
-      predict, move, look_anew
+   public :: solid_model, rigid_contacts, set_distances, search, set_mortar, colour, advance, critical_step, &
+      energy_now, prepare, predict, move, look_anew
 
    !> Contacts without springs, see dem3_moreau
    type, extends(rigid_solver) :: rigid_contacts

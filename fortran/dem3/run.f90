@@ -11,8 +11,8 @@ module dem3_run
    use dem3_bodies, only : body, spin_of, turn_freely
    use dem3_law, only : contact_point
    use dem3_moreau, only : advance_rigid, quickest
-   use dem3_model, only : advance, colour, critical_step, model_energy => energy_now, search, set_distances, set_mortar, &
-      solid_model
+   use dem3_model, only : advance, colour, critical_step, model_energy => energy_now, search, set_distances, &
+      set_mortar, solid_model
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private

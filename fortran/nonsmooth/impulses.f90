@@ -512,7 +512,8 @@ contains
          end if
          do side = 1, 2
             at = n * (problem%node(side, k) - 1)
-            if (at >= 0) problem%missing(at + 1:at + n) = problem%missing(at + 1:at + n) + both(n * (side - 1) + 1:n * side)
+            if (at >= 0) problem%missing(at + 1:at + n) = problem%missing(at + 1:at + n) &
+               + both(n * (side - 1) + 1:n * side)
          end do
          both = 0.0_wp
       end do

@@ -1,5 +1,5 @@
-!> Impulses between rigid bodies: a pile of boxes that is shaken obeys the law of unilateral contact with friction at the
-!> velocities that come back, in the plane and in space, within the violation that was let pass.
+!> Impulses between rigid bodies: a pile of boxes that is shaken obeys the law of unilateral contact with friction at
+!> the velocities that come back, in the plane and in space, within the violation that was let pass.
 program test_impulses
    use common_kinds, only : wp
    use common_status, only : status_ok
@@ -51,7 +51,8 @@ contains
          do k = 1, boxes
             associate (at => n * problem%matrix%rank(k))
                if (directions == in_plane) then
-                  problem%free(at - 2:at - 1) = problem%free(at - 2:at - 1) + step * [7.0_wp * cos(0.5_wp * t), -gravity]
+                  problem%free(at - 2:at - 1) = problem%free(at - 2:at - 1) &
+                     + step * [7.0_wp * cos(0.5_wp * t), -gravity]
                else
                   problem%free(at - 5:at - 3) = problem%free(at - 5:at - 3) &
                      + step * [6.0_wp * cos(0.5_wp * t), -gravity, 5.0_wp * sin(0.33_wp * t)]
@@ -124,7 +125,8 @@ contains
       do d = 1, problem%directions
          do side = 1, 2
             at = problem%freedoms * problem%node(side, k)
-            if (at > 0) w(d) = w(d) + dot_product(problem%row(:, side, d, k), problem%rate(at - problem%freedoms + 1:at))
+            if (at > 0) w(d) = w(d) &
+               + dot_product(problem%row(:, side, d, k), problem%rate(at - problem%freedoms + 1:at))
          end do
          p(d) = problem%impulse(d, k)
       end do
