@@ -538,13 +538,15 @@ contains
       type(impulse_problem), intent(inout) :: problem
       logical, intent(in) :: exact                  !! see least_energy
       real(wp), intent(out) :: residual             !! [m/s]
-      real(wp) :: raised
+      real(wp) :: raised, rounding
       integer :: k
       residual = 0.0_wp
+      ! Of r w over the mass, as what is missing is a difference of such
+      rounding = 10.0_wp * problem%heavy * epsilon(1.0_wp) * maxval(abs(problem%rate))
       do k = 1, problem%points
          raised = raising(problem%friction(k), problem%rate_at(along_tangent:, k))
          residual = max(residual, maxval(abs(problem%near(:, k) - problem%impulse(:, k))) / problem%weight(k))
-         if (.not. exact) residual = max(residual, not_reached(problem, k))
+         if (.not. exact) residual = max(residual, not_reached(problem, k) - rounding)
          if (problem%state(k) == parts) then
             residual = max(residual, -problem%rate_at(along_normal, k))
          else

@@ -490,3 +490,5 @@ def test_dowels_are_checked_and_threads_and_pauses_change_no_bit() -> None:
     ):  # fmt: skip
         with pytest.raises(error):
             dem3.Model(replace(model, dowels=wrong), options)
+    with pytest.raises(ValueError, match="rigid contacts know no dowels"):
+        dem3.Model(whole, replace(options, rigid=True))

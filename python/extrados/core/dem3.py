@@ -166,6 +166,8 @@ class Model(BodyModel[Run]):
         self._dowels = 0 if dowels is None else len(dowels.body)
         if dowels is None:
             return
+        if self.options.rigid:
+            raise ValueError("rigid contacts know no dowels")
         n = self._dowels
         body = indices("body", np.transpose(dowels.body), self.count, (2, n))
         bounded = [
