@@ -36,6 +36,7 @@ module dem3_law
       type(feature) :: what
       logical :: closed = .false.
       logical :: bonded = .false.                          !! cohesion and tension not lost yet
+      real(wp) :: filled = 0.0_wp                          !! gap that mortar fills, whether it is whole or broken [m]
       real(wp) :: spring_n = 0.0_wp, dash_n = 0.0_wp       !! compression positive [N]
       real(wp) :: spring_s(3) = 0.0_wp, dash_s(3) = 0.0_wp !! on the second body [N]
       real(wp) :: force(3) = 0.0_wp                        !! all of it, in the step before [N]
@@ -62,8 +63,6 @@ module dem3_law
    real(wp), parameter :: same = 0.5_wp
    !> and carry on as they are where they are of the same features and their area is the same but for this share
    real(wp), parameter :: still_same = 0.1_wp
-   !> What rounding leaves of a gap [m]: joints begin without one, and mortar may have no tensile strength
-   real(wp), parameter :: grain = 1.0e-12_wp
 
 contains
 
@@ -177,7 +176,7 @@ contains
       end do
    end function partner
 
-   !> Mortar binds the points of a pair whose gap is less than a margin, where its law has any
+   !> Mortar binds the points of a pair whose gap is less than a margin, where its law has any, and fills that gap
    pure subroutine bond(law, margin, a, b, pair)
       type(joint_law), intent(in) :: law
       real(wp), intent(in) :: margin            !! [m]
@@ -190,6 +189,7 @@ contains
       do i = 1, pair%points
          call measure(pair%point(i)%what, a, b, normal, gap, at)
          pair%point(i)%bonded = gap <= margin
+         if (pair%point(i)%bonded) pair%point(i)%filled = max(gap, 0.0_wp)
       end do
    end subroutine bond
 
@@ -207,9 +207,10 @@ contains
       do i = 1, pair%points
          associate (point => pair%point(i))
             call measure(point%what, a, b, normal, gap, at)
+            gap = gap - point%filled
             if (gap >= 0.0_wp) then
                ! Mortar that is torn farther than its strength is gone for good.
-               point%bonded = point%bonded .and. law%normal_stiffness * (gap - grain) <= law%tension
+               point%bonded = point%bonded .and. law%normal_stiffness * gap <= law%tension
                if (.not. (point%closed .or. point%bonded)) cycle
             end if
             arm_a = at - a%x

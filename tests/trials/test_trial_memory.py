@@ -75,7 +75,7 @@ def test_memory_that_is_lowered_after_the_start() -> None:
                 trial.fail(f"{kind}, {room} MB: {run.returncode} {rows} {run.stderr[-300:]}")
             for status, _ in rows:
                 ends[status] = ends.get(status, 0) + 1
-    trial.notes.append(", ".join(f"{n} {status}" for status, n in sorted(ends.items())))
+    trial.notes.append("analyses: " + ", ".join(f"{n} {status}" for status, n in sorted(ends.items())))
     if aborted:
         trial.notes.append(f"{aborted} ended by Rust below pydantic, which no program can catch")
         if trials.SHARE == 0.0:

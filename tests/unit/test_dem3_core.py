@@ -386,14 +386,17 @@ def test_mortar_bears_the_weight_that_hangs_on_it(share: float) -> None:
     assert run.residual < 5e-3
 
 
+@pytest.mark.parametrize("gap", [0.0, 1e-9, 1e-4])
 @pytest.mark.parametrize("share", [0.9, 2.5])
-def test_mortar_bears_shear_by_cohesion(share: float) -> None:
+def test_mortar_bears_shear_by_cohesion(share: float, gap: float) -> None:
     """On a slope without enough friction a cube sticks by cohesion; once that is broken for good, friction alone brakes it."""
     weight, mu, slope = DENSITY * GRAVITY, 0.2, np.radians(35.0)
     pull = GRAVITY * np.array([np.sin(slope), 0.0, -np.cos(slope)])
     needed = weight * (np.sin(slope) - mu * np.cos(slope))
     law = Law(1e9, 1e9, mu, 2e-3, cohesion=share * needed, tension=weight)
-    cubes = solids([box((-0.5, -0.5, 0), (0.5, 0.5, 1))], law)
+    cubes = solids(
+        [box((-0.5, -0.5, gap), (0.5, 0.5, 1 + gap))], law
+    )  # of a drawing that is not exact: mortar fills it
     model = replace(cubes, laws=[replace(law, cohesion=0.0, tension=0.0), law], joints={(0, 1): 1})
     run = dem3.run(model, Options(end_time=0.5, output_step=0.01, gravity=tuple(pull)), rate=np.zeros((2, 6)))
     way = run.place[-1, 0, 0] - run.place[0, 0, 0]
@@ -451,7 +454,7 @@ def test_a_dowel_keeps_momentum_and_energy() -> None:
     linear = model.mass[:, None] * run.rate[:, :, :3]
     moment = (spin + np.cross(run.place, linear)).sum(axis=1)
     assert np.abs(np.diff(linear.sum(axis=1), axis=0)).max() < 1e-9 * np.abs(linear).max()
-    assert np.abs(moment - moment[0]).max() < 1e-3 * np.abs(spin).max()
+    assert np.abs(moment - moment[0]).max() < 1e-4 * np.abs(spin).max()
     assert run.energy["elastic"].max() > 5e-3 * run.energy["kinetic"][0]
     total = run.energy["kinetic"] + run.energy["elastic"]
     assert total == pytest.approx(total[0], rel=1e-4)
@@ -472,17 +475,24 @@ def test_a_dowel_comes_out_where_stones_part_farther_than_it_reaches() -> None:
         assert (run.place[-1, 0, 0] > 0.2) == out
 
 
-def test_dowels_are_checked_and_threads_and_pauses_change_no_bit() -> None:
-    drums = [box((-0.5, -0.5, 0.5 * k), (0.5, 0.5, 0.5 * k + 0.5)) for k in range(3)]
-    model = solids(drums, Law(1e9, 1e9, 0.3, 1e-4, tension=1e4, cohesion=1e4))
+def test_dowels_are_checked_and_threads_and_pauses_change_no_bit(monkeypatch) -> None:
+    drums = [box((-0.5, -0.5, k), (0.5, 0.5, k + 1)) for k in range(3)]
+    model = solids(drums, Law(1e9, 1e9, 0.6, 1e-4, tension=1e4, cohesion=1e4))
     pairs = np.array([[3, 0], [0, 1], [1, 2]])
-    places, axes, n = np.array([[0, 0, 0.0], [0, 0, 0.5], [0, 0, 1.0]]), np.tile([0.0, 0.0, 1.0], (3, 1)), np.ones(3)
-    whole = replace(model, dowels=dem3.Dowels(pairs, places, axes, 1e8 * n, 2e3 * n, 0.05 * n, 1e-4))
+    places, axes, n = np.array([[0, 0, 0.0], [0, 0, 1.0], [0, 0, 2.0]]), np.tile([0.0, 0.0, 1.0], (3, 1)), np.ones(3)
+    whole = replace(model, dowels=dem3.Dowels(pairs, places, axes, 1e8 * n, 200.0 * n, [1e-4, 1.0, 1.0] * n, 1e-4))
     options = Options(end_time=0.6, output_step=0.01, residual_limit=1.0)
-    runs = [dem3.run(whole, replace(options, threads=k), shaken(0.6)) for k in (1, 2)]
-    assert (runs[0].place == runs[1].place).all()
-    assert (runs[0].dowel_slip == runs[1].dowel_slip).all()
-    assert runs[0].dowel_slip.max() > 0.0
+    runs = [dem3.run(whole, replace(options, threads=k), shaken(0.6), scale=1.5) for k in (1, 2)]
+    assert runs[0].dowel_slip.max() > 0.0 and runs[0].dowel_out.any()
+    kept = []
+    monkeypatch.setattr(dem_run, "FIRST_PAUSE", 50)
+    with dem3.Model(whole, options) as other, as_motion_set([shaken(0.6)]) as motions:
+        runs.append(other.run(motions, scale=1.5, watch=lambda reached: kept.append(other.state())))
+    with dem3.Model(whole, options) as other, as_motion_set([shaken(0.6)]) as motions:
+        runs.append(other.run(motions, scale=1.5, state=kept[-1]))
+    for run in runs[1:]:
+        for name in ("place", "dowel_slip", "dowel_out"):
+            assert (getattr(run, name) == getattr(runs[0], name)).all()
     for wrong, error in (
         (replace(whole.dowels, body=pairs + 9), IndexError), (replace(whole.dowels, body=pairs * 0), CoreError),
         (replace(whole.dowels, stiffness=-n), CoreError), (replace(whole.dowels, axis=2 * axes), CoreError),
@@ -491,4 +501,6 @@ def test_dowels_are_checked_and_threads_and_pauses_change_no_bit() -> None:
         with pytest.raises(error):
             dem3.Model(replace(model, dowels=wrong), options)
     with pytest.raises(ValueError, match="rigid contacts know no dowels"):
-        dem3.Model(whole, replace(options, rigid=True))
+        dem3.Model(replace(whole, laws=[Law(1e9, 1e9, 0.3)]), replace(options, rigid=True))
+    with pytest.raises(ValueError, match="rigid contacts know no mortar"):
+        dem3.Model(model, replace(options, rigid=True))

@@ -1,13 +1,16 @@
 """dem of blocks in space from a deck: runs, tilt against limit analysis, what falls, files of solids, refusals."""
 
 import json
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import extrados
+from extrados.analyses.dem.solid_model import SolidModel, SolidValues
 from extrados.building.geometry.solids.assembly import Stone, assemble
+from extrados.building.geometry.solids.columns import doweled, drums
 from extrados.building.geometry.solids.polyhedra import box
 from extrados.building.geometry.solids.supports import supports_of
 from extrados.decks.reader import DeckError
@@ -147,6 +150,18 @@ def test_what_solids_do_not_know_is_refused_by_name(tmp_path, more: str, of_dem:
     assert found.status == "refused" and told in found.reason
 
 
+def test_dowels_stand_in_the_lower_drum(tmp_path) -> None:
+    """And reach into the one above it, whatever the order in which stones and their contact are named."""
+    made = doweled(drums(1.0, [0.5, 0.5, 0.5], None, 8, 0.0, 2000.0), 1e3, 0.1)
+    turned = replace(made, a=made.b, b=made.a, normal=-made.normal, polygon=[p[::-1] for p in made.polygon])
+    values = SolidValues(*(np.ones(len(made.a)) for _ in range(5)), 1e-3, None)
+    for one in (made, turned):
+        dowels = SolidModel(one, supports_of(made), values).bodies().dowels
+        assert dowels.body.tolist() == [[0, 1], [1, 2]]
+        assert dowels.axis == pytest.approx(np.tile([0.0, 0.0, 1.0], (2, 1)))
+        assert dowels.stiffness == pytest.approx(made.area[made.b >= 0])
+
+
 def test_dowels_of_a_deck(tmp_path) -> None:
     """They hold drums that friction does not, come out where told, and are told; rigid contacts refuse them."""
     slippery = (
@@ -158,9 +173,14 @@ def test_dowels_of_a_deck(tmp_path) -> None:
     doweled = slippery.replace("drums = 2", 'drums = 2\ndowels = "unbroken"\ndowel_reach = "5 cm"')
     free, held = (answered(tmp_path, text).results for text in (slippery, doweled))
     assert (free.dowels, held.dowels, held.dowels_out, held.dowel_slip_m) == (0, 1, 0, 0.0)
+    assert free.peak_slip_m > 20.0 * held.peak_slip_m
+    rocks = answered(
+        tmp_path, doweled.replace("height = 2.0", "height = 5.0").replace("5 cm", "1 mm").replace("friction = 0.1", "")
+    )
+    assert rocks.results.dowels_out == 1 and ", 1 of 1 came out" in rocks.answer
     weak = answered(tmp_path, doweled.replace("unbroken", "1 kN"))
     assert weak.results.dowel_slip_m > 1e-3
-    assert "1 dowels give way by up to" in weak.answer
+    assert "; dowels gave way by up to " in weak.answer
     refused = answered(tmp_path, doweled + 'solver = "nonsmooth"\n')
     assert refused.status == "refused" and "know no dowels" in refused.reason
 

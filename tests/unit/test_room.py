@@ -65,7 +65,7 @@ print(room._threads(), library.scipy_openblas_get_num_threads(), room._MOST, mos
 def test_openblas_itself_agrees(said: dict[str, str]) -> None:
     wheel = Path(importlib.util.find_spec("scipy").origin).parents[1] / "scipy.libs"
     if not list(wheel.glob("libscipy_openblas-*")):
-        pytest.skip("SciPy was not installed from a wheel")
+        pytest.skip("SciPy brings no OpenBLAS of its own here: only that of its wheels can be asked")
     kept = {name: text for name, text in os.environ.items() if not name.endswith("_NUM_THREADS")}
     run = subprocess.run(
         [sys.executable, "-c", COUNTED], capture_output=True, text=True, env={**kept, **said}, check=True
@@ -97,12 +97,12 @@ def test_every_limit_of_memory_is_seen(limit: str, more: int, has: bool) -> None
 
 @linux
 def test_the_look_takes_nothing_and_asks_for_no_memory_that_is_free() -> None:
-    """More than the whole machine has is no matter, as OpenBLAS' buffers are none until they are used."""
-    if Path("/proc/sys/vm/overcommit_memory").read_text().strip() == "2":
-        pytest.skip("this system commits no more than it has")
+    """More than the whole machine has is no matter, as OpenBLAS' buffers are none until they are used; but where the system
+    promises no more than it has."""
+    strict = Path("/proc/sys/vm/overcommit_memory").read_text().strip() == "2"
     before = int(Path("/proc/self/statm").read_text().split()[1])
     whole = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
-    assert room._has(*[1 << 30] * (2 * (whole >> 30) + 2))
+    assert room._has(*[1 << 30] * (2 * (whole >> 30) + 2)) is not strict
     assert (int(Path("/proc/self/statm").read_text().split()[1]) - before) * os.sysconf("SC_PAGE_SIZE") < 16 << 20
 
 

@@ -138,7 +138,7 @@ def run(context: Context, options: DemDomain) -> Result:
     else:
         model, varied = make_solid_model(context.building, options), []
         if not options.rigid or options.cross_check:
-            context.warnings += dem_model.under_damped(model.values)
+            context.warnings += dem_model.doubts_of_springs(model.values)
     base = model.values
     curves = [Curve("as given", base, options.rigid), *varied]
     if options.cross_check:

@@ -33,7 +33,7 @@ def run(context: Context, options: Dem) -> Result:
 def _of_solids(context: Context, options: Dem) -> Result:
     model = make_solid_model(context.building, options)
     if not options.rigid:
-        context.warnings += dem_model.under_damped(model.values)
+        context.warnings += dem_model.doubts_of_springs(model.values)
     try:
         with interruptible():
             result = (solid_tilt if options.test == "tilt" else solid_motion).run(context, options, model)

@@ -169,7 +169,7 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
     found = passive_left_out(model.assembly.earth)
     if options.rigid:
         return found
-    found += under_damped(values or model.values)
+    found += doubts_of_springs(values or model.values)
     if options.mass_damping > 0.0:
         found.append(
             "mass-proportional damping acts on rigid rocking as air would: it has no physical meaning here and is unsafe"
@@ -177,9 +177,13 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
     return found
 
 
-def under_damped(values: JointValues | SolidValues) -> list[str]:
-    """The warning that impacts are damped too little."""
+def doubts_of_springs(values: JointValues | SolidValues) -> list[str]:
+    """Warnings that impacts are damped too little, and that mortar bears more in bending than an elastic joint."""
     ratio, found = values.ratios(), []
+    if np.nanmax(values.tension, initial=0.0) > 0.0:
+        found.append(
+            "the tensile strength of mortar acts at the ends or corners of a joint: bent, it bears up to three times what an elastic one does"
+        )
     if ratio["rotation"] < impact_rules.LEAST_AT_ROTATION or ratio["edge"] < impact_rules.LEAST_AT_EDGE:
         found.append(
             f"under-damped: {100 * ratio['rotation']:.3g} % of critical at rotational impact and {100 * ratio['edge']:.3g} % at edge "

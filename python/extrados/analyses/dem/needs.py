@@ -3,11 +3,9 @@
 from collections.abc import Iterator
 from functools import partial
 
-import numpy as np
-
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import tables
-from extrados.analyses.dem.solid_model import refusals, refuse_stones
+from extrados.analyses.dem.solid_model import RIGID, refusals, refuse_mortar, refuse_stones
 from extrados.analyses.needs import Need, stones_of
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry, Key
@@ -31,7 +29,7 @@ def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
     yield building.refuse_mixture
     if options.merge == "three-bars":
         yield lambda: _refuse_bars(building)
-    if options.rigid:
+    if _rigid(options):
         yield lambda: _refuse_springs(building)
     if building.joints.damping == "restitution" and building.joints.beta is None:
         yield lambda: _refuse_restitution(building)
@@ -44,6 +42,11 @@ def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
             yield lambda: refuse_untracked(stones.block_names, options)
 
 
+def _rigid(options: tables.DemTable) -> bool:
+    """Whether rigid contacts are asked for, be it as a check of the springs."""
+    return options.rigid or (isinstance(options, tables.DemDomain) and options.cross_check)
+
+
 def _refuse_bars(building: Building) -> None:
     key = ("analysis", "merge")
     if not isinstance(building.blocks(), ArchAssembly):
@@ -54,11 +57,9 @@ def _refuse_bars(building: Building) -> None:
 
 def _refuse_springs(building: Building) -> None:
     """Refused where rigid contacts are asked for what only springs have."""
-    for name in ("cohesion", "tension"):
-        if np.nanmax(building.joint_property(name), initial=0.0) > 0.0:
-            raise Refused('rigid contacts (solver = "nonsmooth") know no mortar', ("joints", name))
+    refuse_mortar(building)
     if building.supports.stiffness is not None:
-        raise Refused('rigid contacts (solver = "nonsmooth") know no springs', ("supports", "stiffness"))
+        raise Refused(f"{RIGID} know no springs", ("supports", "stiffness"))
 
 
 def _refuse_restitution(building: Building) -> None:
@@ -74,8 +75,7 @@ def _needs_of_solids(context: Context, options: tables.SpatialDem, stones: Solid
 
     for text, key in refusals(building, options):
         yield partial(refuse, text, key)
-    both = isinstance(options, tables.DemDomain) and options.cross_check
-    yield lambda: refuse_stones(building, stones, options.rigid or both)
+    yield lambda: refuse_stones(building, stones, _rigid(options))
     if not isinstance(options, tables.Dem):
         return
     if context.deck.motion is not None and options.test == "motion":

@@ -14,6 +14,8 @@ from extrados.building.geometry.solids.contacts import GROUND
 from extrados.building.geometry.solids.supports import Supports, supports_of
 from extrados.core import dem3
 
+#: What is refused of them, in words
+RIGID = 'rigid contacts (solver = "nonsmooth", or cross_check)'
 FACING = -0.3  # cosine between faces of a stone that look away from each other
 
 
@@ -96,12 +98,14 @@ class SolidModel:
         if one.keys is None:
             return None
         j = one.keys.joint
-        pair = np.column_stack([one.b[j], one.a[j]])  # the normal of a contact points into a
-        together = [(one.a == a) & (one.b == b) for b, a in pair]
+        pair = np.column_stack([one.a[j], one.b[j]])
+        together = [(one.a == a) & (one.b == b) for a, b in pair]
+        # They stand in the lower stone; the normal of a contact points into a.
+        upward = one.centroid[pair[:, 0], 2] <= one.centroid[pair[:, 1], 2]
+        axis = np.where(upward, -1.0, 1.0)[:, None] * one.normal[j]
+        stands = np.where(upward[:, None], pair, pair[:, ::-1])
         stiffness = [float((v.shear_stiffness * one.area)[shared].sum()) for shared in together]
-        return dem3.Dowels(
-            pair, one.keys.point, one.normal[j], np.array(stiffness), one.keys.strength, one.keys.reach, v.beta
-        )
+        return dem3.Dowels(stands, one.keys.point, axis, np.array(stiffness), one.keys.strength, one.keys.reach, v.beta)
 
 
 def _law(
@@ -148,6 +152,13 @@ def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
     ]
 
 
+def refuse_mortar(building: Building, assembly: SolidAssembly | None = None) -> None:
+    """Refused where joints, of the plane stones or of solids, have mortar, which rigid contacts do not know."""
+    for name in ("cohesion", "tension"):
+        if np.nanmax(building.joint_property(name, assembly), initial=0.0) > 0.0:
+            raise Refused(f"{RIGID} know no mortar", ("joints", name))
+
+
 def refuse_stones(building: Building, assembly: SolidAssembly, rigid: bool) -> None:
     """Refused where the blocks have fill or too many corners, and mortar or dowels where contacts are to be rigid."""
     for part, owner in zip(assembly.parts, assembly.owner.tolist(), strict=True):
@@ -157,11 +168,9 @@ def refuse_stones(building: Building, assembly: SolidAssembly, rigid: bool) -> N
                 "draw it with fewer", ("structure",),
             )  # fmt: skip
     if rigid:
-        for name in ("cohesion", "tension"):
-            if np.nanmax(building.joint_property(name, assembly), initial=0.0) > 0.0:
-                raise Refused('rigid contacts (solver = "nonsmooth") know no mortar', ("joints", name))
+        refuse_mortar(building, assembly)
         if assembly.keys is not None:
-            raise Refused('rigid contacts (solver = "nonsmooth") know no dowels', ("structure", "dowels"))
+            raise Refused(f"{RIGID} know no dowels", ("structure", "dowels"))
     if len(assembly.fill):
         raise Refused(
             "fill: dem of solids cannot take what rests on the stones into account; leave it out", ("structure", "fill")

@@ -74,7 +74,8 @@ def solid_answer(r: SolidDemRun, idle: bool) -> str:
         fate = f"rocks and still moves at {r.stop_time_s:.2f} s" if r.still_moving else "rocks and stands"
         first = f"It {fate}: greatest displacement {r.peak_displacement_m:.3g} m, {r.final_displacement_m:.3g} m of it left at the end"
     if r.dowels:
-        first += f"; {r.dowels} dowels give way by up to {1e3 * r.dowel_slip_m:.2g} mm, {r.dowels_out} are out"
+        gave = f"gave way by up to {1e3 * r.dowel_slip_m:.2g} mm" if r.dowel_slip_m > 0.0 else "held"
+        first += f"; dowels {gave}" + (f", {r.dowels_out} of {r.dowels} came out" if r.dowels_out else "")
     return (
         f"{first}; {turn[0]} turns by {1e3 * turn[1]:.3g} mrad at most, slip {1e3 * r.peak_slip_m:.2g} mm, {r.bounces} bounces; "
         f"{r.blocks} stones, {r.contacts} contacts; {audit}."

@@ -59,7 +59,7 @@ def make_column(
 
 
 class Column(Structure):
-    """Blocks or drums stacked on the ground, tapered where asked for; dry joints between them."""
+    """Blocks or drums stacked on the ground, tapered where asked for."""
 
     word: ClassVar = "column"
     kind: Literal["column"]
@@ -78,7 +78,9 @@ class Column(Structure):
         None, 'dowels in the axis between the drums: the shear each bears, or "unbroken"'
     )
     dowel_reach: Length | None = key(
-        None, "how far the dowels reach into the drum above: parted farther, it has lost them; default: never", gt=0
+        None,
+        "`dem`: how far each dowel reaches into the drum above; drums that part farther have lost it; default: never lost",
+        gt=0,
     )
 
     @model_validator(mode="after")
