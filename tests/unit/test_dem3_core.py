@@ -407,6 +407,21 @@ def test_mortar_bears_shear_by_cohesion(share: float, gap: float) -> None:
     assert run.residual < 5e-3
 
 
+def test_mortar_that_is_sheared_off_is_gone() -> None:
+    """A cube sheared off by a jolt comes to rest, and then slides under what friction alone cannot hold, and mortar could."""
+    weight, mu = DENSITY * GRAVITY, 0.2
+    law = Law(1e9, 1e9, mu, 2e-3, cohesion=0.5 * weight, tension=weight)
+    cubes = solids([box((-0.5, -0.5, 0), (0.5, 0.5, 1))], law)
+    model = replace(cubes, laws=[replace(law, cohesion=0.0, tension=0.0), law], joints={(0, 1): 1})
+    t = np.arange(0.0, 1.0, 1e-3)
+    for jolt, way in ((0.3, 0.0), (0.9, 0.5 * (0.4 - mu) * GRAVITY * 0.4**2)):
+        samples = np.where(t < 0.05, -jolt, np.where(t < 0.6, 0.0, -0.4)) * GRAVITY
+        run = dem3.run(model, Options(end_time=0.999, output_step=0.001), Ground(samples=samples[None], step=1e-3))
+        at = [int(np.searchsorted(run.time, when)) for when in (0.55, 0.59)]
+        assert abs(run.rate[at[0], 0, 0]) < 1e-4
+        assert run.place[-1, 0, 0] - run.place[at[1], 0, 0] == pytest.approx(way, rel=0.03, abs=1e-4)
+
+
 def doweled_cube(strength: float, reach: float = np.inf, stiffness: float = 1e9) -> Solids:
     """A cube on a floor, with a dowel in the middle of its base."""
     model = solids([box((-0.5, -0.5, 0), (0.5, 0.5, 1))], Law(1e9, 1e9, 0.2, 1e-4))
@@ -438,6 +453,37 @@ def test_a_dowel_bears_shear_in_any_direction(way: float) -> None:
     assert run.residual < 1e-3
 
 
+def test_a_cube_swings_on_its_dowel() -> None:
+    """Without friction, as an oscillator on the stiffness of the dowel with beta times omega / 2 of critical damping."""
+    speed, stiffness, beta, mass = 0.01, 1e6, 1e-2, DENSITY
+    model = doweled_cube(np.inf, stiffness=stiffness)
+    model = replace(model, laws=[Law(1e9, 1e9, 0.0, 1e-3)], dowels=replace(model.dowels, damping=beta))
+    run = dem3.run(
+        model, Options(end_time=0.6, output_step=0.002), rate=np.array([[speed, 0, 0, 0, 0, 0], np.zeros(6)])
+    )
+    omega = np.sqrt(stiffness / mass)
+    ratio = 0.5 * beta * omega
+    damped = omega * np.sqrt(1.0 - ratio**2)
+    exact = speed / damped * np.exp(-ratio * omega * run.time) * np.sin(damped * run.time)
+    assert run.place[:, 0, 0] - run.place[0, 0, 0] == pytest.approx(exact, abs=0.01 * exact.max())
+
+
+def test_the_critical_step_knows_dowels() -> None:
+    """Two floating cubes, half a metre of arm each: omega^2 = 2 k (1 / m + r^2 / J), each as if the other gave way as much."""
+    stiffness = 1e12
+    apart = solids([box((-0.5, -0.5, k), (0.5, 0.5, k + 1)) for k in (0.0, 1.1)], Law(1e9, 1e9, 0.5), floor=False)
+    one = replace(
+        doweled_cube(np.inf).dowels,
+        body=np.array([[0, 1]]),
+        place=np.array([[0.0, 0.0, 1.05]]),
+        stiffness=np.array([stiffness]),
+    )
+    options = Options(end_time=1e-7, fraction=0.1, gravity=(0, 0, 0))
+    step = dem3.run(replace(apart, dowels=one), options, rate=np.zeros((2, 6))).step
+    omega2 = 2.0 * stiffness / DENSITY * (1.0 + 6.0 * 0.55**2)
+    assert step == pytest.approx(0.1 * 2.0 / np.sqrt(omega2), rel=0.04)
+
+
 def test_a_dowel_keeps_momentum_and_energy() -> None:
     """Two cubes that float, turning apart, held in the joint by a dowel alone: momentum, moment of momentum and energy."""
     cubes = [box((-0.5, -0.5, k), (0.5, 0.5, k + 0.99)) for k in range(2)]
@@ -464,7 +510,7 @@ def test_a_dowel_comes_out_where_stones_part_farther_than_it_reaches() -> None:
     """Thrown up by less than the reach it lands on its dowel, by more it has lost it and is free to slide."""
     slope = np.radians(35.0)
     pull = (GRAVITY * np.sin(slope), 0.0, -GRAVITY * np.cos(slope))
-    for speed, out in ((0.5, False), (2.0, True)):
+    for speed, out in ((0.5, False), (1.5, True)):
         height = 0.5 * speed**2 / (GRAVITY * np.cos(slope))
         assert (height > 0.1) == out
         run = dem3.run(
@@ -473,6 +519,14 @@ def test_a_dowel_comes_out_where_stones_part_farther_than_it_reaches() -> None:
         )  # fmt: skip
         assert bool(run.dowel_out[0]) == out
         assert (run.place[-1, 0, 0] > 0.2) == out
+
+
+@pytest.mark.parametrize(("reach", "out"), [(0.049, True), (0.051, False)])
+def test_a_dowel_reaches_so_far(reach: float, out: bool) -> None:
+    """A cube that leaves the floor by 5 cm, without weight."""
+    options = Options(end_time=0.5, output_step=0.1, gravity=(0, 0, 0))
+    run = dem3.run(doweled_cube(np.inf, reach), options, rate=np.array([[0, 0, 0.1, 0, 0, 0], np.zeros(6)]))
+    assert bool(run.dowel_out[0]) == out
 
 
 def test_dowels_are_checked_and_threads_and_pauses_change_no_bit(monkeypatch) -> None:
