@@ -14,6 +14,7 @@ import pytest
 # an editable install builds here what has changed, and tidies its notes of it: once, before the many processes of the
 # tests look at them at the same time
 import extrados._core  # noqa: F401
+from extrados import interrupts
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell's background job: tests of Ctrl-C would wait in vain
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -28,6 +29,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if item.get_closest_marker("verify") or (whole and "trials" in item.path.parts):
             item.add_marker(pytest.mark.timeout(0))
+
+
+@pytest.fixture(autouse=True)
+def _no_signal_of_before() -> Iterator[None]:
+    """A signal that a test made up is none of the next one's."""
+    yield
+    interrupts.asked.clear()
 
 
 @pytest.fixture(scope="session")
