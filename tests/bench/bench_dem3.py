@@ -1,4 +1,4 @@
-"""Blocks in space against MuJoCo: real-time factor and error of displacements; cost over size; two threads.
+"""Blocks in space against MuJoCo and LMGC90: real-time factor and error of displacements; cost over size; two threads.
 
 Rates are of processor time of one core, ours without settling, MuJoCo's without its 0.2 s under gravity, so that what else runs on
 the machine counts little; threads are timed by the wall clock, and the load stands beside. The error is the greatest RMS distance of any block
@@ -11,9 +11,13 @@ only) the refined solution has ten times the stiffness. Of few blocks every solv
 """
 
 import os
+import subprocess
+import sys
+import tempfile
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 import solid_peers
@@ -79,11 +83,11 @@ class Case:
 CASES = {
     "column of 12 drums": Case(
         lambda: drums(1.0, [0.5] * 12, None, 16), sine(0.35 * GRAVITY, 0.8), 0.6, 1e10, 1e-3, 1e11,
-        rigid_steps=(16e-3, 4e-3, 5e-4),
+        rigid_steps=(32e-3, 16e-3, 4e-3, 5e-4),
     ),
     "arch of 30": Case(
         lambda: drawn_out(make_arch(10.0, 1.5, 157.5, 30)), sine(0.6 * GRAVITY, 0.6), 0.4, 2e10, 1e-3, 2e11,
-        rigid_steps=(16e-3, 4e-3, 5e-4),
+        rigid_steps=(32e-3, 16e-3, 4e-3, 5e-4),
     ),
     # Out of its plane
     "wall of 500": Case(
@@ -127,6 +131,19 @@ def error(time_axis: np.ndarray, moved: np.ndarray, exact: np.ndarray, times: np
     return float(rms.max() / np.linalg.norm(exact, axis=2).max())
 
 
+def lmgc90(name: str, dt: float) -> tuple[solid_peers.Answer | None, str]:
+    """Its answer in a process of its own, or why there is none."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder) / "answer.npz"
+        run = subprocess.run(
+            [sys.executable, solid_peers.__file__, name, str(dt), str(out)], capture_output=True, text=True, errors="replace", check=False
+        )  # fmt: skip
+        if not out.exists():
+            return None, " ".join(f"{run.stdout} {run.stderr}".split())[-200:] or f"ended with {run.returncode}"
+        data = np.load(out)
+        return solid_peers.Answer(float(data["seconds"]), float(data["seconds"]), data["time"], data["moved"]), ""
+
+
 def one(name: str, case: Case) -> None:
     assembly = case.assembly()
     n = len(assembly.mass)
@@ -158,27 +175,34 @@ def one(name: str, case: Case) -> None:
         )
         if ahead:
             aheads[f"{solver} at {run.step:.2g} s"] = ahead
+
+    def beside(program: str, peer: solid_peers.Answer, dt: float) -> None:
+        rate = peer.time[-1] / peer.processor
+        off = f"- (stopped at {peer.time[-1]:.3f} s)"
+        if peer.time[-1] > 0.99 * case.seconds:
+            off = f"{error(peer.time, peer.moved, exact, fine.time):.1e}"
+        faster = ", ".join(f"{solver} {ahead / rate:.1f}" for solver, ahead in aheads.items())
+        print(
+            f"  {program}    {rate:9.2g} times real time  step {dt:.0e} s  error {off}  times as fast: {faster}",
+            flush=True,
+        )
+
     if not has("mujoco"):
         print("  MuJoCo    not installed")
-        return
-    for dt in case.peer_steps:
+    for dt in case.peer_steps if has("mujoco") else ():
         grounds = (STILL, case.ground) if case.way else (case.ground, STILL)
         runs_of_peer = [
             solid_peers.mujoco(solids(case.stiffness, 0.0), *grounds, case.seconds, dt) for _ in range(case.tries)
         ]
-        peer = min(runs_of_peer, key=lambda run: run.processor)
-        rate = peer.time[-1] / peer.processor
-        whole = peer.time[-1] > 0.99 * case.seconds
-        off = (
-            f"{error(peer.time, peer.moved, exact, fine.time):.1e}"
-            if whole
-            else f"- (stopped at {peer.time[-1]:.3f} s)"
-        )
-        faster = ", ".join(f"{solver} {ahead / rate:.1f}" for solver, ahead in aheads.items())
-        print(
-            f"  MuJoCo    {rate:9.3f} times real time  step {dt:.0e} s  error {off}  times as fast: {faster}",
-            flush=True,
-        )
+        beside("MuJoCo", min(runs_of_peer, key=lambda run: run.processor), dt)
+    if not has("compas_lmgc90"):
+        print("  LMGC90    not installed")
+        return
+    peer, why = lmgc90(name, 1e-3)
+    if peer is None:
+        print(f"  LMGC90    no answer: {why}")
+    else:
+        beside("LMGC90", peer, 1e-3)
 
 
 def sizes() -> None:

@@ -1,5 +1,6 @@
 """The same blocks in MuJoCo and LMGC90 (extra `bench`): prisms of depth 1 m, plane motion."""
 
+import ctypes
 import sys
 import time
 from dataclasses import dataclass
@@ -86,41 +87,67 @@ def mujoco(bodies: dem.Bodies, ground: Ground, end: float, dt: float, follow: in
 
 
 def lmgc90(bodies: dem.Bodies, ground: Ground, end: float, dt: float, follow: int) -> Answer:
-    """LMGC90 (Moreau-Jean, NLGS), supports driven by the ground's velocity; one run in a process."""
+    """LMGC90 (Moreau-Jean, NLGS); one run in a process."""
+    shapes = [_prism(part) for part in bodies.parts]
+    fixed = [mass == 0.0 for mass in bodies.mass]
+    seconds, time_axis, moved = lmgc90_of(shapes, fixed, DENSITY, FRICTION, (ground, None), end, dt)
+    return Answer(seconds, time_axis, moved[:, follow, ::2])
+
+
+def lmgc90_of(
+    shapes: list[tuple[np.ndarray, list[list[int]]]],
+    fixed: list[bool],
+    density: float,
+    friction: float,
+    grounds: tuple[Ground, Ground | None],
+    end: float,
+    dt: float,
+    settle: float = 0.1,
+    patience: float = np.inf,
+) -> tuple[float, np.ndarray, np.ndarray]:
+    """Seconds that its steps take, times (t) [s], displacements (t, bodies, 3) [m] against the supports, which the velocities of the
+    ground along x and y drive; as far as `patience` [s] lets it. Convex shapes: vertices, faces."""
+    from compas_lmgc90 import _lmgc90
     from compas_lmgc90.solver import Solver
 
-    solver = Solver(dt=dt, theta=0.5, density=DENSITY)
-    blocks = []
-    for part in bodies.parts:
-        vertices, faces = _prism(part)
-        blocks.append({"vertices": vertices.tolist(), "faces": faces})
-    solver.geometry_from_v_f(blocks)
-    settle = 0.1
+    solver = Solver(dt=dt, theta=0.5, density=density)
+    # Room for faces of many corners, as its own words ask for; the wrapper does not hand it through.
+    ctypes.CDLL(_lmgc90.__file__).__prprx_MOD_set_size_factor_polyr_prprx(ctypes.byref(ctypes.c_int(64)))
+    solver.geometry_from_v_f([{"vertices": np.asarray(v).tolist(), "faces": [list(f) for f in g]} for v, g in shapes])
     t = np.arange(0.0, end + settle + 10 * dt, dt)
     fine = np.arange(0.0, end + 10 * dt, 0.1 * dt)
-    velocity = np.concatenate([[0.0], np.cumsum(acceleration(ground, fine + 0.05 * dt)) * 0.1 * dt])[: len(fine)]
-    drive = np.where(t < settle, 0.0, np.interp(t - settle, fine, velocity))
-    support = next(k for k, m in enumerate(bodies.mass) if m == 0.0)
-    for k in range(len(bodies.mass)):
-        if bodies.mass[k] == 0.0:
-            for component in ("Vy", "Vz", "Rx", "Ry", "Rz"):
-                solver.apply_velocity(k, component, 0.0)
-            solver.apply_velocity(k, "Vx", np.array([t, drive]))
-    solver.contact_law("IQS_CLB", FRICTION)
+    drives = {}
+    for component, ground in zip(("Vx", "Vy"), grounds, strict=True):
+        drives[component] = 0.0
+        if ground is not None:
+            velocity = np.concatenate([[0.0], np.cumsum(acceleration(ground, fine + 0.05 * dt)) * 0.1 * dt])[
+                : len(fine)
+            ]
+            drives[component] = np.array([t, np.where(t < settle, 0.0, np.interp(t - settle, fine, velocity))])
+    for k in np.flatnonzero(fixed):
+        for component in ("Vx", "Vy", "Vz", "Rx", "Ry", "Rz"):
+            solver.apply_velocity(int(k), component, drives.get(component, 0.0))
+    solver.contact_law("IQS_CLB", friction)
     solver.preprocess()
     step = solver.lmgc90.compute_one_step
+    support = int(np.flatnonzero(fixed)[0])
+
+    def place() -> np.ndarray:
+        now = np.array(state.bodies)
+        return now - now[support]
+
     for _ in range(round(settle / dt)):
         state = step()
-    start = np.array(state.bodies[follow])[[0, 2]] - np.array(state.bodies[support])[[0, 2]]
-    steps = round(end / dt)
-    place = np.empty((steps, 2))
-    begin = time.perf_counter()
-    for n in range(steps):
+    start = place()
+    seconds, moved = 0.0, []
+    for _ in range(round(end / dt)):
+        begin = time.perf_counter()
         state = step()
-        one, base = state.bodies[follow], state.bodies[support]
-        place[n] = one[0] - base[0], one[2] - base[2]
-    seconds = time.perf_counter() - begin
-    return Answer(seconds, dt * np.arange(1, steps + 1), place - start)
+        seconds += time.perf_counter() - begin
+        moved.append(place() - start)
+        if seconds > patience:
+            break
+    return seconds, dt * np.arange(1, len(moved) + 1), np.array(moved)
 
 
 if __name__ == "__main__":  # LMGC90 keeps one simulation in a process, and may end it

@@ -1,10 +1,15 @@
-"""The same blocks in space in MuJoCo (extra `bench`), with free joints; boxes as its boxes, other parts as meshes."""
+"""The same blocks in space in MuJoCo and LMGC90 (extra `bench`).
 
+In MuJoCo with free joints, boxes as its boxes, other parts as meshes. LMGC90 knows a body as one convex polyhedron: of a voussoir of many
+parts the hull, which has the same joints and fills what its soffit is hollow by."""
+
+import sys
 import time
 from dataclasses import dataclass
 
 import numpy as np
-from dem_peers import acceleration
+from dem_peers import acceleration, lmgc90_of
+from scipy.spatial import ConvexHull
 
 from extrados.core.dem3 import Solids
 from extrados.core.ground import Ground
@@ -106,3 +111,54 @@ def mujoco(solids: Solids, along: Ground, across: Ground | None, end: float, dt:
             break
     seconds, processor = time.perf_counter() - begin, time.process_time() - spent
     return Answer(seconds, processor, dt * every * np.arange(1, len(place) + 1), place - start)
+
+
+def hull_of(points: np.ndarray) -> tuple[np.ndarray, list[list[int]]]:
+    """Vertices and outward triangles of the convex hull of points."""
+    hull = ConvexHull(points)
+    kept, faces = np.unique(hull.simplices, return_inverse=True)
+    vertices = points[kept]
+    faces = faces.reshape(-1, 3)
+    corners = vertices[faces]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    inward = (normal * (corners.mean(axis=1) - vertices.mean(axis=0))).sum(axis=1) < 0.0
+    faces[inward] = faces[inward][:, ::-1]
+    return vertices, faces.tolist()
+
+
+def lmgc90(solids: Solids, along: Ground, across: Ground, end: float, dt: float) -> Answer:
+    """A run from rest as far as PATIENCE lets it; one in a process."""
+    owner = np.asarray(solids.owner)
+    shapes, volume = [], 0.0
+    for b, mass in enumerate(solids.mass):
+        parts = np.flatnonzero(owner == b)
+        points = np.concatenate([np.asarray(solids.vertices[k]) for k in parts])
+        volume += ConvexHull(points).volume if mass > 0.0 else 0.0
+        whole = (points, [list(face) for face in solids.faces[parts[0]]])
+        shapes.append(whole if len(parts) == 1 else hull_of(points))
+    density = float(np.sum(solids.mass)) / volume
+    seconds, times, moved = lmgc90_of(
+        shapes,
+        (solids.mass == 0.0).tolist(),
+        density,
+        solids.laws[0].friction,
+        (along, across),
+        end,
+        dt,
+        SETTLE / 2,
+        PATIENCE,
+    )
+    return Answer(seconds, seconds, times, moved[:, solids.mass > 0.0])
+
+
+if __name__ == "__main__":  # LMGC90 keeps one simulation in a process, and may end it
+    from bench_dem3 import CASES, FRICTION, solids_of
+
+    from extrados.core import dem3
+    from extrados.core.dem_run import STILL
+
+    case = CASES[sys.argv[1]]
+    blocks = solids_of(case.assembly(), dem3.Law(case.stiffness, case.stiffness, FRICTION, 0.0))
+    shaken = (STILL, case.ground) if case.way else (case.ground, STILL)
+    answer = lmgc90(blocks, *shaken, case.seconds, float(sys.argv[2]))
+    np.savez(sys.argv[3], seconds=answer.seconds, time=answer.time, moved=answer.moved)
