@@ -7,6 +7,7 @@ Every call must end with a result or an exception; after it the core must still 
 process ends this one, and the last number tells where.
 """
 
+import faulthandler
 import random
 import signal
 import sys
@@ -472,6 +473,7 @@ def bits(value: Any) -> bytes:
 
 
 PATIENCE = 3.0  # seconds of the processor; then a call is asked to stop, as by Ctrl-C: it may have an age to compute
+HANG = 120.0  # seconds; a call that does not stop then ends the process, with the place where it was
 
 
 class Watched:
@@ -514,6 +516,7 @@ def main() -> None:
         told = ", ".join(f"{name}={changed[name]!r:.60}".replace("\n", " ") for name in names)
         print(f"{number}\t{function.__name__}({told})", end="\t", flush=True)
         signal.setitimer(signal.ITIMER_PROF, PATIENCE, PATIENCE)
+        faulthandler.dump_traceback_later(HANG, exit=True)
         try:
             function(**changed)
             end = "result"
@@ -522,6 +525,7 @@ def main() -> None:
         except Exception as error:
             end = type(error).__name__
         signal.setitimer(signal.ITIMER_PROF, 0.0)
+        faulthandler.cancel_dump_traceback_later()
         if number % 20 == 0 and bits(calls[k][0](**calls[k][1])) != right[k]:
             end = "WRONG: the core no longer gives the right bits"
         print(end, flush=True)

@@ -199,6 +199,9 @@ ABUSES = {
                                             "ValueError"),
     "no ground": ("MotionSet([])", "ValueError"),
     "too short a lattice": ("motion.line_spectrum([1.0], [1.0], [[1.0]], 5.0, [1.0])", "CoreError"),
+    "transform of a great prime": ("motion.fourier(np.ones(3), 2**31 - 1)", "ValueError"),
+    "back from a great prime": ("motion.fourier_inverse(np.ones(50002), 100003)", "ValueError"),
+    "transform of more than memory": ("motion.fourier(np.ones(3), 2**30)", "ValueError"),
     "transform of another length": ("motion.fourier_inverse(np.ones(3), 100)", "ValueError"),
 }  # fmt: skip
 

@@ -212,13 +212,34 @@ def kinematics(motion: npt.ArrayLike, step: float) -> tuple[np.ndarray, np.ndarr
     return _core.api_motion.kinematics(real("motion", motion, (None,)), _step(step))
 
 
+MOST_POINTS = 2**28  # of a transform
+
+
+def _affordable(length: int) -> int:
+    """The length of a transform. GSL takes a time of it times each prime factor above 7, and cannot be stopped: some seconds at most."""
+    left, slow, factor = length, 0, 2
+    while length <= MOST_POINTS and factor * factor <= left:
+        while left % factor == 0:
+            left //= factor
+            slow += factor if factor > 7 else 0
+        factor += 1
+    slow += left if left > 7 else 0
+    if length > MOST_POINTS or length * slow > 1e9:
+        raise ValueError(
+            f"length is {length}, expected at most {MOST_POINTS} and of small prime factors, such as a power of 2"
+        )
+    return length
+
+
 def fourier(series: npt.ArrayLike, length: int | None = None) -> np.ndarray:
-    """Transform (length // 2 + 1,) complex of a real series (n) padded with zeros to `length`; GSL, not scaled."""
+    """Transform (length // 2 + 1,) complex of a real series (n) padded with zeros to `length`; GSL, not scaled.
+
+    ValueError for a length of large prime factors, which would take minutes, or beyond MOST_POINTS."""
     series = real("series", series, (None,))
     length = int(length or series.size)
     if length < max(2, series.size):
         raise ValueError(f"length is {length}, expected at least {max(2, series.size)}")
-    re, im, status = _core.api_motion.fourier(series, length, length // 2 + 1)
+    re, im, status = _core.api_motion.fourier(series, _affordable(length), length // 2 + 1)
     check(status, "Fourier transform")
     return re + 1j * im
 
@@ -226,7 +247,7 @@ def fourier(series: npt.ArrayLike, length: int | None = None) -> np.ndarray:
 def fourier_inverse(transform: npt.ArrayLike, length: int) -> np.ndarray:
     """Real series (length) of a transform made by `fourier`."""
     transform = np.asarray(transform)
-    half = int(length) // 2 + 1
+    half = _affordable(int(length)) // 2 + 1
     series, status = _core.api_motion.fourier_inverse(
         real("transform", transform.real, (half,)), real("transform", transform.imag, (half,)), int(length)
     )
