@@ -200,6 +200,8 @@ ABUSES = {
     "no ground": ("MotionSet([])", "ValueError"),
     "too short a lattice": ("motion.line_spectrum([1.0], [1.0], [[1.0]], 5.0, [1.0])", "CoreError"),
     "transform of a great prime": ("motion.fourier(np.ones(3), 2**31 - 1)", "ValueError"),
+    "envelope of more than memory": ("motion.envelope('trapezoid', [0.0, 1.0, 0.0, 0.0], 2**31 - 1, 0.01)", "ValueError"),
+    "phases of more than memory": ("motion.phases(1, 0, 2**31 - 1)", "ValueError"),
     "back from a great prime": ("motion.fourier_inverse(np.ones(50002), 100003)", "ValueError"),
     "transform of more than memory": ("motion.fourier(np.ones(3), 2**30)", "ValueError"),
     "transform of another length": ("motion.fourier_inverse(np.ones(3), 100)", "ValueError"),

@@ -34,6 +34,7 @@ def _batch(motions: npt.ArrayLike) -> np.ndarray:
 
 def envelope(kind: str, parameters: npt.ArrayLike, points: int, step: float) -> np.ndarray:
     """Envelope at 0, step, ... (points). parameters: start, duration [s] and two of the kind, see c/quake/envelope.c."""
+    room_for(points)
     value, status = _core.api_motion.envelope(
         ENVELOPES[kind], real("parameters", parameters, (4,)), int(points), _step(step)
     )
@@ -79,6 +80,7 @@ def line_amplitudes(
 
 def phases(seed: int, index: int, count: int) -> np.ndarray:
     """Random phases (count) in [0, 2 pi) of motion `index` of the set `seed`."""
+    room_for(count)
     phase, status = _core.api_motion.phases(int(seed), int(index), int(count))
     check(status, "random phases")
     return phase
@@ -212,29 +214,25 @@ def kinematics(motion: npt.ArrayLike, step: float) -> tuple[np.ndarray, np.ndarr
     return _core.api_motion.kinematics(real("motion", motion, (None,)), _step(step))
 
 
-MOST_POINTS = 2**28  # of a transform
-
-
 def _affordable(length: int) -> int:
     """The length of a transform. GSL takes a time of it times each prime factor above 7, and cannot be stopped: some seconds at most."""
+    room_for(length)
     left, slow, factor = length, 0, 2
-    while length <= MOST_POINTS and factor * factor <= left:
+    while factor * factor <= left:
         while left % factor == 0:
             left //= factor
             slow += factor if factor > 7 else 0
         factor += 1
     slow += left if left > 7 else 0
-    if length > MOST_POINTS or length * slow > 1e9:
-        raise ValueError(
-            f"length is {length}, expected at most {MOST_POINTS} and of small prime factors, such as a power of 2"
-        )
+    if length * slow > 1e9:
+        raise ValueError(f"length is {length}, expected one of small prime factors, such as a power of 2")
     return length
 
 
 def fourier(series: npt.ArrayLike, length: int | None = None) -> np.ndarray:
     """Transform (length // 2 + 1,) complex of a real series (n) padded with zeros to `length`; GSL, not scaled.
 
-    ValueError for a length of large prime factors, which would take minutes, or beyond MOST_POINTS."""
+    ValueError for a length of large prime factors, which would take minutes, or of more values than there may be."""
     series = real("series", series, (None,))
     length = int(length or series.size)
     if length < max(2, series.size):
