@@ -33,7 +33,7 @@ contains
       use common_handles, only : handle_leave
       use common_status, only : status_ok, status_out_of_memory
       use dem_plane_handle, only : built_blocks, blocks_take, set_laws
-      use dem_law, only : joint_law
+      use dem_joint, only : joint_law
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: nlaw
       real(c_double), intent(in) :: law(6, nlaw)              !! see joint_law

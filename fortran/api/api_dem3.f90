@@ -54,7 +54,8 @@ contains
       status = status_out_of_memory
       if (failed == 0) then
          do k = 1, nlaw
-            given(k) = joint_law(law(1, k), law(2, k), law(3, k), law(4, k), law(5, k), law(6, k))
+            given(k) = joint_law(law(1, k), law(2, k), law(3, k), cohesion=law(5, k), tension=law(6, k), &
+               damping=law(4, k))
          end do
          call set_laws(built, given, joint, status)
       end if

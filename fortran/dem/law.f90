@@ -26,20 +26,11 @@ module dem_law
    use common_kinds, only : wp
    use dem_bodies, only : body
    use dem_contacts, only : contact_pair, contact_point, overlap
+   use dem_joint, only : joint_law
    implicit none
    private
-   public :: joint_law, act, elastic_energy
+   public :: act, elastic_energy
    public :: point_frame, point_force, frame_of, relative, hand_over
-
-   !> A type of joint; stiffnesses per area times depth
-   type :: joint_law
-      real(wp) :: normal_stiffness = 0.0_wp     !! [N/m per m of joint]
-      real(wp) :: shear_stiffness = 0.0_wp      !! [N/m per m of joint]
-      real(wp) :: friction = 0.0_wp             !! coefficient
-      real(wp) :: cohesion = 0.0_wp             !! of a bonded joint [N per m of joint]
-      real(wp) :: tension = 0.0_wp              !! strength of a bonded joint [N per m of joint]
-      real(wp) :: damping = 0.0_wp              !! stiffness-proportional, beta [s]
-   end type joint_law
 
    !> Unit normal and tangent at a point, and the moments of unit forces along them about both centroids [m]
    type :: point_frame

@@ -5,7 +5,8 @@ module dem_model
    use dem_bodies, only : body, body_set, body_turn
    use dem_clock, only : model_clock, begin_step, end_step
    use dem_contacts, only : contact_pair, contact_set, overlap, measure, choose_edges
-   use dem_law, only : joint_law, act
+   use dem_joint, only : joint_law
+   use dem_law, only : act
    use dem_loading, only : move_rate
    use dem_rigid, only : rigid_solver
    use, intrinsic :: iso_c_binding, only : c_int
@@ -23,6 +24,7 @@ module dem_model
       type(body_set) :: set
       type(contact_set) :: contacts
       type(joint_law), allocatable :: law(:)
+      type(joint_law), allocatable :: own_law(:)      !! while mortar is braced: with its own strength
       real(wp) :: gravity(2) = 0.0_wp          !! [m/s^2]
       real(wp) :: mass_damping = 0.0_wp        !! alpha [1/s]
       real(wp) :: pull(2) = 0.0_wp             !! body force of the last step [m/s^2]

@@ -7,7 +7,7 @@ module dem_plane_handle
    use dem_bodies, only : body_set, body_set_new, body_turn
    use dem_contacts, only : overlap, measure
    use dem_handle, only : built_model, model_register, model_take
-   use dem_law, only : joint_law
+   use dem_joint, only : joint_law
    use dem_loading, only : loading, support_move
    use dem_model, only : block_model
    use dem_plane_run, only : block_simulation

@@ -8,6 +8,7 @@ module dem_plane_run
    use dem_clock, only : model_clock
    use dem_contacts, only : contact_pair, overlap, measure
    use dem_energy, only : energy_terms
+   use dem_joint, only : brace
    use dem_law, only : elastic_energy
    use dem_model, only : block_model, advance, critical_step
    use dem_moreau, only : advance_rigid, quickest
@@ -38,6 +39,8 @@ module dem_plane_run
       procedure :: limits
       procedure :: mark_rest
       procedure :: stop_all
+      procedure :: brace_mortar
+      procedure :: unbrace_mortar
       procedure :: forget_settling
       procedure :: put_down
       procedure :: sizes
@@ -255,6 +258,19 @@ contains
          b%spin = 0.0_wp
       end associate
    end subroutine stop_all
+
+   subroutine brace_mortar(run, braced, status)
+      class(block_simulation), intent(inout) :: run
+      logical, intent(out) :: braced
+      integer(c_int), intent(out) :: status
+      call brace(run%model%law, run%model%own_law, status)
+      braced = allocated(run%model%own_law)
+   end subroutine brace_mortar
+
+   subroutine unbrace_mortar(run)
+      class(block_simulation), intent(inout) :: run
+      call move_alloc(run%model%own_law, run%model%law)
+   end subroutine unbrace_mortar
 
    subroutine forget_settling(run)
       class(block_simulation), intent(inout) :: run

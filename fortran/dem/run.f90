@@ -83,6 +83,8 @@ module dem_run
       procedure(look), deferred :: limits               !! has a body collapsed or left the scene?
       procedure(change), deferred :: mark_rest          !! places are counted from here
       procedure(change), deferred :: stop_all           !! no body moves
+      procedure(hold_mortar), deferred :: brace_mortar  !! mortar is unbreakable from now on, where there is any
+      procedure(change), deferred :: unbrace_mortar     !! it has its own strength again
       procedure(change), deferred :: forget_settling    !! no dashpot force, loss or count is left from it
       procedure(change), deferred :: put_down           !! places and rates at the last forces, as the last point
       procedure(lengths), deferred :: sizes             !! what a state has in common with the model; its lengths
@@ -163,6 +165,14 @@ module dem_run
          implicit none
          class(simulation), intent(inout) :: run
       end subroutine change
+
+      subroutine hold_mortar(run, braced, status)
+         import :: simulation, c_int
+         implicit none
+         class(simulation), intent(inout) :: run
+         logical, intent(out) :: braced                 !! whether there is any
+         integer(c_int), intent(out) :: status          !! status_out_of_memory, else ok
+      end subroutine hold_mortar
 
       function lengths(run) result(sizes)
          import :: simulation, model_sizes, c_int64_t
@@ -255,7 +265,7 @@ contains
       if (solver%setting%used) then
          call rest_by_waiting(run, rests, status)
       else
-         call rest_by_damping(run, rests, status)
+         call rest_with_mortar(run, rests, status)
       end if
       if (status /= status_ok) return
       if (.not. rests) then
@@ -268,6 +278,22 @@ contains
       clock%drift = 0.0_wp
       clock%steps = 0
    end subroutine settle
+
+   !> Rest on springs. Mortar does not break while the weight comes, which comes at once and overshoots; then what
+   !> cannot bear the weight at rest breaks, and all comes to rest anew.
+   subroutine rest_with_mortar(run, rests, status)
+      class(simulation), intent(inout), target :: run
+      logical, intent(out) :: rests
+      integer(c_int), intent(out) :: status
+      logical :: braced
+      rests = .false.
+      call run%brace_mortar(braced, status)
+      if (status /= status_ok) return
+      call rest_by_damping(run, rests, status)
+      if (.not. braced) return
+      call run%unbrace_mortar()
+      if (status == status_ok .and. rests) call rest_by_damping(run, rests, status)
+   end subroutine rest_with_mortar
 
    !> Rest by kinetic damping: whenever the kinetic energy has passed a peak, all stops
    subroutine rest_by_damping(run, rests, status)
@@ -286,7 +312,7 @@ contains
       step = clock%step
       clock%step = max(step, run%options%fraction * run%record%critical)
       before = 0.0_wp
-      n = 0
+      n = run%record%settling
       do while (n < run%options%settle_steps)
          call several(run, batch, status)
          if (status /= status_ok) return

@@ -15,6 +15,7 @@
 module dem3_law
    use common_kinds, only : wp
    use common_status, only : status_ok
+   use dem_joint, only : joint_law
    use dem3_bodies, only : body, body_set
    use dem3_patch, only : feature, measure, meet, patch
    use, intrinsic :: iso_c_binding, only : c_int
@@ -22,15 +23,6 @@ module dem3_law
    private
    public :: joint_law, contact_point, contact_pair, act, bond, find_points, elastic_energy, drop_points
    public :: answers, bounded, give, length_of
-
-   type :: joint_law
-      real(wp) :: normal_stiffness = 0.0_wp    !! [Pa/m]
-      real(wp) :: shear_stiffness = 0.0_wp     !! [Pa/m]
-      real(wp) :: friction = 0.0_wp            !! coefficient
-      real(wp) :: damping = 0.0_wp             !! stiffness-proportional, beta [s]
-      real(wp) :: cohesion = 0.0_wp            !! of a bonded joint [Pa]
-      real(wp) :: tension = 0.0_wp             !! strength of a bonded joint [Pa]
-   end type joint_law
 
    type :: contact_point
       type(feature) :: what

@@ -4,10 +4,11 @@ module dem3_model
    use common_status, only : status_ok, status_out_of_memory
    use dem_clock, only : model_clock, begin_step, end_step
    use dem_energy, only : energy_terms
+   use dem_joint, only : joint_law
    use dem_rigid, only : rigid_solver
    use dem3_bodies, only : body, body_set, cross, place, spin_of, turn_freely
    use dem3_dowels, only : act_dowel, dowel, dowel_energy
-   use dem3_law, only : act, bond, contact_pair, contact_point, drop_points, elastic_energy, find_points, joint_law
+   use dem3_law, only : act, bond, contact_pair, contact_point, drop_points, elastic_energy, find_points
    use dem3_patch, only : measure
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
@@ -29,6 +30,7 @@ module dem3_model
       integer, allocatable :: colour_first(:)         !! first of each colour in the sweep; then what has none
       integer :: colours = 0
       type(joint_law), allocatable :: law(:)          !! the first is that of contacts that form later
+      type(joint_law), allocatable :: own_law(:)      !! while mortar is braced: with its own strength
       integer, allocatable :: law_of(:, :)            !! (3, joints): two bodies, the lower first, law; ascending
       type(dowel), allocatable :: dowels(:)
       real(wp) :: way(3) = [1.0_wp, 0.0_wp, 0.0_wp]   !! of the horizontal ground motion

@@ -5,6 +5,7 @@ module dem3_run
    use common_status, only : status_ok, status_invalid_argument, status_not_finite, status_out_of_memory
    use dem_clock, only : model_clock
    use dem_energy, only : energy_terms
+   use dem_joint, only : brace
    use dem_rigid, only : rigid_solver, suitable_step
    use dem_run, only : any_step, model_sizes, simulation
    use dem_tape, only : tape, loading
@@ -36,6 +37,8 @@ module dem3_run
       procedure :: limits
       procedure :: mark_rest
       procedure :: stop_all
+      procedure :: brace_mortar
+      procedure :: unbrace_mortar
       procedure :: forget_settling
       procedure :: put_down
       procedure :: sizes
@@ -217,6 +220,19 @@ contains
          run%model%set%item(k)%swing = 0.0_wp
       end do
    end subroutine stop_all
+
+   subroutine brace_mortar(run, braced, status)
+      class(solid_simulation), intent(inout) :: run
+      logical, intent(out) :: braced
+      integer(c_int), intent(out) :: status
+      call brace(run%model%law, run%model%own_law, status)
+      braced = allocated(run%model%own_law)
+   end subroutine brace_mortar
+
+   subroutine unbrace_mortar(run)
+      class(solid_simulation), intent(inout) :: run
+      call move_alloc(run%model%own_law, run%model%law)
+   end subroutine unbrace_mortar
 
    subroutine forget_settling(run)
       class(solid_simulation), intent(inout) :: run

@@ -4,7 +4,8 @@ program test_dem
    use common_status, only : status_ok, status_bad_geometry, status_invalid_argument
    use dem_bodies, only : body, body_set, body_set_new, body_turn
    use dem_contacts, only : contact_pair, contact_set, overlap, measure
-   use dem_law, only : joint_law, act, elastic_energy
+   use dem_joint, only : joint_law
+   use dem_law, only : act, elastic_energy
    use dem_search, only : search
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none (type, external)

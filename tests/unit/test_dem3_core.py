@@ -386,6 +386,21 @@ def test_mortar_bears_the_weight_that_hangs_on_it(share: float) -> None:
     assert run.residual < 5e-3
 
 
+@pytest.mark.parametrize("share", [0.95, 1.05])
+def test_settling_asks_of_mortar_the_weight_at_rest(share: float) -> None:
+    """Not the overshoot of a weight that comes at once, which without dashpots is twice as much."""
+    weight, stiffness = DENSITY * GRAVITY, 1e9
+    law = Law(stiffness, stiffness, 0.5, 0.0, cohesion=weight, tension=share * weight)
+    run = dem3.run(hanging(law), Options(end_time=0.1, output_step=0.01, settlement=1e-3))
+    if share > 1.0:
+        assert (
+            run.reason == "end"
+            and abs(run.place[:, 0, 2] + 0.5 - 1.0 + weight / stiffness).max() < 1e-3 * weight / stiffness
+        )
+    else:
+        assert run.reason == "unsettled" and run.blamed == [0]
+
+
 @pytest.mark.parametrize("gap", [0.0, 1e-9, 1e-4])
 @pytest.mark.parametrize("share", [0.9, 2.5])
 def test_mortar_bears_shear_by_cohesion(share: float, gap: float) -> None:

@@ -210,6 +210,20 @@ def test_mortar_holds_until_its_strength() -> None:
         assert (run.place[-1, 0, 1] < -0.6) == falls
 
 
+@pytest.mark.parametrize("share", [0.95, 1.05])
+def test_settling_asks_of_mortar_the_weight_at_rest(share: float) -> None:
+    """Not the overshoot of a weight that comes at once, which without dashpots is twice as much."""
+    weight, stiffness = 2000.0 * G, 1e9
+    law = dem.Law(stiffness, stiffness, 0.6, cohesion=1e6, tension=share * weight)
+    bodies = model([rectangle(-0.5, 0.5, -1.0, 0.0)], [rectangle(-2.0, 2.0, 0.0, 1.0)], law)
+    run = dem.run(bodies, dem.Options(0.1, 0.01, settlement=1e-3))
+    if share > 1.0:
+        drawn = weight / stiffness
+        assert run.reason == "end" and abs(run.place[:, 0, 1] + 0.5 + drawn).max() < 1e-3 * drawn
+    else:
+        assert run.reason == "unsettled" and run.blamed == [0]
+
+
 def test_support_settles() -> None:
     bodies = block_on_floor(1.0, 1.0, STIFF)
     run = dem.run(bodies, dem.Options(1.5, 0.1), moves=(dem.SupportMove(1, 0.0, -0.05, 0.0, 0.1, 1.0),))

@@ -1,0 +1,42 @@
+!> What a joint between blocks is made of, in the plane and in space.
+module dem_joint
+   use common_kinds, only : wp
+   use common_status, only : status_ok, status_out_of_memory
+   use, intrinsic :: iso_c_binding, only : c_int
+   implicit none
+   private
+   public :: joint_law, brace
+
+   !> A type of joint; in the plane stiffnesses and strengths are those of the area times the depth
+   type :: joint_law
+      real(wp) :: normal_stiffness = 0.0_wp     !! plane [N/m per m of joint], space [Pa/m]
+      real(wp) :: shear_stiffness = 0.0_wp      !! the same
+      real(wp) :: friction = 0.0_wp             !! coefficient
+      real(wp) :: cohesion = 0.0_wp             !! of a bonded joint: plane [N per m of joint], space [Pa]
+      real(wp) :: tension = 0.0_wp              !! strength of a bonded joint, the same
+      real(wp) :: damping = 0.0_wp              !! stiffness-proportional, beta [s]
+   end type joint_law
+
+contains
+
+   !> Make mortar unbreakable; `own` keeps what it was, and is not allocated where there is none
+   subroutine brace(law, own, status)
+      type(joint_law), intent(inout) :: law(:)
+      type(joint_law), allocatable, intent(out) :: own(:)
+      integer(c_int), intent(out) :: status         !! status_out_of_memory, else ok
+      real(wp), parameter :: unbreakable = 1.0e30_wp    ! far from overflow, squared and times an area too
+      integer :: k, failed
+      status = status_ok
+      if (.not. any(max(law%cohesion, law%tension) > 0.0_wp)) return
+      allocate (own(size(law)), stat=failed)
+      status = merge(status_ok, status_out_of_memory, failed == 0)
+      if (failed /= 0) return
+      own(:) = law
+      do k = 1, size(law)
+         if (.not. max(law(k)%cohesion, law(k)%tension) > 0.0_wp) cycle
+         law(k)%cohesion = unbreakable
+         law(k)%tension = unbreakable
+      end do
+   end subroutine brace
+
+end module dem_joint
