@@ -86,7 +86,7 @@ def lacked(error: Exception) -> bool:
     return (thread or isinstance(error, SystemError | OSError | ImportError)) and not _has(_SHORT)
 
 
-def words(error: MemoryError) -> str:
+def words(error: Exception) -> str:
     """What is told of it; Python's own says nothing, numpy's only what it could not allocate."""
     said = str(error)
     return said if "not enough memory" in said else ": ".join(filter(None, ("not enough memory", said)))

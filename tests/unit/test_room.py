@@ -233,12 +233,17 @@ def test_an_interrupt_comes_before_memory(monkeypatch, error: Exception) -> None
     assert failing(monkeypatch, error).status == "interrupted"
 
 
+@pytest.mark.parametrize("error", [MemoryError(), SystemError("of Python itself")], ids=repr)
 @pytest.mark.parametrize("more", [[], ["--json"]], ids=str)
-def test_a_command_without_memory_ends_in_words(monkeypatch, capfd, tmp_path, more: list[str]) -> None:
+def test_a_command_without_memory_ends_in_words(
+    monkeypatch, capfd, tmp_path, more: list[str], error: Exception
+) -> None:
     (tmp_path / "deck.toml").write_text(starter("tilt"))
 
     def fail(*_: object) -> None:
-        raise MemoryError
+        raise error
+
+    monkeypatch.setattr(room, "_has", lambda *_: False)
 
     monkeypatch.setattr("extrados.decks.reader.read_deck", fail)
     monkeypatch.setattr(sys, "argv", ["extrados", "run", str(tmp_path / "deck.toml"), *more])
@@ -247,16 +252,31 @@ def test_a_command_without_memory_ends_in_words(monkeypatch, capfd, tmp_path, mo
         main()
     told = capfd.readouterr()
     assert left.value.code == 3 and "Traceback" not in told.out + told.err
+    words = ": ".join(filter(None, ["not enough memory", str(error)]))
     if more:
-        assert json.loads(told.out) == {"error": ["not enough memory"], "exit": 3}
+        assert json.loads(told.out) == {"error": [words], "exit": 3}
     else:
-        assert told.err.strip() == "not enough memory"
+        assert told.err.strip() == words
 
 
-def test_a_command_without_memory_for_anything_ends_in_words(monkeypatch, capfd) -> None:
+def test_a_fault_while_there_is_memory_stays_a_fault(monkeypatch, tmp_path) -> None:
     def fail(*_: object) -> None:
-        raise MemoryError
+        raise SystemError("of Python itself")
 
+    (tmp_path / "deck.toml").write_text(starter("tilt"))
+    monkeypatch.setattr("extrados.decks.reader.read_deck", fail)
+    monkeypatch.setattr(sys, "argv", ["extrados", "run", str(tmp_path / "deck.toml")])
+    monkeypatch.setattr(interrupts, "answer", lambda _: None)
+    with pytest.raises(SystemError, match="of Python itself"):
+        main()
+
+
+@pytest.mark.parametrize("error", [MemoryError(), SystemError()], ids=repr)
+def test_a_command_without_memory_for_anything_ends_in_words(monkeypatch, capfd, error: Exception) -> None:
+    def fail(*_: object) -> None:
+        raise error
+
+    monkeypatch.setattr(room, "_has", lambda *_: False)
     monkeypatch.setattr("extrados.cli.app", fail)
     monkeypatch.setattr(interrupts, "answer", lambda _: None)
     with pytest.raises(SystemExit) as left:

@@ -55,13 +55,14 @@ def main() -> None:
             code = left.code
         except KeyboardInterrupt:
             code = interrupts.exit_code()
-        except MemoryError as error:
-            os.write(2, f"{room.words(error)}\n".encode(errors="replace"))  # a console may find no room either
-            code = NOT_DONE
-        except Exception:
-            if not interrupts.asked:  # a library that was interrupted may call it an error of its own
+        except Exception as error:
+            if isinstance(error, MemoryError) or room.lacked(error):
+                os.write(2, f"{room.words(error)}\n".encode(errors="replace"))  # a console may find no room either
+                code = NOT_DONE
+            elif interrupts.asked:  # a library that was interrupted may call it an error of its own
+                code = interrupts.exit_code()
+            else:
                 raise
-            code = interrupts.exit_code()
         interrupts.answer(signal.SIG_IGN)  # what is to be done is done
         if code and interrupts.asked:
             code = interrupts.exit_code()  # typer has one of its own

@@ -83,10 +83,12 @@ def errors(json_out: bool = False):
         tell(error.complaints, WRONG_DECK)
     except StoreError as error:
         tell([str(error)], NOT_DONE)
-    except MemoryError as error:
-        tell([room.words(error)], NOT_DONE)
     except KeyboardInterrupt:
         tell(["interrupted"], interrupts.exit_code())
+    except Exception as error:
+        if not (isinstance(error, MemoryError) or room.lacked(error)):
+            raise
+        tell([room.words(error)], NOT_DONE)
 
 
 def progress_shown(quiet: bool) -> Progress:
