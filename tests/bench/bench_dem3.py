@@ -229,7 +229,7 @@ def sizes() -> None:
 def threads() -> None:
     """Wall time of one thread over that of two, the same bits; the least of some tries, for the machine may be shared."""
     print(f"two threads against one, wall clock; load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
-    for length, height in ((2.8, 1.4), (4.8, 3.2), (12.6, 3.2), (19.2, 8.0)):
+    for length, height in ((2.8, 1.4), (5.2, 3.2), (12.6, 3.2), (19.2, 8.0)):
         assembly = make_wall(Bond(0.4, 0.2), 0.2, height, [(length, False, [])])
         solids = solids_of(assembly, dem3.Law(5e9, 5e9, FRICTION, 1e-3))
         n = len(assembly.mass)
