@@ -59,6 +59,7 @@ contains
       type(block_model), intent(inout) :: model
       integer(c_int), intent(out) :: status
       integer, allocatable :: bodies(:, :)
+      logical, allocatable :: fixed(:)              ! as it stands in the bodies it would be copied, unchecked
       integer :: k, failed
 
       status = status_out_of_memory
@@ -68,12 +69,15 @@ contains
             if (failed /= 0) return
          end if
          if (allocated(rigid%point)) deallocate (rigid%point)
-         allocate (rigid%point(2, pairs), bodies(2, pairs), stat=failed)
+         allocate (rigid%point(2, pairs), bodies(2, pairs), fixed(size(model%set%item)), stat=failed)
          if (failed /= 0) return
+         do k = 1, size(fixed)
+            fixed(k) = model%set%item(k)%fixed
+         end do
          do k = 1, pairs
             bodies(:, k) = model%contacts%pair(k)%bodies
          end do
-         call number_bodies(rigid, in_plane, model%set%item%fixed, bodies, status)
+         call number_bodies(rigid, in_plane, fixed, bodies, status)
          if (status == status_ok) call problem_room(rigid%problem, 2 * pairs, pairs, status)
          if (status /= status_ok) return
          do k = 1, size(model%set%item)

@@ -65,6 +65,7 @@ contains
       type(solid_model), intent(inout) :: model
       integer(c_int), intent(out) :: status
       integer, allocatable :: bodies(:, :)
+      logical, allocatable :: fixed(:)              ! as it stands in the bodies it would be copied, unchecked
       integer :: k, failed
 
       status = status_out_of_memory
@@ -73,12 +74,15 @@ contains
             allocate (rigid%next(size(item)), stat=failed)
             if (failed /= 0) return
          end if
-         allocate (bodies(2, model%pairs), stat=failed)
+         allocate (bodies(2, model%pairs), fixed(size(item)), stat=failed)
          if (failed /= 0) return
+         do k = 1, size(fixed)
+            fixed(k) = item(k)%fixed
+         end do
          do k = 1, model%pairs
             bodies(:, k) = model%set%parts(model%pair(k)%part)%owner
          end do
-         call number_bodies(rigid, in_space, item%fixed, bodies, status)
+         call number_bodies(rigid, in_space, fixed, bodies, status)
          if (status /= status_ok) return
          do k = 1, size(item)
             if (rigid%node(k) == 0) cycle

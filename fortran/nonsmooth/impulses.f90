@@ -448,7 +448,8 @@ contains
       real(wp), intent(in) :: trial(m)
       real(wp), intent(in) :: row(n, m)
       real(wp), intent(inout) :: block(n, n)
-      real(wp) :: edge(m), way(n, 2), turning, root, across
+      real(wp) :: way(24)                           ! (n, 2): of changing size the compiler would take it from the heap
+      real(wp) :: edge(3), turning, root, across
       if (state == sticks) then
          if (m == in_plane) then
             call add_outer(n, 2, [weight, weight], row, block)
@@ -461,14 +462,14 @@ contains
       across = length(trial(along_tangent:))
       root = sqrt(1.0_wp + friction**2)
       edge(along_normal) = 1.0_wp / root
-      edge(along_tangent:) = (friction / (root * across)) * trial(along_tangent:)
-      way(:, 1) = edge(1) * row(:, 1) + edge(2) * row(:, 2)
+      edge(along_tangent:m) = (friction / (root * across)) * trial(along_tangent:)
+      way(:n) = edge(1) * row(:, 1) + edge(2) * row(:, 2)
       if (m == in_plane) then
          call add_outer(n, 1, [weight], way, block)
       else
          turning = friction / (1.0_wp + friction**2) * (trial(along_normal) / across + friction)
-         way(:, 1) = way(:, 1) + edge(m) * row(:, m)
-         way(:, 2) = (trial(2) * row(:, m) - trial(m) * row(:, 2)) / across
+         way(:n) = way(:n) + edge(m) * row(:, m)
+         way(n + 1:2 * n) = (trial(2) * row(:, m) - trial(m) * row(:, 2)) / across
          call add_outer(n, 2, [weight, turning * weight], way, block)
       end if
    end subroutine resist
