@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -26,6 +27,20 @@ def stop(number: int, _: object) -> None:
     """End what is being done by KeyboardInterrupt."""
     asked.append(number)
     raise KeyboardInterrupt
+
+
+def insist() -> None:
+    """Have a signal that Python let go unheard come again: KeyboardInterrupt raised amid a finaliser or a callback of the
+    interpreter ends that alone, and Python prints that it was ignored."""
+
+    def unheard(what: Any) -> None:
+        if not (asked and isinstance(what.exc_value, KeyboardInterrupt)):
+            sys.__unraisablehook__(what)
+        elif hasattr(signal, "setitimer"):  # at once it would be unheard again
+            signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(asked[-1]))
+            signal.setitimer(signal.ITIMER_REAL, 0.01)
+
+    sys.unraisablehook = unheard
 
 
 def exit_code() -> int:

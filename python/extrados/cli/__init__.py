@@ -50,6 +50,7 @@ def main() -> None:
     try:
         try:
             interrupts.answer(interrupts.stop)
+            interrupts.insist()
             app()
         except SystemExit as left:
             code = left.code
