@@ -182,6 +182,9 @@ def test_levels_have_units() -> None:
     for values, keys, words in (
         (["0.1 m"], {}, "is not a unit of m/s"),
         (["2 g"], {"intensity": "scale"}, "numbers without a unit"),
+        (["2 g"], {"intensity": "pgx"}, "input should be 'pga'"),
+        (["2 g"], {"intensity": ["pga", 3]}, "input should be 'pga'"),
+        (["2 g"], {"intensity": {}}, "input should be 'pga'"),
         (["-0.1 g"], {}, "above zero"),
     ):
         with pytest.raises(DeckError, match=words):

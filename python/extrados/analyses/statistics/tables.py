@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 #: Measures of levels that have a dimension: SI unit, and the unit of a bare number
 LEVELS = {"pga": ("m/s^2", "g"), "sa": ("m/s^2", "g"), "arias": ("m/s", "m/s")}
+WITHOUT_UNIT = ["pga-ratio", "pgv-ratio", "scale"]
 Level = Annotated[float, OrText()]
 #: Uncertain values by the kind of structure; others that rock by a mechanism know those of STONES
 UNCERTAIN = {
@@ -161,13 +162,14 @@ class Fragility(RockingTable):
         return self
 
 
-def _numbers(values: Any, intensity: str, key: str) -> Any:
+def _numbers(values: Any, intensity: Any, key: str) -> Any:
     """Numbers in the unit of a measure for those given as text with a unit; anything else stays for pydantic to judge."""
     if not isinstance(values, list) or not any(isinstance(v, str) for v in values):
         return values
-    if intensity not in LEVELS:
+    if intensity in WITHOUT_UNIT:
         raise ValueError(f"{key}: those of intensity = {intensity!r} are numbers without a unit")
-    si, unit = LEVELS[intensity]
+    # A measure that is none is complained of by itself.
+    si, unit = LEVELS[intensity if intensity in list(LEVELS) else "pga"]
     try:
         return [parse(v, si) / factor(unit, si) if isinstance(v, str) else v for v in values]
     except ValueError as error:
