@@ -102,8 +102,8 @@ contains
       integer :: room, failed
       status = status_ok
       associate (rigid => model%rigid)
-         room = 0
-         ! After a search the problem is new, and has none
+         room = -1
+         ! After a search the problem is new, and has none, not even for no points
          if (allocated(rigid%problem%friction)) room = size(rigid%problem%friction)
          if (room >= points .and. allocated(rigid%number)) return
          room = points + points / 2

@@ -57,6 +57,20 @@ def test_sliding_down_a_slope_in_any_direction(direction: float) -> None:
     assert run.effort.open_steps == 0 and run.effort.residual <= 1e-5 and run.residual < 1e-6
 
 
+def test_a_block_in_the_air_falls_freely() -> None:
+    """Searches on its way find nothing that touches: a problem without a single point."""
+    up = np.zeros((2, 6))
+    up[0, :3] = 0.5, 0.0, 3.0
+    run = dem3.run(
+        solids([box((-1, -1, 0), (1, 1, 0.2))], law(0.3)), options(0.6, 0.1, gravity=(0.0, 0.0, -G), step=1e-3), rate=up
+    )
+    t = run.time
+    assert run.place[:, 0] - run.place[0, 0] == pytest.approx(
+        np.column_stack([0.5 * t, 0.0 * t, 3.0 * t - 0.5 * G * t**2]), abs=2e-3
+    )
+    assert run.searches > 2 and run.effort.factors < 0.1 * run.effort.steps
+
+
 @pytest.mark.parametrize("direction", [0.0, 45.0, 200.0])
 def test_what_friction_holds_does_not_creep(direction: float) -> None:
     for share, moves in ((0.9999, False), (1.0001, True)):
