@@ -21,6 +21,13 @@ def extrados(*args: str | bytes, cwd: Path | None = None, **more) -> subprocess.
     return subprocess.run([sys.executable, "-m", "extrados", *args], **how)
 
 
+@pytest.mark.parametrize("name", ["limit/non-associated", "solid/skew-arch"])
+def test_no_library_adds_to_what_is_printed(tmp_path, name: str) -> None:
+    """The programmes of HiGHS and Clarabel, whose releases may greet on standard output, as HiGHS 1.16.0 does."""
+    run = extrados("run", str(ROOT / f"cases/{name}.toml"), "--json", "--no-figures", "--out", str(tmp_path / "o"))
+    assert json.loads(run.stdout)["analyses"][0]["status"] == "ok" and not run.stderr
+
+
 def deck(tmp_path: Path, text: str) -> str:
     path = tmp_path / "deck.toml"
     path.write_text(text)
