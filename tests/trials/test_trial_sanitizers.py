@@ -35,12 +35,16 @@ def test_the_core_under_a_watch(name: str) -> None:
     apart.build(place, *BUILDS[name])
     more = {"OMP_NUM_THREADS": "2"}
     if name == "sanitized":
-        library = subprocess.run(
-            ["gcc", "-print-file-name=libasan.so"], capture_output=True, text=True, check=True
-        ).stdout.strip()
+        # The library of C++ too: what other packages throw goes through the sanitizer, which must have found it
+        libraries = [
+            subprocess.run(
+                ["gcc", f"-print-file-name={name}"], capture_output=True, text=True, check=True
+            ).stdout.strip()
+            for name in ("libasan.so", "libstdc++.so.6")
+        ]
         # Python frees little at its end, and f2py asks for a size of zero where it has none
         more |= {
-            "LD_PRELOAD": library,
+            "LD_PRELOAD": ":".join(libraries),
             "ASAN_OPTIONS": "detect_leaks=0:allocator_may_return_null=1",
             "UBSAN_OPTIONS": "print_stacktrace=1",
         }

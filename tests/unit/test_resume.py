@@ -17,6 +17,8 @@ from extrados.analyses.run import run_analyses
 from extrados.analyses.sla.model import build
 from extrados.core import calls
 from extrados.core import sla as core
+from extrados.core.errors import Cancelled
+from extrados.decks.explain import starter
 from extrados.decks.reader import make_deck, read_deck
 from extrados.results.checkpoint import Checkpoint, folder_of, let_go
 from extrados.running.run import run_to
@@ -491,3 +493,22 @@ def test_two_runs_do_not_share_their_batches(tmp_path) -> None:
         assert kept.exists()
     let_go(out)
     assert subprocess.run(words, capture_output=True).returncode == 0 and not folder_of(out).exists()
+
+
+def test_ctrl_c_as_the_peak_is_looked_at_again_is_an_interruption(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """The state at the peak is computed a second time at the end: a run that is stopped there is not a whole one without it."""
+
+    def stopped(*_: object, **__: object) -> None:
+        raise Cancelled(130, "events interrupted")
+
+    deck = make_deck(tomllib.loads(starter("sla")))
+    with monkeypatch.context() as patch:
+        patch.setattr("extrados.core.sla.Model.run_whole", stopped)
+        (found,) = run_analyses(Context(deck, out=tmp_path / "run"))
+    assert found.status == "interrupted" and "--resume" in found.reason
+    (resumed,) = run_analyses(Context(deck, out=tmp_path / "run", resume=True))
+    (whole,) = run_analyses(Context(deck))
+    assert resumed.status == "ok" and resumed.answer == whole.answer
+    assert {name for name in whole.arrays if "peak" in name} <= set(resumed.arrays)

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from extrados import _core
 from extrados.core.calls import indices, integers, long_call, real, room_for, thread_count
-from extrados.core.errors import check, status_code
+from extrados.core.errors import Cancelled, check, status_code
 from extrados.core.handles import Owner
 from extrados.core.sla_parts import (
     BEARS,
@@ -443,6 +443,13 @@ class Model(Owner):
             monitors=watched[:, :count].T.copy(), reason=STOPS[reason], guard=(checks, solutions, factors),
             interrupted=interrupted, crack_total=float(cracked),
         )  # fmt: skip
+
+    def run_whole(self, room: int, monitor: Monitor, stop: Stop | None = None, *, variant: str = VARIANTS[0]) -> Events:
+        """As `run`, of events that are of no use in part: Cancelled where the user asked to stop."""
+        events = self.run(room, [monitor], stop, variant=variant)
+        if events.interrupted:
+            raise Cancelled(status_code("cancelled"), "events interrupted")
+        return events
 
     def relax(self, load: float) -> tuple[int, float]:
         """One iteration of an incremental analysis: in each element the most overloaded point loses a tooth, all at

@@ -21,7 +21,7 @@ from extrados.analyses.sla.tables import Sla
 from extrados.building.errors import WHOLE
 from extrados.core import lists
 from extrados.core import sla as core
-from extrados.core.errors import CoreError, status_code
+from extrados.core.errors import Cancelled, CoreError, status_code
 from extrados.core.sla import EVENT
 
 BATCH_SECONDS = 0.7
@@ -363,11 +363,15 @@ def run_reference_loads(
             states.append(_state(core_model, len(events) - 1, events))
         peak = curve.peak
         if peak >= 0 and peak not in {s.event for s in states} and not (events.interrupted or release):
-            state = _replay(core_model, model, sign, events, peak, way.before_best, variant)
-            if state is None:
-                curve.warnings.append("the state at the peak could not be reproduced from the batch before it")
+            try:
+                state = _replay(core_model, model, sign, events, peak, way.before_best, variant)
+            except Cancelled:
+                events.interrupted = True
             else:
-                states.append(state)
+                if state is None:
+                    curve.warnings.append("the state at the peak could not be reproduced from the batch before it")
+                else:
+                    states.append(state)
         states.sort(key=lambda s: s.event)
     curve.seconds = before + time.perf_counter() - begin
     return curve
@@ -424,7 +428,7 @@ def _replay(
             core_model.renew(damage, core_model.standing_at(float(events.load[first - 1])))
 
     begin()
-    again = core_model.run(event - first + 1, [model.control], core.Stop(), variant=variant)
+    again = core_model.run_whole(event - first + 1, model.control, variant=variant)
     # Near a mechanism of stiff stones the last digits of the load, and so the order of events, depend on the way there
     tolerance = 1e-4 if model.mesh.has_joints else 1e-6
     away = np.abs(again.load - events.load[event]) > tolerance * abs(events.load[event])
@@ -432,13 +436,13 @@ def _replay(
         return None
     if away[-1]:
         begin()
-        again = core_model.run(event - first + 1 + MORE, [model.control], core.Stop(), variant=variant)
+        again = core_model.run_whole(event - first + 1 + MORE, model.control, variant=variant)
         away = np.abs(again.load - events.load[event]) > tolerance * abs(events.load[event])
         near = np.flatnonzero(~away & again.equilibrium)
         if not len(near):
             return None
         begin()
-        again = core_model.run(int(near[-1]) + 1, [model.control], core.Stop(), variant=variant)
+        again = core_model.run_whole(int(near[-1]) + 1, model.control, variant=variant)
     return _state(core_model, event, again)
 
 

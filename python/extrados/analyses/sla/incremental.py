@@ -62,7 +62,7 @@ def run_incremental(
     watch = model.control
     target = np.inf if options.target_displacement is None else options.target_displacement
     fa, fb = model.constant, sign * model.reference
-    first = core_model.run(1, [watch], core.Stop())
+    first = core_model.run_whole(1, watch)
     ua = core_model.displacement(0.0)
     ub = core_model.displacement(1.0) - ua
     step = Step(ua, ub, 0.0, core_model.damage(), 0)

@@ -182,7 +182,7 @@ def _stored(core_model: core.Model, staged: SlaModel, applied: np.ndarray, reach
     if len(staged.moved):
         core_model.supports(staged.moved[:, 0] + reached * staged.moved[:, 1], np.zeros(len(staged.moved)))
     core_model.loads(applied, np.zeros_like(applied), carried=True)
-    return float(core_model.run(1, [staged.control], core.Stop(load=0.0)).stored[0])
+    return float(core_model.run_whole(1, staged.control, core.Stop(load=0.0)).stored[0])
 
 
 def _prepare(
