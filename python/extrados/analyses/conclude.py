@@ -15,6 +15,7 @@ from extrados.motions.from_deck import is_set
 from extrados.motions.tables import Pulse, SinePulse, StepPulse
 from extrados.results.assumptions import Assumption, spoken
 from extrados.results.model import Result
+from extrados.results.verdict import judge
 from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import unit_of
 
@@ -62,6 +63,9 @@ def concluded(result: Result, options: Analysis, context: Context, building: Bui
     if verdict is None:
         return replace(result, assumptions=assumptions)
     answer = f"{result.answer} {spoken(assumptions)}".strip()
+    if result.status == "interrupted":  # half a motion, half a curve: neither stands for the whole
+        verdict = judge("It was interrupted before its end: no verdict.")
+        answer = f"Interrupted before its end; of what was computed: {answer}"
     return replace(result, verdict=verdict, assumptions=assumptions, answer=answer)
 
 

@@ -17,6 +17,7 @@ from extrados.building.geometry.rigid import RigidBodies
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
 from extrados.core import dem, dem3, dem_run
+from extrados.core.errors import Cancelled, status_code
 from extrados.schema.constants import GRAVITY
 
 Found = TypeVar("Found", dem.Run, dem3.Run)
@@ -148,7 +149,9 @@ def checked(
     run: Found, model: Model | SolidModel, keep: tuple[str, ...] = ("end", "collapse", "rest", "left")
 ) -> Found:
     """The run where it ended in one of the ways of `keep`; Refused says what stopped it and which block, Falls where it
-    fell before it was shaken."""
+    fell before it was shaken, Cancelled where it was interrupted before."""
+    if run.interrupted and not len(run.time):
+        raise Cancelled(status_code("cancelled"), "interrupted before the motion began")
     if run.interrupted or run.reason in keep:
         return run
     names = [model.body_names[k] for k in run.blamed]

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.building.geometry.rigid import DRESSED, FOOTING
+from extrados.building.geometry.rigid import FOOTING
 from extrados.building.geometry.solids.assembly import SolidAssembly
 from extrados.building.geometry.solids.contacts import GROUND
 from extrados.building.geometry.solids.polyhedra import Polyhedron, box, hull, overlap_depth
@@ -44,17 +44,17 @@ def supports_of(assembly: SolidAssembly, floor: float | None = None) -> Supports
 
 
 def _footing(assembly: SolidAssembly, polygon: np.ndarray, up: np.ndarray, deep: float) -> Polyhedron:
+    """Wider than the contact, unless it would then reach into a stone, which it would throw out at the start."""
     middle = polygon.mean(axis=0)
-    for share in (FOOTING, 0.0):
-        top = middle + (1.0 + 2.0 * share) * (polygon - middle)
-        body = hull(np.concatenate([top, top - deep * up]))
-        if all(
-            overlap_depth(body, part) < DRESSED * _width(part.vertices)
-            for part in assembly.parts
-            if (part.low < body.high).all() and (part.high > body.low).all()
-        ):
-            break
-    return body
+    own, wide = (hull(np.concatenate([top, top - deep * up])) for top in
+                 (middle + (1.0 + 2.0 * share) * (polygon - middle) for share in (0.0, FOOTING)))  # fmt: skip
+    return wide if _pierced(assembly, wide) <= _pierced(assembly, own) + LEVEL * assembly.size else own
+
+
+def _pierced(assembly: SolidAssembly, body: Polyhedron) -> float:
+    """How deep a body reaches into any stone [m]."""
+    near = (part for part in assembly.parts if (part.low < body.high).all() and (part.high > body.low).all())
+    return max((overlap_depth(body, part) for part in near), default=0.0)
 
 
 def _width(points: np.ndarray) -> float:
