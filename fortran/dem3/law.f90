@@ -28,7 +28,8 @@ module dem3_law
       type(feature) :: what
       logical :: closed = .false.
       logical :: bonded = .false.                          !! cohesion and tension not lost yet
-      real(wp) :: filled = 0.0_wp                          !! gap that mortar fills, whether it is whole or broken [m]
+      real(wp) :: filled = 0.0_wp                          !! gap that mortar fills, whether it is whole or broken; below 0
+                                                           !! the overlap at which a contact came to be, see free_of_force [m]
       real(wp) :: spring_n = 0.0_wp, dash_n = 0.0_wp       !! compression positive [N]
       real(wp) :: spring_s(3) = 0.0_wp, dash_s(3) = 0.0_wp !! on the second body [N]
       real(wp) :: force(3) = 0.0_wp                        !! all of it, in the step before [N]
@@ -55,6 +56,8 @@ module dem3_law
    real(wp), parameter :: same = 0.5_wp
    !> and carry on as they are where they are of the same features and their area is the same but for this share
    real(wp), parameter :: still_same = 0.1_wp
+   !> Of how far bodies move between two looks: overlap at which a contact may come to be with its force
+   real(wp), parameter :: deep = 0.1_wp
 
 contains
 
@@ -66,6 +69,7 @@ contains
       real(wp), intent(in) :: margin            !! [m]
       type(contact_pair), intent(inout) :: pair
       real(wp) :: place(3), turn(3, 3)
+      logical :: fresh
 
       associate (a => set%item(set%parts(pair%part(1))%owner), b => set%item(set%parts(pair%part(2))%owner))
          place = matmul(b%x - a%x, a%turn)
@@ -78,7 +82,10 @@ contains
       end associate
       pair%place = place
       pair%turn = turn
+      fresh = .true.
+      if (allocated(pair%point)) fresh = size(pair%point) == 0
       call find_anew(set, margin, pair)
+      if (fresh) call free_of_force(set, deep * far, pair)
    end subroutine find_points
 
    !> Where a pair touches now. Apart from find_points, which is asked far more often than it must look:
@@ -129,6 +136,21 @@ contains
       end do
       pair%points = found%points
    end subroutine find_anew
+
+   !> Parts that meet in an edge alone overlap a little before they share an area. Their springs begin there: with the force
+   !> of that overlap at once they would gain energy.
+   pure subroutine free_of_force(set, slight, pair)
+      type(body_set), intent(in) :: set
+      real(wp), intent(in) :: slight            !! overlap that is not worth it [m]
+      type(contact_pair), intent(inout) :: pair
+      real(wp) :: normal(3), gap, at(3)
+      integer :: i
+      do i = 1, pair%points
+         call measure(pair%point(i)%what, set%item(set%parts(pair%part(1))%owner), &
+            set%item(set%parts(pair%part(2))%owner), normal, gap, at)
+         if (gap < -slight) pair%point(i)%filled = gap
+      end do
+   end subroutine free_of_force
 
    !> Whether two points are the same corner over the same plane, or of the same edges
    pure function equal(one, two) result(same_ones)
@@ -199,6 +221,7 @@ contains
       do i = 1, pair%points
          associate (point => pair%point(i))
             call measure(point%what, a, b, normal, gap, at)
+            if (gap >= 0.0_wp) point%filled = max(point%filled, 0.0_wp)
             gap = gap - point%filled
             if (gap >= 0.0_wp) then
                ! Mortar that is torn farther than its strength is gone for good.

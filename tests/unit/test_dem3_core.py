@@ -573,3 +573,16 @@ def test_dowels_are_checked_and_threads_and_pauses_change_no_bit(monkeypatch) ->
         dem3.Model(replace(whole, laws=[Law(1e9, 1e9, 0.3)]), replace(options, rigid=True))
     with pytest.raises(ValueError, match="rigid contacts know no mortar"):
         dem3.Model(model, replace(options, rigid=True))
+
+
+def test_a_contact_that_comes_to_be_deep_gives_no_energy() -> None:
+    """Two cubes overlap in a sliver along an edge, too narrow to be a contact, and one moves on over the other: as the contact
+    comes to be, half a millimetre deep, it must not throw the cube up."""
+    over = [box((0.0, 0.0, -1.0), (1.0, 1.0, 0.0)), box((1.0 - 3e-4, 0.0, -4e-4), (2.0 - 3e-4, 1.0, 1.0 - 4e-4))]
+    model = solids(over, Law(1e9, 1e9, 0.0), floor=False)
+    model = replace(model, mass=np.array([0.0, model.mass[1]]))
+    rate = np.zeros((2, 6))
+    rate[1, 0] = -0.1
+    run = dem3.run(model, Options(end_time=0.05, output_step=1e-3, gravity=(0.0, 0.0, -1e-6)), rate=rate)
+    assert np.abs(run.rate[:, 1, 2]).max() < 1e-3 and run.energy["kinetic"].max() < 1.001 * run.energy["kinetic"][0]
+    assert run.place[-1, 1, 0] - run.place[0, 1, 0] == pytest.approx(-0.1 * 0.05, rel=1e-2)
