@@ -71,6 +71,7 @@ contains
       real(wp) :: place(3), turn(3, 3)
       logical :: fresh
 
+      fresh = pair%marks(1) >= 0              ! what overlaps as a run begins is pressed together
       associate (a => set%item(set%parts(pair%part(1))%owner), b => set%item(set%parts(pair%part(2))%owner))
          place = matmul(b%x - a%x, a%turn)
          turn = matmul(transpose(a%turn), b%turn)
@@ -82,8 +83,7 @@ contains
       end associate
       pair%place = place
       pair%turn = turn
-      fresh = .true.
-      if (allocated(pair%point)) fresh = size(pair%point) == 0
+      if (allocated(pair%point)) fresh = fresh .and. size(pair%point) == 0
       call find_anew(set, margin, pair)
       if (fresh) call free_of_force(set, deep * far, pair)
    end subroutine find_points

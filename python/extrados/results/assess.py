@@ -104,6 +104,8 @@ class TurningValue(ResultModel):
 class Assess(KindResults):
     """assess: every strategy that applies, compared."""
 
+    whole_in_parts = True
+
     overall: Overall = fact("one answer for all strategies")
     statement: str = fact("the overall answer in words")
     hazard: AssessHazard = fact("the hazard")

@@ -1,6 +1,6 @@
 """The verdict of an analysis: one line by which different strategies on one building are compared."""
 
-from typing import Literal, Protocol
+from typing import ClassVar, Literal, Protocol
 
 from extrados.results.fields import ResultModel, fact
 
@@ -42,6 +42,9 @@ class Demand(Protocol):
 
 class KindResults(ResultModel):
     """Base of the results of a kind; by itself, of an analysis that has none."""
+
+    #: What there is of an interrupted analysis is judged as it is: it consists of whole ones
+    whole_in_parts: ClassVar[bool] = False
 
     def judged(self, demand: Demand) -> Verdict | None:
         """What the results say of the building under the demand."""
