@@ -63,7 +63,8 @@ def concluded(result: Result, options: Analysis, context: Context, building: Bui
     if verdict is None:
         return replace(result, assumptions=assumptions)
     answer = f"{result.answer} {spoken(assumptions)}".strip()
-    if result.status == "interrupted" and not result.results.whole_in_parts:  # half a motion, half a curve: neither stands for the whole
+    # Half a motion, half a curve: neither stands for the whole
+    if result.status == "interrupted" and not result.results.whole_in_parts:
         verdict = judge("It was interrupted before its end: no verdict.")
         answer = f"Interrupted before its end; of what was computed: {answer}"
     return replace(result, verdict=verdict, assumptions=assumptions, answer=answer)
