@@ -28,8 +28,8 @@ module dem3_law
       type(feature) :: what
       logical :: closed = .false.
       logical :: bonded = .false.                          !! cohesion and tension not lost yet
-      real(wp) :: filled = 0.0_wp                          !! gap that mortar fills, whether it is whole or broken; below 0
-                                                           !! the overlap at which a contact came to be, see free_of_force [m]
+      !> Gap that mortar fills, whether it is whole or broken; below 0 the overlap at which a contact came to be [m]
+      real(wp) :: filled = 0.0_wp
       real(wp) :: spring_n = 0.0_wp, dash_n = 0.0_wp       !! compression positive [N]
       real(wp) :: spring_s(3) = 0.0_wp, dash_s(3) = 0.0_wp !! on the second body [N]
       real(wp) :: force(3) = 0.0_wp                        !! all of it, in the step before [N]
@@ -137,8 +137,8 @@ contains
       pair%points = found%points
    end subroutine find_anew
 
-   !> Parts that meet in an edge alone overlap a little before they share an area. Their springs begin there: with the force
-   !> of that overlap at once they would gain energy.
+   !> Parts that meet in an edge alone overlap a little before they share an area. Their springs begin there: with the
+   !> force of that overlap at once they would gain energy.
    pure subroutine free_of_force(set, slight, pair)
       type(body_set), intent(in) :: set
       real(wp), intent(in) :: slight            !! overlap that is not worth it [m]
