@@ -30,7 +30,7 @@ def lower_bounds(project: dict) -> list[str]:
     pins: dict[str, str] = {}
     # The peers of the benchmarks are no part of the program.
     for text in [*own, *project["build-system"]["requires"], *(r for k, v in extra.items() if k != "bench" for r in v)]:
-        found = re.fullmatch(r"([A-Za-z0-9_.-]+)>=([0-9.]+)", text)
+        found = re.fullmatch(r"([A-Za-z0-9_.-]+)>=([0-9.]+)(?:,<[0-9.]+)?", text)
         if found is None:
             if text in own:
                 raise SystemExit(f"pyproject.toml: {text} needs a lower bound, name>=version")
