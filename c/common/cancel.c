@@ -4,11 +4,24 @@
 
 #include "extrados.h"
 
+enum { NOT_ASKED, ASKED, HEARD };
 static atomic_int flag;
 
-void extrados_cancel_set(int value) { atomic_store_explicit(&flag, value, memory_order_relaxed); }
+void extrados_cancel_set(int value) {
+    int before = NOT_ASKED;
+    if (value)
+        atomic_compare_exchange_strong(&flag, &before, ASKED); /* what was heard is not asked again */
+    else
+        atomic_store(&flag, NOT_ASKED);
+}
 
-int extrados_cancel_get(void) { return atomic_load_explicit(&flag, memory_order_relaxed); }
+int extrados_cancel_get(void) {
+    int now = atomic_load_explicit(&flag, memory_order_relaxed);
+    if (now == ASKED) atomic_compare_exchange_strong(&flag, &now, HEARD);
+    return now != NOT_ASKED;
+}
+
+int extrados_cancel_unheard(void) { return atomic_load(&flag) == ASKED; }
 
 static const int watched[] = {SIGINT, SIGTERM};
 enum { WATCHED = sizeof watched / sizeof *watched };

@@ -32,6 +32,8 @@ EXTRADOS_API int extrados_handle_count(void);
 /* cancel.c: the flag behind Ctrl-C, shared by all threads. */
 EXTRADOS_API void extrados_cancel_set(int value);
 EXTRADOS_API int extrados_cancel_get(void);
+/* 1 where the flag is set and nothing has looked at it since: what ended meanwhile does not know. */
+EXTRADOS_API int extrados_cancel_unheard(void);
 /* While `on` was said more often than off, SIGINT and SIGTERM set the flag before they are answered as ever: for
  * computations in threads that may not touch Python's handlers. The handlers come back after. */
 EXTRADOS_API void extrados_watch_signals(int on);

@@ -3,7 +3,8 @@ module api_support
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: list_entry, close_handle, handle_count, set_cancel, cancel_requested, watch_signals, init_libraries
+   public :: list_entry, close_handle, handle_count, set_cancel, cancel_requested, cancel_unheard
+   public :: watch_signals, init_libraries
 
 contains
 
@@ -50,6 +51,13 @@ contains
       integer(c_int), intent(out) :: value
       value = merge(1, 0, cancel())
    end subroutine cancel_requested
+
+   !> Whether they were asked to stop and none has looked at it since (1)
+   subroutine cancel_unheard(value)
+      use common_c_bindings, only : extrados_cancel_unheard
+      integer(c_int), intent(out) :: value
+      value = extrados_cancel_unheard()
+   end subroutine cancel_unheard
 
    !> From now on (1) Ctrl-C and SIGTERM also set the flag, for calls from threads that may not touch Python's handlers;
    !> until it was said as often that they need not (0)

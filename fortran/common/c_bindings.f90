@@ -4,7 +4,7 @@ module common_c_bindings
    implicit none
    private
    public :: extrados_list_entry, extrados_library_init
-   public :: extrados_cancel_set, extrados_cancel_get, extrados_watch_signals
+   public :: extrados_cancel_set, extrados_cancel_get, extrados_cancel_unheard, extrados_watch_signals
    public :: extrados_handle_new, extrados_handle_take, extrados_handle_leave, extrados_handle_close
    public :: extrados_handle_count, extrados_threads
 
@@ -20,6 +20,12 @@ module common_c_bindings
          implicit none (type, external)
          integer(c_int) :: value
       end function extrados_cancel_get
+
+      function extrados_cancel_unheard() bind(c) result(value)
+         import :: c_int
+         implicit none (type, external)
+         integer(c_int) :: value
+      end function extrados_cancel_unheard
 
       subroutine extrados_watch_signals(on) bind(c)
          import :: c_int

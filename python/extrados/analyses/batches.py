@@ -11,9 +11,8 @@ A search, whose next question depends on the answers so far, is one sweep for ea
 import contextlib
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -24,12 +23,15 @@ from extrados.analyses.context import Context, Refused
 from extrados.building.errors import WHOLE
 from extrados.core.calls import cancel_requested, interruptible, thread_count
 from extrados.core.errors import Cancelled, status_code
+from extrados.core.threads import Worker
 from extrados.results.checkpoint import fingerprint
 from extrados.results.model import Streamed
 
 #: A batch should take about this long [s]; the first one has few members, to learn their speed.
 BATCH_SECONDS, FIRST_BATCH, LARGEST_BATCH = 1.0, 32, 1_000_000
 CONNECT_SECONDS = 10.0
+#: Between two looks whether a batch in a thread is over [s]
+LOOK = 0.01
 #: Rows that are kept in memory; of more, where a sweep may have them, so many are looked at at a time
 IN_MEMORY, PIECE = 200_000, 100_000
 
@@ -273,23 +275,18 @@ def _in_turn(context: Context, batches: _Batches, job: Job, pace: _Pace) -> Swep
 def _in_threads(batches: _Batches, job: Job, pace: _Pace, threads: int, each: int) -> Swept:
     """A batch for each of `threads` at a time, kept as they come; a batch has `each` threads of the core."""
     todo = _pieces(batches.missing(), lambda: pace.size)
-    pending: dict[Future, int] = {}
+    pending: dict[Worker[tuple[dict[str, np.ndarray], float]], int] = {}
     stopped = False
-    pool = ThreadPoolExecutor(threads)
     try:
         while True:
             while not stopped and len(pending) < threads and (piece := next(todo, None)):
-                try:
-                    pending[pool.submit(_timed, job, *piece, each)] = piece[0]
-                except RuntimeError as error:  # the system has no room for the stack of another thread
-                    raise MemoryError(f"not enough memory: {error}") from None
+                pending[Worker(partial(_timed, job, *piece, each))] = piece[0]
             if not pending:
                 break
-            finished, _ = wait(pending, timeout=0.1, return_when=FIRST_COMPLETED)
-            for future in finished:
-                first = pending.pop(future)
+            for worker in [worker for worker in pending if worker.over(LOOK)]:
+                first = pending.pop(worker)
                 try:
-                    rows, seconds = future.result()
+                    rows, seconds = worker.result()
                 except Cancelled:
                     stopped = True
                     continue
@@ -297,7 +294,8 @@ def _in_threads(batches: _Batches, job: Job, pace: _Pace, threads: int, each: in
                 batches.add(first, rows)
             stopped = stopped or cancel_requested()
     finally:
-        pool.shutdown(cancel_futures=True)
+        while not all([worker.over() for worker in pending]):
+            pass
     return batches.swept() if batches.done == batches.count else _interrupted(batches)
 
 

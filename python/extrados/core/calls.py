@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from extrados import _core, interrupts
 from extrados.core.errors import check
+from extrados.core.threads import Worker
 
 check(_core.api_support.init_libraries(), "loading the core")
 # numpy's own BLAS ends the process where a buffer finds no room: its threads and we take theirs here, not amid a long run
@@ -128,16 +129,12 @@ def within(seconds: float) -> Iterator[Deadline]:
         while not left.wait(_AGAIN):
             _core.api_support.set_cancel(1)
 
-    thread = threading.Thread(target=watch, daemon=True)
-    try:
-        thread.start()
-    except RuntimeError as error:  # the system has no room for its stack
-        raise MemoryError(f"not enough memory: {error}") from None
+    watcher = Worker(watch)
     try:
         yield deadline
     finally:
         left.set()
-        thread.join()
+        watcher.result()
         if deadline.passed:
             _core.api_support.set_cancel(0)
 
@@ -146,9 +143,9 @@ def within(seconds: float) -> Iterator[Deadline]:
 def interruptible() -> Iterator[None]:
     """While this lasts, Ctrl-C and SIGTERM set the core's cancel flag.
 
-    In the main thread they do nothing else, and their handlers come back after. Another thread may not touch Python's
-    handlers: there the core looks at the signals itself and hands them on, so that Python answers them as ever, but the
-    computation does not go on unseen.
+    In the main thread they do nothing else, and their handlers come back after; to them goes a signal that came too late for
+    anything to look at it. Another thread may not touch Python's handlers: there the core looks at the signals itself and
+    hands them on, so that Python answers them as ever, but the computation does not go on unseen.
     """
     global _nesting
     main = threading.current_thread() is threading.main_thread()
@@ -157,6 +154,7 @@ def interruptible() -> Iterator[None]:
         if _nesting == 1:
             _core.api_support.set_cancel(0)
     before: dict[signal.Signals, Any] = {}
+    signals = len(interrupts.asked)
     if main:
         for number in (signal.SIGINT, signal.SIGTERM):
             before[number] = signal.signal(number, _ask)
@@ -174,34 +172,12 @@ def interruptible() -> Iterator[None]:
             _core.api_support.watch_signals(0)
         with _lock:
             _nesting -= 1
+            late = _nesting == 0 and main and bool(_core.api_support.cancel_unheard())
+        if late and len(interrupts.asked) > signals:
+            signal.raise_signal(interrupts.asked.pop())
 
 
 def long_call(function: Callable[..., Any], *args: Any, **keywords: Any) -> Any:
-    """Call a facade that may run long: in a thread of its own, so that signals reach Python meanwhile.
-
-    Waiting on an Event, not on Thread.join: an interrupted join lies about the thread on CPython
-    3.9 to 3.12 (python/cpython#90882).
-    """
-    done = threading.Event()
-    box: dict[str, Any] = {}
-
-    def work() -> None:
-        try:
-            box["value"] = function(*args, **keywords)
-        except BaseException as error:
-            box["error"] = error
-        finally:
-            done.set()
-
+    """Call a facade that may run long: in a thread of its own, so that signals reach Python meanwhile."""
     with interruptible():
-        thread = threading.Thread(target=work, daemon=True)
-        try:
-            thread.start()
-        except RuntimeError as error:  # the system has no room for its stack
-            raise MemoryError(f"not enough memory: {error}") from None
-        while not done.wait(0.05):
-            pass
-        thread.join()
-    if "error" in box:
-        raise box["error"]
-    return box["value"]
+        return Worker(lambda: function(*args, **keywords)).result()

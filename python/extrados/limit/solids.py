@@ -19,6 +19,7 @@ from scipy import sparse
 
 from extrados.building.geometry.assembly import GROUND
 from extrados.building.geometry.solids.assembly import SolidAssembly
+from extrados.core.threads import Worker
 from extrados.limit.errors import Immovable, NoAnswer
 from extrados.schema.constants import GRAVITY
 
@@ -371,25 +372,10 @@ class SolidLimit:
 def _waited(*calls: Callable[[], Found], told: Callable[[], None] = lambda: None) -> list[Found]:
     """What long calls give, each made in a thread of its own: so Ctrl-C is answered at once, and the threads left to
     themselves. told() is called while they work."""
-    answers: dict[int, Found] = {}
-    failed: list[BaseException] = []
-
-    def work(k: int) -> None:
-        try:
-            answers[k] = calls[k]()
-        except BaseException as error:
-            failed.append(error)
-
-    workers = [threading.Thread(target=work, args=(k,), daemon=True) for k in range(len(calls))]
-    for worker in workers:
-        worker.start()
-    while any(worker.is_alive() for worker in workers):
-        for worker in workers:
-            worker.join(LOOK)
+    workers = [Worker(call) for call in calls]
+    while not all([worker.over(LOOK) for worker in workers]):
         told()
-    if failed:
-        raise failed[0]
-    return [answers[k] for k in range(len(calls))]
+    return [worker.result() for worker in workers]
 
 
 def _most(matrix: sparse.csc_array, right: np.ndarray, low: np.ndarray, high: np.ndarray) -> float:
