@@ -264,3 +264,17 @@ def test_a_building_that_cannot_be_made_is_told_by_its_analysis(monkeypatch: pyt
     monkeypatch.setattr(type(deck.structure), "assembly", fails)
     first, second = compute(Context(deck)).results
     assert first.status == "failed" and "no room" in first.reason and second.status == "ok"
+
+
+def test_an_analysis_that_does_not_use_it_is_not_named_among_those_that_can() -> None:
+    """Rigid contacts know no stiffness, springs do: both are `dem`."""
+    deck = {
+        "structure": ARCH,
+        "motion": SINE,
+        "material": {"young": 7e9},
+        "analysis": [{"kind": "dem", "solver": "nonsmooth"}],
+    }
+    (remark,) = left_out(make_deck(deck))
+    words, _, others = remark.text.partition(";")
+    assert words == "deck: material.young: dem does not use it"
+    assert others == " sla, pushover, dem-domain and others can use it"

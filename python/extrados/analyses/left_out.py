@@ -40,7 +40,7 @@ def left_out(deck: Deck) -> list[Remark]:
             continue
         who, able = ", ".join(names[k] for k in without), [names[k] for k in hears if k not in without]
         if not able:
-            text = f"{who} {'does' if len(without) == 1 else 'do'} not use it{_known_to(name)}"
+            text = f"{who} {'does' if len(without) == 1 else 'do'} not use it{_known_to(name, deck.analyses)}"
         elif name in SHARED:
             text = f"{', '.join(able)} {'uses' if len(able) == 1 else 'use'} it, {who} {'does' if len(without) == 1 else 'do'} not"
         else:
@@ -50,7 +50,7 @@ def left_out(deck: Deck) -> list[Remark]:
         for table in OVERRIDES:
             for name, at in _given(table, getattr(options, table, None)):
                 if name not in asked[k] and (names[k], name) not in found:
-                    words = f"{names[k]} does not use it{_known_to(name)}"
+                    words = f"{names[k]} does not use it{_known_to(name, deck.analyses)}"
                     found[names[k], name] = Remark(deck.complaint(options, ("analysis", *at), words), k)
     return list(found.values())
 
@@ -103,8 +103,9 @@ def _names(analyses: list[Analysis]) -> list[str]:
     return [f"{kind}-{every[:k].count(kind) + 1}" if kind in every[:k] else kind for k, kind in enumerate(every)]
 
 
-def _known_to(name: str) -> str:
-    """Analyses that use a key, as words."""
-    tables = {kind: kinds.load(parts.table) for kind, parts in kinds.ANALYSES.items()}
+def _known_to(name: str, asked: list[Analysis]) -> str:
+    """Analyses that use a key, as words; not those of the deck, whose options or building keep them from it."""
+    here = {options.kind for options in asked}
+    tables = {kind: kinds.load(parts.table) for kind, parts in kinds.ANALYSES.items() if kind not in here}
     able = [kind for kind, table in tables.items() if name in (*table.uses, *table.beside) and name not in table.method]
     return f"; {', '.join(able[:3])}{' and others' if len(able) > 3 else ''} can use it" if able else ""
