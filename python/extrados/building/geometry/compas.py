@@ -93,7 +93,7 @@ def mesh_of(node: dict[str, Any], where: str) -> tuple[np.ndarray, list[list[int
         order = {str(k): i for i, k in enumerate(vertices)}
         xyz = np.array([[float(v.get(a, 0.0)) for a in AXES] for v in vertices.values()])
         faces = [[order[str(k)] for k in face] for face in mesh["face"].values()]
-    except (KeyError, TypeError, ValueError, AttributeError):
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
         raise BadGeometry(f"{where}: expected a mesh with vertex and face") from None
     if xyz.ndim != 2 or len(xyz) < 6 or not np.isfinite(xyz).all():
         raise BadGeometry(f"{where}: its mesh has {len(xyz)} vertices, expected finite ones of a solid")
