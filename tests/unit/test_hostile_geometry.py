@@ -14,7 +14,12 @@ from extrados.building.geometry.compas import read_compas
 from extrados.building.geometry.contacts import find_contacts
 from extrados.building.geometry.drawing import read_json
 from extrados.building.geometry.dxf import read_dxf
+from extrados.building.geometry.linework import net_of
 from extrados.building.geometry.polygons import crossing_edges
+from extrados.building.geometry.solids.assembly import Stone, assemble
+from extrados.building.geometry.solids.meshes import read_solids, stones_of
+from extrados.building.geometry.solids.polyhedra import box, hull, overlap_depth
+from extrados.building.templates.blocks import _marked as marked
 from extrados.schema.files import File
 
 NO_GROUND = np.empty((0, 4))
@@ -126,3 +131,70 @@ def test_whole_numbers_of_hundreds_of_digits_are_no_places() -> None:
     mesh = {"vertex": {str(k): {"x": huge, "y": 0, "z": 0} for k in range(8)}, "face": {}}
     with pytest.raises(BadGeometry, match="expected a mesh"):
         read_compas({"graph": {"node": {"0": {"block": mesh}}}}, "a.json")
+
+
+def test_lines_that_mark_joints_take_little_memory() -> None:
+    """Every line beside every joint would be 100 MB an array."""
+    places = np.column_stack([np.arange(3000.0), np.zeros(3000)])
+    lines = np.array([[k + 0.5, -0.1, k + 0.5, 0.1] for k in range(3000)])
+    lines[7] = 7.005, -1.0, 7.005, 1.0
+    found = []
+    assert peak(lambda: found.append(marked(places, lines, 0.01))) < 50.0
+    assert found == [[7]]
+
+
+def test_hanging_lines_are_taken_away_one_by_one() -> None:
+    """A chain that ends nowhere hangs by one line after another; what it hangs on stays."""
+    chain = np.array([[0.1 * k, 0.0, 0.1 * k + 0.1, 0.0] for k in range(10, 300)])
+    around = np.column_stack([square(0.0), np.roll(square(0.0), -1, axis=0)])
+    net = net_of(np.concatenate([chain, around, [[5.0, 0.05, 6.0, 1.0]]]), 1e-3, 0.1)
+    assert len(net.faces) == 1 and len(net.faces[0]) == 4
+    loose = sorted(net.loose, key=lambda end: end.place)
+    assert np.array([end.place for end in loose]) == pytest.approx(np.array([[5.0, 0.05], [6.0, 1.0], [30.0, 0.0]]))
+    assert loose[0].gap == pytest.approx(0.05)
+
+
+def prism(corners: int, radius: float = 5.0) -> dict[str, Any]:
+    """A block of COMPAS: the prism over a ring."""
+    vertex = {
+        str(k + corners * y): {"x": float(x), "y": y, "z": float(z)}
+        for y in (0, 1) for k, (x, z) in enumerate(ring(corners, radius))
+    }  # fmt: skip
+    sides = [[k, (k + 1) % corners, corners + (k + 1) % corners, corners + k] for k in range(corners)]
+    faces = [list(range(corners)), list(range(2 * corners - 1, corners - 1, -1)), *sides]
+    return {"vertex": vertex, "face": {str(k): face for k, face in enumerate(faces)}}
+
+
+def test_a_prism_of_many_corners_takes_little_memory() -> None:
+    """Every corner beside every other would be 72 MB an array."""
+    value = {"graph": {"node": {"0": {"block": prism(3000)}}}}
+    found = []
+    assert peak(lambda: found.append(read_compas(value, "a.json"))) < 50.0
+    (block,), depth = found[0][0].blocks, found[0][1]
+    assert len(block.points) == 3000 and depth == pytest.approx(1.0)
+
+
+def test_bodies_of_many_corners_take_little_memory() -> None:
+    """Axes across every edge of one and every edge of the other, along every corner, would be 2 GB."""
+    height = np.linspace(-0.9, 0.9, 14)[:, None, None]
+    level = np.broadcast_to(ring(22, 1.0)[None], (14, 22, 2)) * np.sqrt(1.0 - height**2)
+    points = np.concatenate([level, np.broadcast_to(height, (14, 22, 1))], axis=2).reshape(-1, 3)
+    one, two = hull(points, 1e-9), hull(points @ np.diag([1.0, 1.0, 1.01]) + [1.7, 0.3, 0.2], 1e-9)
+    found = []
+    assert peak(lambda: found.append(overlap_depth(one, two))) < 100.0
+    assert found[0] == pytest.approx(2.0 - np.linalg.norm([1.7, 0.3, 0.2]), abs=0.03)
+
+
+def test_a_body_of_too_many_corners_is_told(monkeypatch) -> None:
+    monkeypatch.setattr("extrados.building.geometry.solids.meshes.MOST_CORNERS", 100)
+    solids = read_solids({"graph": {"node": {"0": {"block": prism(60)}}}}, "a.json")
+    with pytest.raises(BadGeometry, match="block 0 is of 120 corners, at most 100 are looked at"):
+        stones_of(solids, 2000.0, None, "a.json")
+
+
+def test_bodies_over_each_other_are_told_before_all_pairs_are_looked_at(monkeypatch) -> None:
+    monkeypatch.setattr("extrados.building.geometry.solids.contacts.MOST_PAIRS", 100)
+    monkeypatch.setattr("extrados.building.geometry.solids.contacts.MOST_NEIGHBOURS", 1)
+    stones = [Stone(f"block {k}", [box((0, 0, 0), (1, 1, 1))], 2000.0) for k in range(30)]
+    with pytest.raises(BadGeometry, match="more than 100 pairs, the most that are looked at"):
+        assemble(stones, 1e-4)

@@ -11,8 +11,8 @@ import numpy as np
 
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.drawing import GROUND_LAYER, MOST_BLOCKS, UNITS, Drawing, Layer, Polygon
-from extrados.building.geometry.linework import holds, net_of
-from extrados.building.geometry.polygons import signed_area
+from extrados.building.geometry.linework import net_of, place_in
+from extrados.building.geometry.polygons import inside, signed_area
 from extrados.schema.files import File
 
 # DXF $INSUNITS -> our unit
@@ -274,19 +274,22 @@ def _drawing(found: _Read, known: Mapping[str, Layer], name: str, scale: float, 
             raise BadGeometry(f"{name}: more than {MOST_LINES} pieces of lines")
         of = np.repeat(np.arange(len(pieces) + len(rims)), [len(p) for p in (*pieces, *rims)])
         net = net_of(np.concatenate([*pieces, *rims]), tolerance, NEAR, firm=of >= len(pieces))
-        closed = len(outlines)
+        closed = [points for _, _, points in outlines]
+        low, high = (np.array([end(p, axis=0) for p in closed]).reshape(-1, 2) for end in (np.min, np.max))
         for face, source in zip(net.faces, net.source, strict=True):
             drawn = of[source]
             rim = np.hypot(*(np.roll(face, -1, axis=0) - face).T).sum()
             if 2.0 * signed_area(face) < tolerance * rim:
                 continue  # a sliver between two lines that mean one
-            if (drawn >= len(pieces)).all() or any(holds(outline, face) for _, _, outline in outlines[:closed]):
+            place = place_in(face)
+            around = np.flatnonzero((low <= place).all(axis=1) & (place <= high).all(axis=1)).tolist()
+            if (drawn >= len(pieces)).all() or any(inside(closed[k], place[None])[0] for k in around):
                 continue  # it lies in an outline that is closed as drawn
             layer = Counter(found.open[k][0] for k in drawn.tolist() if k < len(pieces)).most_common(1)[0][0]
             outlines.append((layer, "", face))
         loose = [(end.place, end.gap) for end in net.loose]
         notes.append(
-            f"{len(outlines) - closed} blocks joined from {len(lines)} loose lines and arcs, ends within "
+            f"{len(outlines) - len(closed)} blocks joined from {len(lines)} loose lines and arcs, ends within "
             f"{1e3 * tolerance:g} mm (join_tolerance)"
         )
     if not outlines:
