@@ -5,10 +5,12 @@ import os
 import signal
 import subprocess
 import sys
+import tracemalloc
 from pathlib import Path
 
 import pytest
 
+from extrados.decks.reader import DeckError, read_text
 from extrados.results import store
 from extrados.results.model import TableData
 
@@ -163,6 +165,58 @@ def test_output_to_a_full_device(tmp_path, words) -> None:
         run = extrados(*words, cwd=ROOT, capture_output=False, stdout=full, stderr=subprocess.PIPE)
     assert run.returncode == 3 and "Traceback" not in run.stderr and "No space left" in run.stderr
     assert words[0] != "run" or (tmp_path / "o" / "summary.json").exists()
+
+
+def test_output_that_is_closed_or_full_altogether(tmp_path) -> None:
+    """Nothing can be told then but by the code; and no file takes the numbers of what is closed."""
+    words = f"'{sys.executable}' -m extrados"
+    path, out = deck(tmp_path, TILT), tmp_path / "o"
+    for where in (">&- 2>&-", "<&- >&- 2>&-"):
+        assert os.waitstatus_to_exitcode(os.system(f"{words} run '{path}' --out '{out}' --no-figures {where}")) == 0
+        assert os.waitstatus_to_exitcode(os.system(f"{words} run none.toml {where}")) == 2
+        assert json.loads((out / "summary.json").read_text())["analyses"][0]["status"] == "ok"
+    if os.path.exists("/dev/full"):
+        assert os.waitstatus_to_exitcode(os.system(f"{words} cases >/dev/full 2>/dev/full")) == 3
+
+
+def test_words_are_not_made_pictures(tmp_path) -> None:
+    run = extrados("run", str(tmp_path / "root:x:0.toml"))
+    assert "root:x:0.toml: no such file" in run.stderr
+
+
+@pytest.mark.parametrize("name", ["..", ".", ""])
+def test_results_of_a_motion_lie_in_results(tmp_path, name) -> None:
+    """`..` has no name of its own: the results were put beside the folder that is worked in."""
+    place = tmp_path / "here"
+    place.mkdir()
+    assert "is a folder" in extrados("motion", name, "--no-figures", cwd=place).stdout
+    assert os.listdir(place / "results") == ["motion"] and os.listdir(tmp_path) == ["here"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [".".join("a" * 20_000) + " = 1", "[" + " . ".join(["'a'"] * 20_000) + "]", "[x]\ny = { " + ".".join("a" * 99) + " = 1 }",
+     "title" + ".b" * 50 + "." + '."c"' * 50 + " = 1", "a = " + "[" * 61 + "]" * 61],
+    ids=["key", "header", "inline", "title", "list"],
+)  # fmt: skip
+def test_a_deck_that_is_nested_too_deeply(tmp_path, text) -> None:
+    text = text.replace("..", ".")
+    tracemalloc.start()
+    try:
+        with pytest.raises(DeckError, match="nested too deeply"):
+            read_text(text.encode())
+        assert tracemalloc.get_traced_memory()[1] < 20e6
+    finally:
+        tracemalloc.stop()
+    (tmp_path / "deep.toml").write_text(text)
+    assert extrados("cases", str(tmp_path)).stdout.strip().endswith("deep.toml: (cannot be read)")
+
+
+def test_a_folder_with_a_deck_whose_name_is_no_text(tmp_path) -> None:
+    with open(os.fsencode(tmp_path) + b"/b\xff.toml", "w") as file:
+        file.write(ARCH + '[motion]\nkind = "record"\nfile = "extrados:el-centro-1940"\n')
+    run = extrados("assess", str(tmp_path), "--no-figures", "--out", str(tmp_path / "o"))
+    assert run.returncode == 0 and "b\\udcff" in run.stdout, run.stderr
 
 
 def test_names_that_are_no_text(tmp_path) -> None:
