@@ -345,3 +345,24 @@ def test_cases_away_from_the_sources(tmp_path) -> None:
     (tmp_path / "cases").mkdir()
     (tmp_path / "cases" / "mine.toml").write_text('title = "Mine"\n')
     assert extrados("cases", cwd=tmp_path).stdout.split() == ["cases/mine.toml:", "Mine"]
+
+
+def test_a_file_of_ones_own_is_not_written_over(tmp_path) -> None:
+    """An export that was edited, a page of another, the deck itself: what is new is put beside them, and said so."""
+    path, out = Path(deck(tmp_path, TILT)), tmp_path / "o.json"
+    export = ("export", str(path), "--to", "compas", "--out")
+    for _ in range(2):  # ours, which nobody has changed, is replaced
+        assert extrados(*export, str(out)).returncode == 0
+    assert not (tmp_path / "o-2.json").exists()
+    out.write_text(out.read_text() + "\nmine")
+    run = extrados(*export, str(out))
+    assert run.returncode == 0 and "o-2.json" in run.stdout and "changed since" in run.stderr
+    assert out.read_text().endswith("mine") and json.loads((tmp_path / "o-2.json").read_text())
+    text = path.read_text()
+    assert extrados(*export, str(path)).returncode == 0 and path.read_text() == text
+    assert extrados(*export, "/dev/stdout").stdout.startswith("{")
+    results, page = str(tmp_path / "r"), tmp_path / "page.html"
+    page.write_text("mine")
+    assert extrados("run", str(path), "--no-figures", "--out", results).returncode == 0
+    assert extrados("compare", results, results, "--page", str(page)).returncode == 0
+    assert page.read_text() == "mine" and "<html" in (tmp_path / "page-2.html").read_text()
