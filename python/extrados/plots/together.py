@@ -108,4 +108,4 @@ def draw(curves: list[Push], path: Path) -> Path:
                     names = written.put(Path(scratch), path.parent, lambda name: name in pictures)
         except OSError as error:
             raise StoreError(f"{path}.png: cannot be written: {error.strerror or error}") from None
-    return path.parent / names[pictures[0]]
+    return path.parent / names.get(pictures[0], pictures[0])  # figures may be kept in memory
