@@ -409,3 +409,14 @@ def test_no_scheduler_answers() -> None:
             sweep(c, "t", Squares(), 10, "squares")
     finally:
         batches.CONNECT_SECONDS = batches_seconds
+
+
+def test_a_file_of_ones_own_among_kept_batches_keeps_its_name(tmp_path) -> None:
+    from extrados.results.checkpoint import Checkpoint
+
+    kept = Checkpoint(tmp_path / "o", "deck", resume=False)
+    kept.keep("sweep", 0, {"x": np.zeros(3)})
+    (kept.folder / "sweep" / "mine.npz").write_text("mine")
+    warnings: list[str] = []
+    assert [first for first, _ in kept.load("sweep", warnings)] == [0] and not warnings
+    assert (kept.folder / "sweep" / "mine.npz").read_text() == "mine"

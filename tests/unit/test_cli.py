@@ -5,10 +5,12 @@ import os
 import signal
 import subprocess
 import sys
+import tracemalloc
 from pathlib import Path
 
 import pytest
 
+from extrados.decks.reader import DeckError, read_text
 from extrados.results import store
 from extrados.results.model import TableData
 
@@ -165,6 +167,58 @@ def test_output_to_a_full_device(tmp_path, words) -> None:
     assert words[0] != "run" or (tmp_path / "o" / "summary.json").exists()
 
 
+def test_output_that_is_closed_or_full_altogether(tmp_path) -> None:
+    """Nothing can be told then but by the code; and no file takes the numbers of what is closed."""
+    words = f"'{sys.executable}' -m extrados"
+    path, out = deck(tmp_path, TILT), tmp_path / "o"
+    for where in (">&- 2>&-", "<&- >&- 2>&-"):
+        assert os.waitstatus_to_exitcode(os.system(f"{words} run '{path}' --out '{out}' --no-figures {where}")) == 0
+        assert os.waitstatus_to_exitcode(os.system(f"{words} run none.toml {where}")) == 2
+        assert json.loads((out / "summary.json").read_text())["analyses"][0]["status"] == "ok"
+    if os.path.exists("/dev/full"):
+        assert os.waitstatus_to_exitcode(os.system(f"{words} cases >/dev/full 2>/dev/full")) == 3
+
+
+def test_words_are_not_made_pictures(tmp_path) -> None:
+    run = extrados("run", str(tmp_path / "root:x:0.toml"))
+    assert "root:x:0.toml: no such file" in run.stderr
+
+
+@pytest.mark.parametrize("name", ["..", ".", ""])
+def test_results_of_a_motion_lie_in_results(tmp_path, name) -> None:
+    """`..` has no name of its own: the results were put beside the folder that is worked in."""
+    place = tmp_path / "here"
+    place.mkdir()
+    assert "is a folder" in extrados("motion", name, "--no-figures", cwd=place).stdout
+    assert os.listdir(place / "results") == ["motion"] and os.listdir(tmp_path) == ["here"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [".".join("a" * 20_000) + " = 1", "[" + " . ".join(["'a'"] * 20_000) + "]", "[x]\ny = { " + ".".join("a" * 99) + " = 1 }",
+     "title" + ".b" * 50 + "." + '."c"' * 50 + " = 1", "a = " + "[" * 61 + "]" * 61],
+    ids=["key", "header", "inline", "title", "list"],
+)  # fmt: skip
+def test_a_deck_that_is_nested_too_deeply(tmp_path, text) -> None:
+    text = text.replace("..", ".")
+    tracemalloc.start()
+    try:
+        with pytest.raises(DeckError, match="nested too deeply"):
+            read_text(text.encode())
+        assert tracemalloc.get_traced_memory()[1] < 20e6
+    finally:
+        tracemalloc.stop()
+    (tmp_path / "deep.toml").write_text(text)
+    assert extrados("cases", str(tmp_path)).stdout.strip().endswith("deep.toml: (cannot be read)")
+
+
+def test_a_folder_with_a_deck_whose_name_is_no_text(tmp_path) -> None:
+    with open(os.fsencode(tmp_path) + b"/b\xff.toml", "w") as file:
+        file.write(ARCH + '[motion]\nkind = "record"\nfile = "extrados:el-centro-1940"\n')
+    run = extrados("assess", str(tmp_path), "--no-figures", "--out", str(tmp_path / "o"))
+    assert run.returncode == 0 and "b\\udcff" in run.stdout, run.stderr
+
+
 def test_names_that_are_no_text(tmp_path) -> None:
     """Names of files are bytes; a deck, a record and the members of a suite may be called anything."""
     name = os.fsencode(tmp_path) + b"/d\xff\xfe.toml"
@@ -291,3 +345,24 @@ def test_cases_away_from_the_sources(tmp_path) -> None:
     (tmp_path / "cases").mkdir()
     (tmp_path / "cases" / "mine.toml").write_text('title = "Mine"\n')
     assert extrados("cases", cwd=tmp_path).stdout.split() == ["cases/mine.toml:", "Mine"]
+
+
+def test_a_file_of_ones_own_is_not_written_over(tmp_path) -> None:
+    """An export that was edited, a page of another, the deck itself: what is new is put beside them, and said so."""
+    path, out = Path(deck(tmp_path, TILT)), tmp_path / "o.json"
+    export = ("export", str(path), "--to", "compas", "--out")
+    for _ in range(2):  # ours, which nobody has changed, is replaced
+        assert extrados(*export, str(out)).returncode == 0
+    assert not (tmp_path / "o-2.json").exists()
+    out.write_text(out.read_text() + "\nmine")
+    run = extrados(*export, str(out))
+    assert run.returncode == 0 and "o-2.json" in run.stdout and "changed since" in run.stderr
+    assert out.read_text().endswith("mine") and json.loads((tmp_path / "o-2.json").read_text())
+    text = path.read_text()
+    assert extrados(*export, str(path)).returncode == 0 and path.read_text() == text
+    assert extrados(*export, "/dev/stdout").stdout.startswith("{")
+    results, page = str(tmp_path / "r"), tmp_path / "page.html"
+    page.write_text("mine")
+    assert extrados("run", str(path), "--no-figures", "--out", results).returncode == 0
+    assert extrados("compare", results, results, "--page", str(page)).returncode == 0
+    assert page.read_text() == "mine" and "<html" in (tmp_path / "page-2.html").read_text()

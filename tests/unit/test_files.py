@@ -48,6 +48,12 @@ DOORS = {
         "material": WALL,
         "analysis": {"kind": "sla", "mesh": {"element": "T3", "size": 0.25}},
     },
+    "measured": lambda name: {"structure": PANEL, "material": WALL, "analysis": {"kind": "sla", "measured": name}},
+    "hazard": lambda name: {
+        "structure": BLOCK,
+        "motion": {"kind": "suite", "files": ["extrados:el-centro-1940"]},
+        "analysis": {"kind": "fragility", "levels": [0.1, 0.2], "hazard": {"file": name}},
+    },
     "resume_from": lambda name: {
         "structure": PANEL,
         "material": WALL,

@@ -220,7 +220,10 @@ def test_curves_of_several_runs_stand_in_one_picture(run, tmp_path) -> None:
     told = call(pushed, tmp_path / "wall", "--together", tmp_path / "new" / "curves.svg")
     assert told.exit_code == 0, told.output
     assert {"greatest", "load", "[kN]", "sla-2"} <= set(told.output.split())
-    assert {path.name for path in (tmp_path / "new").iterdir()} == {"curves.png", "curves.svg"}
+    assert {path.name for path in (tmp_path / "new").iterdir()} == {"curves.png", "curves.svg", ".written.json"}
+    (tmp_path / "new" / "curves.svg").write_text("mine")  # what another drew there stays
+    assert call(pushed, tmp_path / "wall", "--together", tmp_path / "new" / "curves.png").exit_code == 0
+    assert (tmp_path / "new" / "curves.svg").read_text() == "mine" and (tmp_path / "new" / "curves-2.svg").exists()
     arch = tmp_path / "arch.toml"
     arch.write_text(
         '[structure]\nkind = "arch"\nradius = 10\nthickness = 1.5\nembrace = 157.5\nvoussoirs = 7\n[analysis]\nkind = "tilt"\n'

@@ -154,3 +154,21 @@ def test_on_the_command_line(folder: Path, tmp_path: Path) -> None:
     assert missing.exit_code == 3 and "Traceback" not in missing.output
     empty = CliRunner().invoke(cli.app, ["assess", str(tmp_path)])
     assert empty.exit_code == 2
+
+
+def test_a_ranking_that_was_changed_stays(folder: Path, tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    """What an engineer wrote into the ranking is not lost to the next run; what nobody touched is replaced."""
+    out = tmp_path / "out"
+    survey.assess_folder(folder, out, figures=False)
+    with (out / "ranking.csv").open("a") as file:
+        file.write("remarks,,,,,look again\n")
+    survey.assess_folder(folder, out, figures=False)
+    assert "look again" in (out / "ranking.csv").read_text() and "ranking-2.csv" in caplog.text
+    assert not (out / "ranking-2.html").exists() and "look again" not in (out / "ranking-2.csv").read_text()
+
+
+def test_names_of_buildings_are_no_formulas(folder: Path, tmp_path: Path) -> None:
+    deck = next(p for p in folder.glob("*.toml") if p.name != "common.toml")
+    deck.rename(deck.with_name("=cmd|calc.toml"))
+    survey.assess_folder(folder, tmp_path / "out", figures=False)
+    assert "\n'=cmd|calc," in (tmp_path / "out" / "ranking.csv").read_text()

@@ -1,5 +1,6 @@
 """The command line. Exit codes: 0 done; 2 the deck is wrong; 3 refused or failed; 130 or 143 interrupted (Ctrl-C, SIGTERM)."""
 
+import contextlib
 import logging
 import os
 import signal
@@ -41,8 +42,19 @@ def _options(
     pass
 
 
+def _open_streams() -> None:
+    """What was closed by whoever called us leads nowhere: else the next file that is opened would take its number, and what
+    is told would be written into it."""
+    while (handle := os.open(os.devnull, os.O_RDWR)) <= 2:
+        os.set_inheritable(handle, True)
+    os.close(handle)
+    sys.stdout = sys.stdout or os.fdopen(1, "w", closefd=False)
+    sys.stderr = sys.stderr or os.fdopen(2, "w", closefd=False)
+
+
 def main() -> None:
     """Run a command; see `extrados.__main__` for what comes before."""
+    _open_streams()
     logging.basicConfig(level=logging.WARNING, format="%(message)s")
     for stream in (sys.stdout, sys.stderr):
         stream.reconfigure(errors="backslashreplace")  # a terminal may know ASCII alone
@@ -74,6 +86,7 @@ def main() -> None:
         # the reader of our output went away, as in `extrados cases | head`, or what it goes to is full
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         if not isinstance(error, BrokenPipeError):
-            os.write(2, f"the output could not be written: {error.strerror}\n".encode())
+            with contextlib.suppress(OSError):  # what errors are told to may be full, too
+                os.write(2, f"the output could not be written: {error.strerror}\n".encode())
         code = code or NOT_DONE
     sys.exit(code)

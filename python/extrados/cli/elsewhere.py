@@ -46,6 +46,7 @@ def export(
     """Write the building of a deck for another program."""
     from extrados.bridges.forms import FORMS, exported
     from extrados.decks.reader import read_deck
+    from extrados.results import written
     from extrados.results.store import StoreError, reason
 
     with errors():
@@ -54,7 +55,7 @@ def export(
         place = out or checked.default_out.with_name(f"{checked.default_out.name}-{form}{FORMS[form][1]}")
         try:
             place.parent.mkdir(parents=True, exist_ok=True)
-            place.write_text(text, encoding="utf-8")
+            place = written.put_one(place, text.encode(errors="backslashreplace"))
         except OSError as error:
             raise StoreError(f"{place}: cannot be written: {reason(error)}") from None
     out_console.say(f"{FORMS[form][2]}: {place}")

@@ -105,9 +105,8 @@ def cases(
     ] = None,
 ) -> None:
     """List the decks below a folder with their titles."""
-    import tomllib
-
     from extrados.decks.reader import LARGEST
+    from extrados.decks.toml import loads
     from extrados.schema import files
     from extrados.schema.places import CASES
 
@@ -118,8 +117,8 @@ def cases(
         if path.name.endswith(".expect.toml"):
             continue
         try:
-            title = tomllib.loads(files.read(path, LARGEST).text()).get("title", "")
-        except (ValueError, RecursionError):
+            title = loads(files.read(path, LARGEST).text()).get("title", "")
+        except ValueError:
             title = "(cannot be read)"
         out_console.say(f"{path}: {title}")
         found = True

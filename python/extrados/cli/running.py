@@ -88,7 +88,8 @@ def motion(
         record["channel"] = int(channel) if channel.isascii() and channel.isdigit() and len(channel) < 10 else channel
     with errors(as_json):
         deck = make_deck({"title": printable(Path(file).name), "motion": record, "analysis": {"kind": "motion"}})
-        folder = out or Path("results") / Path(file.removeprefix("extrados:")).stem
+        name = Path(file.removeprefix("extrados:")).stem
+        folder = out or Path("results") / (name if name.strip(".") else "motion")
         found = run_to(Context(deck, default_threads()), folder, figures=False)
         if as_json:
             print(json.dumps(json.loads((found.folder / "summary.json").read_bytes()), indent=2))

@@ -105,12 +105,10 @@ def compare(
                 out_console.say(f"warning {words}: {line}")
         if page is not None:
             from extrados.plots import html
+            from extrados.results import written
 
             try:
-                page.write_text(
-                    html.page(document((str(old), str(new)), found), page.parent),
-                    encoding="utf-8",
-                    errors="backslashreplace",
-                )
+                text = html.page(document((str(old), str(new)), found), page.parent)
+                written.put_one(page, text.encode(errors="backslashreplace"))
             except OSError as error:
                 raise StoreError(f"{page}: cannot be written: {error.strerror or error}") from None

@@ -29,7 +29,7 @@ class _Console:
     def _rich(self) -> "Console":
         from rich.console import Console
 
-        return Console(stderr=self._stderr, highlight=False, soft_wrap=True)
+        return Console(stderr=self._stderr, highlight=False, soft_wrap=True, emoji=False)
 
     def say(self, text: str, style: str | None = None) -> None:
         """Print words, some of which others wrote: nothing in them is obeyed by the terminal."""

@@ -21,6 +21,7 @@ from extrados.decks.moved import MOVED
 from extrados.decks.plural import MOST, PLURAL
 from extrados.decks.positions import Path as Key
 from extrados.decks.positions import Positions, key_lines
+from extrados.decks.toml import loads
 from extrados.schema import files
 from extrados.schema.table import Motion, Table
 from extrados.schema.text import printable
@@ -135,13 +136,11 @@ def read_text(raw: bytes, name: str = "deck.toml", folder: Path | None = None) -
         line = raw[: error.start].count(b"\n") + 1
         raise DeckError([f"{name}:{line}: is not UTF-8 text (byte {error.start}); expected a TOML deck"]) from None
     try:
-        data = tomllib.loads(text)
+        data = loads(text)
     except tomllib.TOMLDecodeError as error:
         line, what = _syntax(str(error), text)
         raise DeckError([f"{name}:{line}: {what}"]) from None
-    except RecursionError:
-        raise DeckError([f"{name}: is nested too deeply for a deck"]) from None
-    except ValueError as error:  # integers of more digits than Python converts
+    except ValueError as error:  # too deep, or integers of more digits than Python converts
         raise DeckError([f"{name}: {error}"]) from None
     return _Checker(Positions(name, key_lines(text))).deck(data, folder or Path.cwd(), hashlib.sha256(raw).hexdigest())
 

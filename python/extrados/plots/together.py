@@ -1,5 +1,6 @@
 """Capacity curves of several analyses in one picture: walls of plane stress, buildings of shells, incremental solutions."""
 
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -7,6 +8,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from extrados.plots import style
+from extrados.results import written
 from extrados.results.sla import PREFIXES
 from extrados.results.store import Stored, StoreError
 
@@ -67,6 +69,7 @@ def pushes(runs: list[tuple[str, Stored]]) -> list[Push]:
 def draw(curves: list[Push], path: Path) -> Path:
     """Write PATH.png and PATH.svg; returns the path of the PNG. An analysis has a colour, a sense of its load a dash."""
     path = path.with_suffix("") if path.suffix in (".png", ".svg") else path
+    pictures = f"{path.name}.png", f"{path.name}.svg"
     analyses = list(dict.fromkeys(curve.analysis for curve in curves))
     with style.figure(7.4, 4.6) as (fig, (ax,)):
         for curve in curves:
@@ -99,7 +102,10 @@ def draw(curves: list[Push], path: Path) -> Path:
         fig.legend(marks, labels, loc="outside lower center", ncols=min(len(labels), 3))
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            style.write(fig, path.parent, path.name)
+            with tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as scratch:
+                style.write(fig, Path(scratch), path.name)
+                with written.alone(path.parent):
+                    names = written.put(Path(scratch), path.parent, lambda name: name in pictures)
         except OSError as error:
             raise StoreError(f"{path}.png: cannot be written: {error.strerror or error}") from None
-    return path.parent / f"{path.name}.png"
+    return path.parent / names.get(pictures[0], pictures[0])  # figures may be kept in memory

@@ -126,7 +126,7 @@ def pdf(document: Document, folder: Path) -> bytes:
         import typst
     except ImportError:
         raise StoreError("the report as PDF needs the package typst: pip install typst") from None
-    source: Any = markup(document, folder).encode()
+    source: Any = markup(document, folder).encode(errors="replace")  # names of files may hold bytes that are no text
     try:
         return bytes(typst.compile(source, root=str(folder), format="pdf", ignore_system_fonts=True))
     except Exception as error:  # typst raises errors of its own and RuntimeError

@@ -11,6 +11,7 @@ import io
 import json
 import logging
 import os
+import re
 import tempfile
 import zipfile
 from collections.abc import Iterator, Sequence
@@ -33,6 +34,7 @@ except ImportError:  # not on Windows
 
 HEAD = "deck.json"
 _TEMPORARY = ".new."
+_NAME = re.compile(r"\d{12,}-[0-9a-f]{32}\.npz")
 log = logging.getLogger(__name__)
 
 
@@ -180,6 +182,8 @@ class Checkpoint:
     def placed(self, name: str, warnings: list[str]) -> Iterator[tuple[int, dict[str, np.ndarray], Path]]:
         """The same, with the place of each batch."""
         for path in sorted((self.folder / name).glob("*.npz")):
+            if not _NAME.fullmatch(path.name):
+                continue  # a stranger's
             content = _sound(path)
             if content is not None:
                 with np.load(io.BytesIO(content), allow_pickle=False) as store:

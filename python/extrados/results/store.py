@@ -231,13 +231,11 @@ def csv_parts(table: TableData) -> Iterator[str]:
             raise ValueError(f"columns of unlike length: {', '.join(names)}")
         if number == 0:
             yield _lines(
-                [[_cell(f"{name} [{unit}]" if unit else name) for name, unit in zip(names, units, strict=True)]]
+                [[cell(f"{name} [{unit}]" if unit else name) for name, unit in zip(names, units, strict=True)]]
             )
         for first in range(0, len(columns[0]) if columns else 0, CSV_ROWS):
             some = (column[first : first + CSV_ROWS].tolist() for column in columns)
-            yield _lines(
-                [repr(v) if isinstance(v, float) else _cell(v) for v in row] for row in zip(*some, strict=True)
-            )
+            yield _lines([repr(v) if isinstance(v, float) else cell(v) for v in row] for row in zip(*some, strict=True))
 
 
 def _lines(rows: Iterable[list[Any]]) -> str:
@@ -246,7 +244,7 @@ def _lines(rows: Iterable[list[Any]]) -> str:
     return out.getvalue()
 
 
-def _cell(value: Any) -> Any:
+def cell(value: Any) -> Any:
     """Text that a spreadsheet would take for a formula is quoted, and what a terminal would obey is escaped."""
     if not isinstance(value, str):
         return value

@@ -9,6 +9,7 @@ import json
 import logging
 import os
 import stat
+import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -129,6 +130,19 @@ def put(scratch: Path, folder: Path, belongs: Callable[[str], bool]) -> dict[str
         (scratch / name).replace(folder / target)
     note(folder, others, fresh)
     return names
+
+
+def put_one(path: Path, content: bytes) -> Path:
+    """Write a file that a user named, or beside it where another is there, as `put` does; the place that it got. What
+    holds nothing to lose is written to: a device, a pipe, an empty file."""
+    if path.exists() and not (path.is_file() and path.stat().st_size):
+        path.write_bytes(content)
+        return path
+    with tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as scratch:
+        (Path(scratch) / path.name).write_bytes(content)
+        with alone(path.parent):
+            names = put(Path(scratch), path.parent, lambda name: name == path.name)
+    return path.with_name(names[path.name])
 
 
 @contextlib.contextmanager

@@ -4,7 +4,7 @@ import csv
 import hashlib
 import io
 import os
-import tomllib
+import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,9 +17,10 @@ from extrados.analyses.batches import stacked, sweep
 from extrados.analyses.context import Context
 from extrados.building.building import Building
 from extrados.decks.reader import LARGEST, Deck, DeckError, make_deck
+from extrados.decks.toml import loads
 from extrados.results import checkpoint, written
 from extrados.results.assess import Assess
-from extrados.results.store import Stored, StoreError, prepare, reason
+from extrados.results.store import Stored, StoreError, cell, prepare, reason
 from extrados.running.run import Run, compute
 from extrados.schema import files
 
@@ -67,7 +68,7 @@ class SurveyJob:
         row = {"overall": "", "strategy": "", "status": "failed", "statement": "", "folder": str(Path(self.out) / name)}
         margin = np.nan
         try:
-            deck = make_deck(tomllib.loads(self.texts[k]), Path(self.folder))
+            deck = make_deck(loads(self.texts[k]), Path(self.folder))
             run = compute(Context(deck, threads))
             row["folder"] = str(run.write(Path(self.out) / name, self.figures))  # beside it, where others wrote there
             result = next(r for r in run.results if r.kind == "assess")
@@ -113,8 +114,8 @@ def decks_of(folder: Path) -> dict[str, str]:
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(files.read(path, LARGEST).text())
-    except (files.BadFile, ValueError, RecursionError) as error:
+        return loads(files.read(path, LARGEST).text())
+    except ValueError as error:  # BadFile is one
         raise DeckError([f"{path}: {error}"]) from None
 
 
@@ -136,7 +137,7 @@ def assess_folder(
     out = Path(os.path.abspath(out))
     prepare(out)
     out.mkdir(exist_ok=True)
-    sha = hashlib.sha256("\0".join(f"{n}\0{t}" for n, t in texts.items()).encode()).hexdigest()
+    sha = hashlib.sha256("\0".join(f"{n}\0{t}" for n, t in texts.items()).encode(errors="surrogateescape")).hexdigest()
     deck = Deck("", "", Building(None), None, [], [], path=str(folder), folder=folder.resolve(), sha256=sha)
     context = Context(deck, threads, progress, out=out, resume=resume, scheduler=scheduler)
     if resume:
@@ -164,7 +165,8 @@ def _write(rows: list[Assessed], out: Path, figures: bool) -> None:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(COLUMNS)
     for row in rows:
-        writer.writerow([row.building, row.overall, f"{row.least_margin:.6g}", row.strategy, row.status, row.statement])
+        told = (row.building, row.overall, f"{row.least_margin:.6g}", row.strategy, row.status, row.statement)
+        writer.writerow([told[2] if k == 2 else cell(text) for k, text in enumerate(told)])
     runs: list[tuple[str, Stored | None]] = [
         (row.building, Run.read(row.folder) if (row.folder / "summary.json").exists() else None) for row in rows
     ]
@@ -176,13 +178,18 @@ def _write(rows: list[Assessed], out: Path, figures: bool) -> None:
         figures,
     )
     try:
-        with written.alone(out.parent):
-            new = {RANKING: text.getvalue().encode(), "ranking.html": html.page(made, out).encode()}
-            if typeset.available():
-                new["ranking.pdf"] = typeset.pdf(made, out)
+        new = {
+            RANKING: text.getvalue().encode(
+                errors="backslashreplace"
+            ),  # names of files may hold bytes that are no text
+            "ranking.html": html.page(made, out).encode(errors="backslashreplace"),
+        }
+        if typeset.available():
+            new["ranking.pdf"] = typeset.pdf(made, out)
+        with tempfile.TemporaryDirectory(prefix=f".{out.name}.ranking-", dir=out.parent) as scratch:
             for name, content in new.items():
-                fresh = out / f".{name}.new"
-                fresh.write_bytes(content)
-                fresh.replace(out / name)
+                (Path(scratch) / name).write_bytes(content)
+            with written.alone(out.parent):
+                written.put(Path(scratch), out, lambda name: name in new)
     except OSError as error:
         raise StoreError(f"{out}: the ranking could not be written: {reason(error)}") from None

@@ -14,6 +14,7 @@ from extrados.building.geometry.polygons import following, signed_area
 
 FLAT = 1e-6  # of the size of a block: how far its two faces may differ from a prism's
 AXES = "xyz"
+FARTHEST = 1e9  # of its unit from the origin: what solids of other files may have, too
 
 
 def is_compas(value: Any) -> bool:
@@ -93,10 +94,12 @@ def mesh_of(node: dict[str, Any], where: str) -> tuple[np.ndarray, list[list[int
         order = {str(k): i for i, k in enumerate(vertices)}
         xyz = np.array([[float(v.get(a, 0.0)) for a in AXES] for v in vertices.values()])
         faces = [[order[str(k)] for k in face] for face in mesh["face"].values()]
-    except (KeyError, TypeError, ValueError, AttributeError):
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError):
         raise BadGeometry(f"{where}: expected a mesh with vertex and face") from None
-    if xyz.ndim != 2 or len(xyz) < 6 or not np.isfinite(xyz).all():
-        raise BadGeometry(f"{where}: its mesh has {len(xyz)} vertices, expected finite ones of a solid")
+    if xyz.ndim != 2 or len(xyz) < 6 or not (np.abs(xyz) <= FARTHEST).all():  # NaN too
+        raise BadGeometry(
+            f"{where}: its mesh has {len(xyz)} vertices, expected those of a solid, of finite numbers within {FARTHEST:g}"
+        )
     return xyz, faces
 
 
@@ -110,11 +113,11 @@ def _section(xyz: np.ndarray, faces: list[list[int]], axis: int) -> tuple[np.nda
         return None
     plane = [k for k in (0, 1, 2) if k != axis]
     one, two = (xyz[side][:, plane] for side in (front, back))
-    apart = np.hypot(*(one[:, None] - two[None]).transpose(2, 0, 1))
-    if apart.min(axis=1).max() > FLAT * size or apart.min(axis=0).max() > FLAT * size:
+    if max(_apart(one, two), _apart(two, one)) > FLAT * size:
         return None
     edges = [(a, b) for f in faces if all(front[f]) for a, b in zip(f, f[1:] + f[:1], strict=True)]
-    rim = {a: b for a, b in edges if (b, a) not in edges}  # several faces in front, as triangles, share inner edges
+    known = set(edges)
+    rim = {a: b for a, b in edges if (b, a) not in known}  # several faces in front, as triangles, share inner edges
     if len(rim) < 3:
         return None
     start = next(iter(rim))
@@ -125,3 +128,10 @@ def _section(xyz: np.ndarray, faces: list[list[int]], axis: int) -> tuple[np.nda
     if len(way) != len(rim):
         return None
     return (outline if signed_area(outline) > 0.0 else outline[::-1]), high - low
+
+
+def _apart(points: np.ndarray, others: np.ndarray) -> float:
+    """How far that of the points (n, 2) is from the nearest of others that is farthest from them."""
+    from scipy.spatial import cKDTree  # takes a third of a second to load
+
+    return float(cKDTree(others).query(points)[0].max())

@@ -1,5 +1,7 @@
 """Joints of polygons that touch, and one list of all gaps and overlaps between them."""
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -16,7 +18,8 @@ NEAR_BOUNDS = (1e-3, 1e-2)
 ROUNDING = 1e-3
 #: Cosine of the angle by which stretches of one face may differ.
 SAME_WAY = 0.7
-PAIRS_AT_ONCE = 5000
+#: Edges are compared with edges and places so many at a time, at most; and those of one contact or gap are kept
+AT_ONCE, MOST_COMPARED, MOST_KEPT = 1_000_000, 100_000_000, 2_000_000
 PAIRS_OF_BOXES = 5_000_000
 #: Pairs of neighbours that are looked at: so many, or so many times the blocks; in masonry a block has about eight.
 MOST_PAIRS, MOST_NEIGHBOURS = 100_000, 50
@@ -72,7 +75,8 @@ def find_contacts(outlines: list[np.ndarray], ground: np.ndarray, tolerance: flo
     owner = np.repeat(np.arange(len(outlines)), np.diff(start))
     reach = max(float(np.clip(NEAR * tolerance, *NEAR_BOUNDS)), 2.0 * tolerance)
     shortest = shortest_joint(tolerance)
-    one, two = _edge_pairs(outlines, start, reach)
+    near = _Near(outlines, start, first, last, reach)
+    one, two = near.edges()
     rows, gaps = [], []
 
     def meet(e: np.ndarray, begin: np.ndarray, end: np.ndarray, other: np.ndarray, middle: bool) -> None:
@@ -97,12 +101,11 @@ def find_contacts(outlines: list[np.ndarray], ground: np.ndarray, tolerance: flo
 
     meet(one, first[two], last[two], owner[two], middle=True)
     if len(ground):
-        g = np.repeat(np.arange(len(ground)), len(first))
-        e = np.tile(np.arange(len(first)), len(ground))
+        g, e = near.beside(ground)
         for begin, end in ((ground[:, :2], ground[:, 2:]), (ground[:, 2:], ground[:, :2])):
             meet(e, begin[g], end[g], np.full(len(e), -1), middle=False)
     table = _joined(np.concatenate(rows), shortest)
-    flaws = _distinct([*gaps, *_overlaps(outlines, first, last, owner, one, two, ROUNDING * tolerance)], shortest)
+    flaws = _distinct([*gaps, *_overlaps(outlines, near, owner, one, two, ROUNDING * tolerance)], shortest)
     return Contacts(table[:, 2:4], table[:, 4:6], table[:, 0].astype(int), table[:, 1].astype(int), flaws)
 
 
@@ -112,7 +115,7 @@ def _distinct(flaws: list[Flaw], apart: float) -> list[Flaw]:
     found = []
     for flaw in sorted(flaws, key=lambda flaw: (-flaw.depth, flaw.first, flaw.second)):
         places = told.setdefault((flaw.kind, flaw.first, flaw.second), [])
-        if all(np.hypot(x - flaw.place[0], y - flaw.place[1]) > apart for x, y in places):
+        if all(math.hypot(x - flaw.place[0], y - flaw.place[1]) > apart for x, y in places):
             places.append(flaw.place)
             found.append(flaw)
     return found
@@ -146,16 +149,93 @@ def _distance(points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.hypot(off[..., 0], off[..., 1])
 
 
-def _edge_pairs(outlines: list[np.ndarray], start: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
-    """Edge numbers of all pairs of blocks whose boxes come within `reach`, the lower block first."""
-    low = np.array([o.min(axis=0) for o in outlines]) - 0.5 * reach
-    high = np.array([o.max(axis=0) for o in outlines]) + 0.5 * reach
-    i, j = box_pairs(low, high, max(MOST_PAIRS, MOST_NEIGHBOURS * len(outlines)))
-    edges_i, edges_j = np.diff(start)[i], np.diff(start)[j]
-    total = edges_i * edges_j
-    within = np.arange(total.sum()) - np.repeat(np.cumsum(total) - total, total)
-    per = np.repeat(edges_j, total)
-    return np.repeat(start[i], total) + within // per, np.repeat(start[j], total) + within % per
+def _spread(first: np.ndarray, count: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Ranges of `count` numbers from `first` on, one after the other: the range of each number, and the number; about
+    AT_ONCE together, so that the memory is bounded."""
+    parts = np.flatnonzero(np.diff(np.cumsum(count) // AT_ONCE)) + 1
+    for some in np.split(np.arange(len(count)), parts):
+        each = count[some]
+        of = np.repeat(some, each)
+        yield of, first[of] + np.arange(len(of)) - np.repeat(np.cumsum(each) - each, each)
+
+
+class _Near:
+    """What lies within `reach` [m] of each other: blocks, their edges first -> last, places and edges.
+
+    BadGeometry where outlines of many points lie so close that too much would have to be compared.
+    """
+
+    def __init__(
+        self, outlines: list[np.ndarray], start: np.ndarray, first: np.ndarray, last: np.ndarray, reach: float
+    ):
+        self.start, self.size, self.first, self.last = start[:-1], np.diff(start), first, last
+        self.grown = 0.5 * reach
+        self.low, self.high = np.minimum(first, last) - self.grown, np.maximum(first, last) + self.grown
+        self.box_low = np.array([o.min(axis=0) for o in outlines]) - self.grown
+        self.box_high = np.array([o.max(axis=0) for o in outlines]) + self.grown
+        self.i, self.j = box_pairs(self.box_low, self.box_high, max(MOST_PAIRS, MOST_NEIGHBOURS * len(outlines)))
+        self._compared = 0
+
+    def _against(self, numbers: np.ndarray, count: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Ranges of edges, counted among what is compared."""
+        self._compared += int(count.sum())
+        if self._compared > MOST_COMPARED:
+            raise BadGeometry(
+                f"the edges of {len(self.size)} outlines are near each other in more than {MOST_COMPARED:,} pairs, the most "
+                "that are looked at: give them fewer points, and the ground fewer segments"
+            )
+        return _spread(numbers, count)
+
+    def _kept(self, pairs: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        return tuple(np.concatenate([np.empty((2, 0), dtype=int), *pairs], axis=1))
+
+    def _add(self, pairs: list[np.ndarray], one: np.ndarray, two: np.ndarray) -> None:
+        pairs.append(np.stack([one, two]))
+        if sum(len(p[0]) for p in pairs) > max(MOST_KEPT, 10 * len(self.first)):
+            raise BadGeometry(
+                f"more than {MOST_KEPT:,} pairs of edges of the outlines or the ground run beside each other: much of it "
+                "lies over itself"
+            )
+
+    def edges(self) -> tuple[np.ndarray, np.ndarray]:
+        """Numbers of the edges of neighbours whose boxes meet, the edge of the lower block first."""
+        found: list[np.ndarray] = []
+        for pair, e in _spread(self.start[self.i], self.size[self.i]):
+            other = self.j[pair]
+            near = ((self.low[e] <= self.box_high[other]) & (self.box_low[other] <= self.high[e])).all(axis=1)
+            e, other = e[near], other[near]
+            for row, f in self._against(self.start[other], self.size[other]):
+                meet = ((self.low[e[row]] <= self.high[f]) & (self.low[f] <= self.high[e[row]])).all(axis=1)
+                self._add(found, e[row[meet]], f[meet])
+        return self._kept(found)
+
+    def beside(self, ground: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Segments of the ground (k, 4) and edges whose boxes meet."""
+        low = np.minimum(ground[:, :2], ground[:, 2:]) - self.grown
+        high = np.maximum(ground[:, :2], ground[:, 2:]) + self.grown
+        found: list[np.ndarray] = []
+        every = np.full(len(ground), len(self.first))
+        for g, e in self._against(np.zeros(len(ground), dtype=int), every):
+            meet = ((low[g] <= self.high[e]) & (self.low[e] <= high[g])).all(axis=1)
+            self._add(found, g[meet], e[meet])
+        return self._kept(found)
+
+    def depths(
+        self, points: np.ndarray, begin: np.ndarray, count: np.ndarray
+    ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
+        """How deep places of each block (`count` points from `begin` on) lie in its neighbours: block, neighbour, depth and
+        point, where that is in the neighbour's box."""
+        pairs = np.unique(np.column_stack([self.i, self.j]), axis=0)
+        a, b = np.concatenate([pairs, pairs[:, ::-1]]).T
+        for pair, probe in _spread(begin[a], count[a]):
+            place, other = points[probe], b[pair]
+            within = ((self.box_low[other] <= place) & (place <= self.box_high[other])).all(axis=1)
+            pair, probe, other = pair[within], probe[within], other[within]
+            for row, edge in self._against(self.start[other], self.size[other]):
+                group = np.flatnonzero(np.diff(row, prepend=-1))
+                at = row[group]
+                deep = _depth(points[probe[row]], self.first[edge], self.last[edge], group)
+                yield a[pair[at]], other[at], deep, probe[at]
 
 
 def box_pairs(low: np.ndarray, high: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
@@ -223,18 +303,27 @@ def _joined(rows: np.ndarray, slack: float) -> np.ndarray:
     """Stretches of one face between the same two blocks, end to end and within `slack` of one line, made one; sorted
     by blocks."""
     rows = rows[np.lexsort((rows[:, 1], rows[:, 0]))]
-    kept: list[tuple[tuple[float, float], np.ndarray]] = []  # pair, and the ends (n, 2) of its stretches, two first
+    # pair, the ends (n, 2) of its stretches, two first, and the box around them: a face has few neighbours of many
+    kept: list[tuple[tuple[float, float], np.ndarray, list[float]]] = []
     for row in rows:
         pair, face = (row[0], row[1]), row[2:].reshape(2, 2)
+        box = _box(face, 4.0 * slack)
         k = len(kept) - 1
         while k >= 0 and kept[k][0] == pair:
-            if (together := _in_line(kept[k][1], face, slack)) is not None:
-                face = together
-                del kept[k]
-                k = len(kept)  # longer now, it may meet those that it did not meet before
+            west, south, east, north = kept[k][2]
+            if west <= box[2] and box[0] <= east and south <= box[3] and box[1] <= north:
+                if (together := _in_line(kept[k][1], face, slack)) is not None:
+                    face, box = together, _box(together, 4.0 * slack)
+                    del kept[k]
+                    k = len(kept)  # longer now, it may meet those that it did not meet before
             k -= 1
-        kept.append((pair, face))
-    return np.array([[*pair, *face[0], *face[1]] for pair, face in kept]).reshape(-1, 6)
+        kept.append((pair, face, box))
+    return np.array([[*pair, *face[0], *face[1]] for pair, face, _ in kept]).reshape(-1, 6)
+
+
+def _box(points: np.ndarray, grown: float) -> list[float]:
+    """Least x and y, greatest x and y."""
+    return [*(points.min(axis=0) - grown).tolist(), *(points.max(axis=0) + grown).tolist()]
 
 
 def _in_line(face: np.ndarray, more: np.ndarray, slack: float) -> np.ndarray | None:
@@ -257,10 +346,10 @@ def _in_line(face: np.ndarray, more: np.ndarray, slack: float) -> np.ndarray | N
 
 
 def _overlaps(
-    outlines: list[np.ndarray], first: np.ndarray, last: np.ndarray, owner: np.ndarray, one: np.ndarray, two: np.ndarray,
-    rounding: float,
-) -> list[Flaw]:  # fmt: skip
+    outlines: list[np.ndarray], near: _Near, owner: np.ndarray, one: np.ndarray, two: np.ndarray, rounding: float
+) -> list[Flaw]:
     """Where two blocks lie in each other by more than `rounding`: their edges cross, or one holds a place of the other."""
+    first, last = near.first, near.last
     rows: list[np.ndarray] = []  # block i, block j, depth, x, y
 
     def add(i: np.ndarray, j: np.ndarray, depth: np.ndarray, place: np.ndarray) -> None:
@@ -281,25 +370,12 @@ def _overlaps(
     add(owner[one[k]], owner[two[k]], crossing[k], where)
     # Where no edges cross, one lies in the other only with all of it. Corners, middles of edges and a place
     # inside tell, among them those that lie on the other's outline.
-    start = np.searchsorted(owner, np.arange(len(outlines) + 1))
-    pairs = np.unique(np.column_stack([owner[one], owner[two]]), axis=0) if len(one) else np.empty((0, 2), int)
-    pairs = np.concatenate([pairs, pairs[:, ::-1]])
     probes = [np.concatenate([o, 0.5 * (o + following(o)), _within(o)]) for o in outlines]
-    begin = np.cumsum([0, *map(len, probes)])
+    count = np.array([len(p) for p in probes])
     points = np.concatenate(probes)
-    for some in np.array_split(pairs, max(1, len(pairs) // PAIRS_AT_ONCE)):
-        probe_count, edge_count = np.diff(begin)[some[:, 0]], np.diff(start)[some[:, 1]]
-        pair = np.repeat(np.arange(len(some)), probe_count)
-        probe = (
-            begin[some[pair, 0]] + np.arange(len(pair)) - np.repeat(np.cumsum(probe_count) - probe_count, probe_count)
-        )
-        edges = edge_count[pair]
-        group = np.cumsum(edges) - edges
-        at = np.repeat(np.arange(len(pair)), edges)
-        edge = start[some[pair[at], 1]] + np.arange(len(at)) - group[at]
-        deep = _depth(points[probe[at]], first[edge], last[edge], group)
+    for a, b, deep, probe in near.depths(points, np.cumsum(count) - count, count):
         k = np.flatnonzero(deep > rounding)
-        add(some[pair[k], 0], some[pair[k], 1], deep[k], points[probe[k]])
+        add(a[k], b[k], deep[k], points[probe[k]])
     table = np.concatenate(rows)
     table = table[np.lexsort((-table[:, 2], table[:, 1], table[:, 0]))]
     deepest = np.ones(len(table), dtype=bool)

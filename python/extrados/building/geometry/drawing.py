@@ -94,7 +94,7 @@ def numbers(value: object, width: int, where: str) -> np.ndarray:
     """A list of lists of `width` finite numbers as an array; BadGeometry names `where` otherwise."""
     try:
         array = np.array(value, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):  # a whole number may have hundreds of digits
         array = np.empty(0)
     if array.ndim != 2 or array.shape[1] != width or not np.isfinite(array).all():
         raise BadGeometry(f"{where}: expected a list of lists of {width} numbers")

@@ -3,7 +3,7 @@
 import io
 import itertools
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -11,8 +11,8 @@ import numpy as np
 
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.drawing import GROUND_LAYER, MOST_BLOCKS, UNITS, Drawing, Layer, Polygon
-from extrados.building.geometry.linework import holds, net_of
-from extrados.building.geometry.polygons import signed_area
+from extrados.building.geometry.linework import net_of, place_in
+from extrados.building.geometry.polygons import inside, signed_area
 from extrados.schema.files import File
 
 # DXF $INSUNITS -> our unit
@@ -29,6 +29,7 @@ LEFT_OUT = {
 }  # fmt: skip
 MOST_ENTITIES = 200_000
 MOST_LINES = 200_000
+MOST_VERTICES = 2_000_000  # of all lines, those of arcs and curves by their chords
 DEEPEST = 16  # blocks within blocks
 NEAR = 0.1  # m: gaps of loose lines up to this are told
 
@@ -43,6 +44,7 @@ class _Read:
     marks: dict[str, list[np.ndarray]] = field(default_factory=dict)
     left_out: Counter[str] = field(default_factory=Counter)
     other_layers: Counter[str] = field(default_factory=Counter)
+    vertices: int = 0
 
 
 def read_dxf(
@@ -130,20 +132,23 @@ def _take(entity: Any, layer: str, means: Layer, found: _Read, name: str, sagitt
     kind = entity.dxftype()
     if kind not in CURVES:
         if kind not in LEFT_OUT:
-            handle = f" #{entity.dxf.handle}" if entity.dxf.handle else ""
             raise BadGeometry(
-                f"{name}: layer '{layer}', {kind}{handle}: is neither line nor arc; explode it, or name the layers to read "
+                f"{name}: layer '{layer}', {kind}{_handle(entity)}: is neither line nor arc; explode it, or name the layers to read "
                 "(layers = [...])"
             )
         found.left_out[LEFT_OUT[kind]] += 1
         return
     if kind == "POLYLINE" and not (entity.is_2d_polyline or entity.is_3d_polyline):
         raise BadGeometry(f"{name}: layer '{layer}', POLYLINE: is a mesh; a section is drawn with lines")
-    points = _flattened(entity, kind, sagitta)
+    try:
+        points = _flattened(entity, kind, sagitta)
+    except BadGeometry as error:
+        raise BadGeometry(f"{name}: layer '{layer}', {kind}{_handle(entity)}: {error}") from None
     if len(points) < 2:
         return
-    if not np.isfinite(points).all():
-        raise BadGeometry(f"{name}: layer '{layer}', {kind}: a coordinate is not a number")
+    found.vertices += len(points)
+    if found.vertices > MOST_VERTICES:
+        raise BadGeometry(f"{name}: its lines and the chords of its curves have more than {MOST_VERTICES:,} vertices")
     if means.role == "ground":
         found.ground.append(points)
     elif means.role == "joints":
@@ -154,38 +159,92 @@ def _take(entity: Any, layer: str, means: Layer, found: _Read, name: str, sagitt
         found.open.append((layer, entity.dxf.handle or "", points))
 
 
+def _handle(entity: Any) -> str:
+    return f" #{entity.dxf.handle}" if entity.dxf.handle else ""
+
+
 def _flattened(entity: Any, kind: str, sagitta: float) -> np.ndarray:
-    """Vertices (n, 2) of a line or curve, its chords within `sagitta` of it. Arcs are followed as arcs: the Bezier
-    curves of ezdxf's paths leave them by 0.3 mm a metre of radius."""
-    if kind == "LINE":
+    """Vertices (n, 2) of a line or curve, its chords within `sagitta` of it; BadGeometry where there would be too many, or
+    a number is none. Arcs are followed as arcs: the Bezier curves of ezdxf's paths leave them by 0.3 mm a metre of radius."""
+    flat = kind in ("LWPOLYLINE", "POLYLINE")
+    places: Iterable[Any]
+    if flat:
+        places = _polyline(entity, kind, sagitta)
+    elif kind == "LINE":
         places = [entity.dxf.start, entity.dxf.end]
-    elif kind in ("ARC", "CIRCLE", "ELLIPSE", "SPLINE"):
-        places = list(entity.flattening(sagitta))
     else:
-        if kind == "LWPOLYLINE":
-            rows = np.array(entity.get_points("xyb"), dtype=float).reshape(-1, 3)
-        else:
-            rows = np.array([(*v.dxf.location.vec2, v.dxf.bulge) for v in entity.vertices], dtype=float).reshape(-1, 3)
-        if entity.is_closed and len(rows):
-            rows = np.concatenate([rows, rows[:1]])
-        flat = [rows[:1, :2], *(_bulged(a[:2], b[:2], a[2], sagitta) for a, b in itertools.pairwise(rows))]
-        places = [(x, y, 0.0) for x, y in np.concatenate(flat).tolist()]
-        if kind == "LWPOLYLINE" or entity.is_2d_polyline:
-            places = list(entity.ocs().points_to_wcs(places))
-    return np.array([(p[0], p[1]) for p in places]).reshape(-1, 2)
+        _refuse_wide(entity, kind, sagitta)
+        places = entity.flattening(sagitta)
+    try:
+        found = [(p[0], p[1]) for p in itertools.islice(places, MOST_LINES + 1)]
+    except (ArithmeticError, ValueError, IndexError, RecursionError) as error:  # of ezdxf, at a curve that is none
+        raise BadGeometry(f"is no curve that can be followed: {error}") from None
+    if len(found) > MOST_LINES:
+        raise BadGeometry(_many(sagitta))
+    points = np.array(found).reshape(-1, 2)
+    if not np.isfinite(points).all():
+        raise BadGeometry("a coordinate is not a finite number")
+    return points
+
+
+def _many(sagitta: float) -> str:
+    return f"takes more than {MOST_LINES:,} chords that lie within {sagitta:.2g} units of the drawing of it: is it so large?"
+
+
+def _refuse_wide(entity: Any, kind: str, sagitta: float) -> None:
+    """BadGeometry where a curve holds what is no number, or is so wide that chords near it would fill the memory."""
+    if kind == "CIRCLE":
+        size = np.array([entity.dxf.radius])
+    elif kind == "ARC":  # its chords are as the root of the radius, and as its share of a turn
+        share = ((entity.dxf.end_angle - entity.dxf.start_angle) % 360.0 or 360.0) / 360.0
+        size = np.array([entity.dxf.radius * share**2])
+    elif kind == "ELLIPSE":
+        size = np.array([*entity.dxf.major_axis, entity.dxf.ratio * entity.dxf.major_axis.magnitude])
+    else:
+        points = np.array([*entity.control_points, *entity.fit_points], dtype=float).reshape(-1, 3)
+        size = np.ptp(points, axis=0) if len(points) else np.zeros(1)
+        if not np.isfinite([*entity.knots, *entity.weights]).all():
+            raise BadGeometry("a knot or a weight is not a finite number")
+    if not np.isfinite(size).all():
+        raise BadGeometry("a coordinate is not a finite number")
+    if np.sqrt(np.abs(size).max() / sagitta) > MOST_LINES:  # a circle takes 2.2 times as many
+        raise BadGeometry(_many(sagitta))
+
+
+def _polyline(entity: Any, kind: str, sagitta: float) -> list[Any]:
+    """The vertices of a polyline, with those of the chords of its arcs."""
+    if kind == "LWPOLYLINE":
+        rows = np.array(entity.get_points("xyb"), dtype=float).reshape(-1, 3)
+    else:
+        rows = np.array([(*v.dxf.location.vec2, v.dxf.bulge) for v in entity.vertices], dtype=float).reshape(-1, 3)
+    if not np.isfinite(rows).all():
+        raise BadGeometry("holds a number that is not finite")
+    if entity.is_closed and len(rows):
+        rows = np.concatenate([rows, rows[:1]])
+    flat = [rows[:1, :2]]
+    count = 1
+    for a, b in itertools.pairwise(rows):
+        flat.append(_bulged(a[:2], b[:2], a[2], sagitta))
+        count += len(flat[-1])
+        if count > MOST_LINES:
+            raise BadGeometry(_many(sagitta))
+    places = [(x, y, 0.0) for x, y in np.concatenate(flat).tolist()]
+    return list(entity.ocs().points_to_wcs(places)) if kind == "LWPOLYLINE" or entity.is_2d_polyline else places
 
 
 def _bulged(a: np.ndarray, b: np.ndarray, bulge: float, sagitta: float) -> np.ndarray:
     """Points (n, 2) after a up to b along the arc of a polyline; bulge is the tangent of a quarter of its angle."""
     chord = b - a
-    if not np.isfinite([*chord, bulge]).all():
-        raise BadGeometry("a polyline of the drawing holds a number that is not finite")
-    if bulge == 0.0 or not chord.any():
-        return b[None]
     turn = 4.0 * np.arctan(bulge)
-    radius = float(np.hypot(*chord)) / (2.0 * abs(np.sin(0.5 * turn)))
-    step = 2.0 * np.arccos(max(1.0 - sagitta / radius, 0.0))
-    count = int(np.ceil(abs(turn) / step))
+    half = abs(np.sin(0.5 * turn))
+    if half == 0.0 or not chord.any():
+        return b[None]
+    radius = float(np.hypot(*chord)) / float(2.0 * half)
+    # 1 - cos(t) = 2 sin(t / 2)^2, which keeps its figures where the arc is wide or nearly straight
+    step = 4.0 * np.arcsin(min(np.sqrt(0.5 * sagitta / radius), 1.0))
+    if not abs(turn) <= MOST_LINES * step:
+        raise BadGeometry(_many(sagitta))
+    count = max(int(np.ceil(abs(turn) / step)), 1)
     left = np.array([-chord[1], chord[0]])
     centre = 0.5 * (a + b) + 0.5 * left / np.tan(0.5 * turn)
     angle = turn * np.arange(1, count) / count
@@ -215,19 +274,22 @@ def _drawing(found: _Read, known: Mapping[str, Layer], name: str, scale: float, 
             raise BadGeometry(f"{name}: more than {MOST_LINES} pieces of lines")
         of = np.repeat(np.arange(len(pieces) + len(rims)), [len(p) for p in (*pieces, *rims)])
         net = net_of(np.concatenate([*pieces, *rims]), tolerance, NEAR, firm=of >= len(pieces))
-        closed = len(outlines)
+        closed = [points for _, _, points in outlines]
+        low, high = (np.array([end(p, axis=0) for p in closed]).reshape(-1, 2) for end in (np.min, np.max))
         for face, source in zip(net.faces, net.source, strict=True):
             drawn = of[source]
             rim = np.hypot(*(np.roll(face, -1, axis=0) - face).T).sum()
             if 2.0 * signed_area(face) < tolerance * rim:
                 continue  # a sliver between two lines that mean one
-            if (drawn >= len(pieces)).all() or any(holds(outline, face) for _, _, outline in outlines[:closed]):
+            place = place_in(face)
+            around = np.flatnonzero((low <= place).all(axis=1) & (place <= high).all(axis=1)).tolist()
+            if (drawn >= len(pieces)).all() or any(inside(closed[k], place[None])[0] for k in around):
                 continue  # it lies in an outline that is closed as drawn
             layer = Counter(found.open[k][0] for k in drawn.tolist() if k < len(pieces)).most_common(1)[0][0]
             outlines.append((layer, "", face))
         loose = [(end.place, end.gap) for end in net.loose]
         notes.append(
-            f"{len(outlines) - closed} blocks joined from {len(lines)} loose lines and arcs, ends within "
+            f"{len(outlines) - len(closed)} blocks joined from {len(lines)} loose lines and arcs, ends within "
             f"{1e3 * tolerance:g} mm (join_tolerance)"
         )
     if not outlines:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from extrados.building.errors import BadGeometry
 from extrados.building.geometry.contacts import box_pairs
 from extrados.building.geometry.polygons import inside, properties, signed_area
 
@@ -117,29 +118,57 @@ def _clusters(points: np.ndarray, tolerance: float) -> tuple[np.ndarray, int]:
 
 def _pruned(ends: np.ndarray, edges: np.ndarray, tolerance: float, near: float) -> tuple[np.ndarray, list[LooseEnd]]:
     """Edges that remain when those with a free end are taken away, again and again; and the free ends to begin with."""
-    kept = np.ones(len(edges), dtype=bool)
     degree = np.bincount(edges.ravel(), minlength=len(ends))
     free = np.flatnonzero(degree == 1)
-    loose = []
-    for k in free.tolist():
-        own = np.flatnonzero((edges == k).any(axis=1))[0]
-        others = np.delete(edges, own, axis=0)
-        a, b = ends[others[:, 0]], ends[others[:, 1]]
-        gap = np.inf
-        if len(others):
-            along = b - a
-            share = np.clip(((ends[k] - a) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
-            distance = np.hypot(*(a + share[:, None] * along - ends[k]).T)
-            # A line that shares the other end of this one is near it whatever this end does.
-            distance[(others == edges[own][edges[own] != k]).any(axis=1)] = np.inf
-            gap = float(distance.min())
-        loose.append(LooseEnd((float(ends[k, 0]), float(ends[k, 1])), gap if tolerance < gap <= near else None))
-    while True:
-        degree = np.bincount(edges[kept].ravel(), minlength=len(ends))
-        hanging = kept & (degree[edges] == 1).any(axis=1)
-        if not hanging.any():
-            return kept, loose
-        kept &= ~hanging
+    gaps = _gaps(ends, edges, free, near)
+    loose = [
+        LooseEnd((x, y), gap if tolerance < gap <= near else None)
+        for (x, y), gap in zip(ends[free].tolist(), gaps.tolist(), strict=True)
+    ]
+    kept = np.ones(len(edges), dtype=bool)
+    at = np.argsort(edges.ravel(), kind="stable") // 2  # the edges at each point, point by point
+    begin = np.concatenate([[0], np.cumsum(degree)]).tolist()
+    left, waiting = degree.tolist(), free.tolist()
+    while waiting:
+        k = waiting.pop()
+        if left[k] != 1:
+            continue
+        (edge,) = (e for e in at[begin[k] : begin[k + 1]].tolist() if kept[e])
+        kept[edge] = False
+        for end in edges[edge].tolist():
+            left[end] -= 1
+            if left[end] == 1:
+                waiting.append(end)
+    return kept, loose
+
+
+def _gaps(ends: np.ndarray, edges: np.ndarray, free: np.ndarray, near: float) -> np.ndarray:
+    """How far each free end is from the nearest edge that does not meet its own; infinite where none is within `near`."""
+    gaps = np.full(len(free), np.inf)
+    number = np.full(len(ends), -1)
+    number[free] = np.arange(len(free))
+    own = np.empty(len(free), dtype=int)  # the one edge of each, and where that begins
+    for side in (0, 1):
+        here = np.flatnonzero(number[edges[:, side]] >= 0)
+        own[number[edges[here, side]]] = here
+    root = edges[own].sum(axis=1) - free
+    a, b = ends[edges[:, 0]], ends[edges[:, 1]]
+    low = np.concatenate([np.minimum(a, b), ends[free] - near])
+    high = np.concatenate([np.maximum(a, b), ends[free] + near])
+    try:
+        first, second = box_pairs(low, high, max(MOST_PAIRS, MOST_NEIGHBOURS * len(low)))
+    except BadGeometry:
+        return gaps  # of a hatch, or all in one place: no gap says anything there
+    edge, k = np.minimum(first, second), np.maximum(first, second) - len(edges)
+    other = (edge < len(edges)) & (k >= 0)
+    edge, k = edge[other], k[other]
+    # A line that shares the other end of this one is near it whatever this end does.
+    other = (edge != own[k]) & (edges[edge] != root[k, None]).all(axis=1)
+    edge, k = edge[other], k[other]
+    along, off = b[edge] - a[edge], ends[free[k]] - a[edge]
+    share = np.clip((off * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
+    np.minimum.at(gaps, k, np.hypot(*(off - share[:, None] * along).T))
+    return gaps
 
 
 def _faces(ends: np.ndarray, edges: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray]]:
@@ -176,11 +205,11 @@ def _faces(ends: np.ndarray, edges: np.ndarray) -> tuple[list[np.ndarray], list[
     return faces, sides
 
 
-def holds(outline: np.ndarray, face: np.ndarray) -> bool:
-    """True where the middle of a face, or else a place beside its longest edge, lies in an outline."""
+def place_in(face: np.ndarray) -> np.ndarray:
+    """The middle of a face, or else, where that lies outside, a place beside its longest edge (2)."""
     middle = properties(face)[1]
     if not inside(face, middle[None])[0]:
         along = np.roll(face, -1, axis=0) - face
         k = int(np.hypot(*along.T).argmax())
         middle = face[k] + 0.5 * along[k] + 1e-3 * np.array([-along[k, 1], along[k, 0]])
-    return bool(inside(outline, middle[None])[0])
+    return middle

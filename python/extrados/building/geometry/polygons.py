@@ -2,6 +2,8 @@
 
 import numpy as np
 
+EDGES_AT_ONCE = 200_000  # pairs of edges that are looked at together
+
 
 def following(values: np.ndarray) -> np.ndarray:
     """Each vertex replaced by the next (np.roll is several times slower on a few rows)."""
@@ -97,10 +99,15 @@ def crossing_edges(outline: np.ndarray) -> tuple[int, int] | None:
     def turn(o: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         return (u[..., 0] - o[..., 0]) * (v[..., 1] - o[..., 1]) - (u[..., 1] - o[..., 1]) * (v[..., 0] - o[..., 0])
 
-    i, j = np.triu_indices(n, 2)
-    apart = ~((i == 0) & (j == n - 1))
-    i, j = i[apart], j[apart]
-    one = turn(a[i], b[i], a[j]) * turn(a[i], b[i], b[j])
-    two = turn(a[j], b[j], a[i]) * turn(a[j], b[j], b[i])
-    crossed = np.flatnonzero((one < 0.0) & (two < 0.0))
-    return (int(i[crossed[0]]), int(j[crossed[0]])) if len(crossed) else None
+    at_once = max(1, EDGES_AT_ONCE // n)
+    for begin in range(0, n, at_once):  # so that the memory is bounded
+        i, j = np.triu_indices(min(at_once, n - begin), begin + 2, n)
+        i = i + begin
+        apart = ~((i == 0) & (j == n - 1))
+        i, j = i[apart], j[apart]
+        one = turn(a[i], b[i], a[j]) * turn(a[i], b[i], b[j])
+        two = turn(a[j], b[j], a[i]) * turn(a[j], b[j], b[i])
+        crossed = np.flatnonzero((one < 0.0) & (two < 0.0))
+        if len(crossed):
+            return int(i[crossed[0]]), int(j[crossed[0]])
+    return None

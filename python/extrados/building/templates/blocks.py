@@ -14,10 +14,11 @@ from extrados.building.files import LARGEST_FILE, read
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.chains import with_chains
 from extrados.building.geometry.compas import is_compas, read_compas
-from extrados.building.geometry.contacts import shortest_joint
+from extrados.building.geometry.contacts import MOST_NEIGHBOURS, box_pairs, shortest_joint
 from extrados.building.geometry.drawing import Drawing, Layer, Polygon, parsed, read_json
 from extrados.building.geometry.dxf import SAGITTA, read_dxf
 from extrados.building.geometry.inspection import Inspection, areas, inspect, refuse
+from extrados.building.geometry.linework import MOST_PAIRS
 from extrados.building.geometry.polygons import properties
 from extrados.building.structure import Structure
 from extrados.schema.quantities import Density, Length
@@ -88,14 +89,24 @@ def _groups(inspection: Inspection) -> dict[str, list[int]]:
     middle = 0.5 * (contacts.p + contacts.q)
     reach = max(MARKS, shortest_joint(inspection.tolerance))
     for layer, lines in inspection.drawing.marks.items():
-        a, along = lines[:, :2], lines[:, 2:] - lines[:, :2]
-        share = ((middle[:, None] - a) * along).sum(axis=2) / np.maximum((along**2).sum(axis=1), 1e-300)
-        off = a + np.clip(share, 0.0, 1.0)[..., None] * along - middle[:, None]
-        marked = np.flatnonzero(np.hypot(off[..., 0], off[..., 1]).min(axis=1) <= reach).tolist()
+        marked = _marked(middle, lines, reach)
         if not marked:
             raise BadGeometry(f"the lines of layer '{layer}' mark no joint: none passes the middle of one within 10 mm")
         found[layer] = marked
     return found
+
+
+def _marked(places: np.ndarray, lines: np.ndarray, reach: float) -> list[int]:
+    """The places (n, 2) that lines (k, 4) pass within reach [m]."""
+    low = np.concatenate([places - reach, np.minimum(lines[:, :2], lines[:, 2:])])
+    high = np.concatenate([places + reach, np.maximum(lines[:, :2], lines[:, 2:])])
+    first, second = box_pairs(low, high, max(MOST_PAIRS, MOST_NEIGHBOURS * len(low)))
+    met = (first < len(places)) & (second >= len(places))
+    j, line = first[met], lines[second[met] - len(places)]
+    a, along = line[:, :2], line[:, 2:] - line[:, :2]
+    share = ((places[j] - a) * along).sum(axis=1) / np.maximum((along**2).sum(axis=1), 1e-300)
+    off = a + np.clip(share, 0.0, 1.0)[:, None] * along - places[j]
+    return np.unique(j[np.hypot(*off.T) <= reach]).tolist()
 
 
 class BlockTable(Table):

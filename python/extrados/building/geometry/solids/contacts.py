@@ -5,11 +5,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from extrados.building.errors import BadGeometry
 from extrados.building.geometry.solids.polyhedra import Polyhedron, overlap_depth
 
 GROUND = -1
 Point = tuple[float, float]
 PARALLEL = 1e-3  # sine of the angle between faces that may still lie on each other
+#: Pairs of parts that are looked at: so many, or so many times the parts; in masonry a stone has about ten neighbours
+MOST_PAIRS, MOST_NEIGHBOURS = 100_000, 50
 SMALLEST = 1e-6  # of the greater face: less that two faces share is an edge, no contact
 
 
@@ -32,13 +35,19 @@ def near_pairs(low: np.ndarray, high: np.ndarray, owner: np.ndarray, reach: floa
     order = np.argsort(low[:, axis], kind="stable")
     start = low[order, axis]
     last = np.searchsorted(start, high[order, axis] + reach, side="right")
-    found = []
+    found, total = [], 0
     others = [k for k in range(3) if k != axis]
     for k, i in enumerate(order):
         j = order[k + 1 : last[k]]
         near = (low[j][:, others] <= high[i, others] + reach) & (high[j][:, others] >= low[i, others] - reach)
         j = j[near.all(axis=1) & (owner[j] != owner[i])]
         found.append(np.column_stack([np.full(len(j), i), j]))
+        total += len(j)
+        if total > (most := max(MOST_PAIRS, MOST_NEIGHBOURS * len(low))):
+            raise BadGeometry(
+                f"the boxes around {len(low)} solids meet in more than {most:,} pairs, the most that are looked at: many of "
+                "them lie over each other"
+            )
     pairs = np.concatenate(found) if found else np.empty((0, 2), dtype=int)
     pairs = np.sort(pairs, axis=1)
     return pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]

@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 
 from extrados.building.errors import BadGeometry
-from extrados.building.geometry.compas import mesh_of, nodes_of
+from extrados.building.geometry.compas import FARTHEST, mesh_of, nodes_of
 from extrados.building.geometry.drawing import UNITS
 from extrados.building.geometry.solids.assembly import MOST_SOLIDS, MOST_TOLD, Stone
 from extrados.building.geometry.solids.polyhedra import Polyhedron, hull, moments
 
 MOST_VERTICES = 2_000_000
+MOST_CORNERS = 2_000  # of a convex body: bodies that overlap are compared edge by edge
 CONVEX = 1e-4  # of its volume: what the hull of a convex body may have more
 PLANE = 1e-5  # how far facets of one face of a mesh may turn
 MERGED = 1e-6  # of the size of a file: corners of STL triangles nearer than this are one
@@ -82,6 +83,8 @@ def read_stl(content: bytes, name: str) -> list[Mesh]:
     solids = _stl_text(content, name) if _is_text(content) else {"": _stl_binary(content, name)}
     found: list[Mesh] = []
     size = max(float(np.ptp(t.reshape(-1, 3), axis=0).max()) for t in solids.values())
+    if not size * MERGED > 0.0:
+        raise BadGeometry(f"{name}: all of its corners lie in one place")
     for title, triangles in solids.items():
         corners = triangles.reshape(-1, 3)
         _, first, inverse = np.unique(
@@ -141,11 +144,15 @@ def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]]) -> Polyhedro
         raise ValueError(f"is not closed: {open_edges} edges do not have a face on either side")
     turned = _turned(faces, around_edge)
     triangles = np.array([(f[0], b, c) for f in turned for b, c in itertools.pairwise(f[1:])])
+    if not np.ptp(points, axis=0).all():
+        raise ValueError("is flat: it has no volume")
     volume = abs(moments(points, triangles)[0])
     try:
         whole = hull(points, PLANE)
     except ValueError:
         raise ValueError("is flat: it has no volume") from None
+    if len(whole.vertices) > MOST_CORNERS:
+        raise ValueError(f"is of {len(whole.vertices)} corners, at most {MOST_CORNERS} are looked at: draw it coarser")
     around = moments(whole.vertices, whole.triangles)[0]
     if volume < (1.0 - CONVEX) * around:
         raise ValueError(
@@ -202,7 +209,7 @@ def _numbers(words: Sequence[str], where: str, what: str) -> list[float]:
         values = [float(w) for w in words]
     except ValueError:
         values = []
-    if len(values) != 3 or not np.isfinite(values).all() or max(map(abs, values)) > 1e9:
+    if len(values) != 3 or not np.isfinite(values).all() or max(map(abs, values)) > FARTHEST:
         raise BadGeometry(f"{where}: expected {what}, found '{' '.join(words)[:40]}'")
     return values
 
@@ -223,8 +230,8 @@ def _stl_binary(content: bytes, name: str) -> np.ndarray:
         raise BadGeometry(f"{name}: {count} triangles, at most {MOST_VERTICES // 3}")
     row = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("extra", "<u2")])
     found = np.frombuffer(content, row, count, 84)["corners"].astype(float)
-    if not np.isfinite(found).all():
-        raise BadGeometry(f"{name}: holds corners that are no numbers")
+    if not (np.abs(found) <= FARTHEST).all():  # NaN too
+        raise BadGeometry(f"{name}: holds corners that are no numbers within {FARTHEST:g}")
     return found
 
 

@@ -10,6 +10,8 @@ from scipy.spatial import ConvexHull, QhullError
 
 FLAT = 1e-7  # facets of a hull whose normals and offsets (over its size) differ less are one face
 
+AT_ONCE = 2_000_000  # corners along axes that are looked at together
+
 
 @dataclass(frozen=True)
 class Polyhedron:
@@ -175,16 +177,24 @@ def overlap_depth(one: Polyhedron, other: Polyhedron) -> float:
     """
 
     def depth(axes: np.ndarray) -> float:
-        p, q = one.vertices @ axes.T, other.vertices @ axes.T
-        return float(np.minimum(p.max(axis=0) - q.min(axis=0), q.max(axis=0) - p.min(axis=0)).min())
+        # as many at a time as have some millions of places of corners, so that the memory is bounded
+        least = []
+        for k in range(0, len(axes), at_once):
+            p, q = one.vertices @ axes[k : k + at_once].T, other.vertices @ axes[k : k + at_once].T
+            least.append(float(np.minimum(p.max(axis=0) - q.min(axis=0), q.max(axis=0) - p.min(axis=0)).min()))
+        return min(least)
 
+    at_once = max(1, AT_ONCE // max(len(one.vertices), len(other.vertices)))
     found = depth(np.concatenate([one.normals, other.normals]))
     if found <= 0.0:
         return found
     u = one.vertices[one.edges[:, 1]] - one.vertices[one.edges[:, 0]]
     v = other.vertices[other.edges[:, 1]] - other.vertices[other.edges[:, 0]]
     u, v = u / np.linalg.norm(u, axis=1)[:, None], v / np.linalg.norm(v, axis=1)[:, None]
-    axes = np.cross(u[:, None], v[None]).reshape(-1, 3)
-    length = np.linalg.norm(axes, axis=1)
-    axes = axes[length > 1e-6] / length[length > 1e-6, None]
-    return min(found, depth(axes)) if len(axes) else found
+    some = max(1, at_once // len(v))
+    for k in range(0, len(u), some):
+        axes = np.cross(u[k : k + some, None], v[None]).reshape(-1, 3)
+        length = np.linalg.norm(axes, axis=1)
+        axes = axes[length > 1e-6] / length[length > 1e-6, None]
+        found = min(found, depth(axes)) if len(axes) else found
+    return found
