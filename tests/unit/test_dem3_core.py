@@ -141,6 +141,30 @@ def test_a_plane_problem_is_that_of_the_plane_solver() -> None:
         assert run.residual < 1e-4
 
 
+def test_a_block_that_slides_off_an_edge_falls_as_in_the_plane() -> None:
+    """The contact goes with the last of the face that bears it, and holds nothing beside the edge."""
+    size, at = 0.2, 20.0 - 0.2
+    outline = np.array([[at, 0], [at + size, 0], [at + size, size], [at, size]]) - np.array([0.5 * size, 0.0])
+    floor = np.array([[-20, -1], [20, -1], [20, 0], [-20, 0.0]])
+    mass = DENSITY * size**2
+    bodies = dem.Bodies(
+        np.array([[at, 0.5 * size], [0, -0.5]]), np.array([mass, 0.0]), np.array([mass * size**2 / 6.0, 0.0]),
+        [outline, floor], [0, 1], [np.ones(4, dtype=bool)] * 2, 1.0, [dem.Law(1e9, 1e9, 0.0, damping=1e-5)],
+    )  # fmt: skip
+    block = box((at - 0.5 * size, -0.5, 0), (at + 0.5 * size, 0.5, size))
+    for speed in (1.0, 3.0):
+        given = {"end_time": 0.4 / speed + 0.2, "step": 5e-6, "residual_limit": 1.0}
+        plane = dem.run(bodies, dem.Options(**given), rate=np.array([[speed, 0, 0], np.zeros(3)]))
+        space = dem3.run(
+            solids([block], Law(1e9, 1e9, 0.0, 1e-5)),
+            Options(**given),
+            rate=np.array([[speed, 0, 0, 0, 0, 0], np.zeros(6)]),
+        )
+        fallen = plane.place[0, 0, 1] - plane.place[-1, 0, 1]
+        assert fallen > 0.1
+        assert space.place[0, 0, 2] - space.place[-1, 0, 2] == pytest.approx(fallen, rel=5e-3)
+
+
 def test_both_planes_rock_alike() -> None:
     along, _ = rocking(0.8)
     across, _ = rocking(0.8, (0.0, 1.0, 0.0))
