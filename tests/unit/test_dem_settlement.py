@@ -95,6 +95,14 @@ def test_what_stands_by_its_weight_is_not_doubted(tmp_path, name, space) -> None
     assert not any("wedged" in text or "no other method" in text for text in found.warnings)
 
 
+@pytest.mark.parametrize("space", ["", "direction = 0.0\n"], ids=["plane", "space"])
+def test_springs_that_come_to_no_end_accuse_nothing(tmp_path, monkeypatch, space) -> None:
+    monkeypatch.setattr(standing, "SETTLING", 16)
+    found = answered(tmp_path, keystone(-0.3), analysis=f'solver = "nonsmooth"\n{space}')
+    assert found.status == "ok" and "jamming" not in found.answer
+    assert any("does not come to rest in 16 steps" in text for text in found.warnings)
+
+
 @pytest.mark.parametrize(
     ("space", "told"),
     [

@@ -39,17 +39,17 @@ def _compared(
 ) -> Result:  # fmt: skip
     """What is found, with what other methods say of its standing under the own weight."""
     alone = left_out(model)
-    doubt = ""
+    doubt, warning = "", ""
     try:
         with interruptible():  # Ctrl-C between two runs stops the next one
             result = find()
             if options.rigid and not alone and result.status == "ok":
-                doubt = jammed(model, context.threads)
+                doubt, warning = jammed(model, context.threads)
     except dem_model.Falls as error:
         told = alone or against_limit(context.building, False)
         raise Refused(f"{error}; {told}" if told else str(error), WHOLE) from None
     if doubt:
-        result.answer += " That it stands as it begins may be by jamming alone: settled on springs it falls."
+        result.answer += f" {doubt}"
     told = alone or against_limit(context.building, True)
-    result.warnings += [text for text in (doubt, told) if text]
+    result.warnings += [text for text in (warning, told) if text]
     return result
