@@ -25,7 +25,7 @@ JAMMED = (
     "it stands on rigid contacts by forces that its weight does not call up, as friction holds a stone that is wedged in; "
     "on springs, which begin without such forces,"
 )
-#: Steps of springs in which the cross-vault of cases/solid comes to rest, 14 times over
+#: Steps of springs in which cases/solid/dem-cross-vault comes to rest, 14 times over
 SETTLING = 20_000
 #: Walls of more joints are not held against other methods, which would take as long as the elements.
 MOST_JOINTS = 3000
