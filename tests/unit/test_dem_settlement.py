@@ -8,6 +8,7 @@ import pytest
 
 import extrados
 from extrados.analyses.context import Context
+from extrados.analyses.dem import standing
 from extrados.analyses.dem.model import make_model
 from extrados.analyses.dem.settlement import TIMES, closed_settlement, farthest_settlement
 from extrados.building.geometry.convex import overlap_depth
@@ -21,24 +22,29 @@ OVERHANG = {
     "base": [[0, 0], [0.5, 0], [0.5, 0.5], [0, 0.5]],
     "slab": [[0.02, 0.5], [1.02, 0.5], [1.02, 0.7], [0.02, 0.7]],
 }
-KEYSTONE = {  # wider below than above
-    "left": [[-1, 0], [-0.3, 0], [-0.3, 1], [-0.2, 2], [-1, 2]],
-    "key": [[-0.3, 1], [0.3, 1], [0.2, 2], [-0.2, 2]],
-    "right": [[0.3, 0], [1, 0], [1, 2], [0.2, 2], [0.3, 1]],
-}
 
 
-def answered(tmp_path, stones, joints="friction = 0.7"):
+def keystone(spread):
+    """Between two piers a stone 1 m high, whose sides spread downwards by a share of that."""
+    top = 0.3 - spread
+    return {
+        "left": [[-1, 0], [-0.3, 0], [-0.3, 1], [-top, 2], [-1, 2]],
+        "key": [[-0.3, 1], [0.3, 1], [top, 2], [-top, 2]],
+        "right": [[0.3, 0], [1, 0], [1, 2], [top, 2], [0.3, 1]],
+    }
+
+
+def answered(tmp_path, stones, joints="friction = 0.7", analysis=""):
     blocks = [{"name": name, "points": points} for name, points in stones.items()]
     (tmp_path / "stones.json").write_text(json.dumps({"unit": "m", "blocks": blocks}))
     deck = tmp_path / "deck.toml"
     deck.write_text(
-        f'[structure]\nkind = "blocks"\nfile = "stones.json"\n[joints]\n{joints}\n[[analysis]]\nkind = "dem"\n'
+        f'[structure]\nkind = "blocks"\nfile = "stones.json"\n[joints]\n{joints}\n[[analysis]]\nkind = "dem"\n{analysis}'
     )
     return extrados.run(deck).results[0]
 
 
-@pytest.mark.parametrize(("stones", "who"), [(SLAB, "slab"), (OVERHANG, "slab"), (KEYSTONE, "key")])
+@pytest.mark.parametrize(("stones", "who"), [(SLAB, "slab"), (OVERHANG, "slab"), (keystone(0.1), "key")])
 def test_what_falls_while_it_settles_is_refused(tmp_path, stones, who) -> None:
     found = answered(tmp_path, stones)
     assert found.status == "refused"
@@ -47,13 +53,73 @@ def test_what_falls_while_it_settles_is_refused(tmp_path, stones, who) -> None:
 
 def test_limit_analysis_is_asked_too(tmp_path) -> None:
     assert "limit analysis agrees: it stands only when pushed sideways" in answered(tmp_path, SLAB).reason
-    assert "as friction holds a stone that is wedged in" in answered(tmp_path, KEYSTONE).reason
+    assert "as friction holds a stone that is wedged in" in answered(tmp_path, keystone(0.1)).reason
 
 
 def test_elements_held_by_mortar_say_that_limit_analysis_disagrees(tmp_path) -> None:
     found = answered(tmp_path, OVERHANG, 'friction = 0.7\ncohesion = "0.5 MPa"\ntension = "0.5 MPa"')
     assert found.status == "ok"
     assert any("by the cohesion and tension of its joints" in text for text in found.warnings)
+
+
+@pytest.mark.parametrize(
+    ("space", "spread"),
+    [("", 0.15), ("direction = 0.0\n", 0.05), ("direction = 0.0\n", 0.01)],
+    ids=["plane", "space", "slight"],
+)
+def test_what_rigid_contacts_hold_by_jamming_is_doubted(tmp_path, space, spread) -> None:
+    found = answered(tmp_path, keystone(spread), analysis=f'solver = "nonsmooth"\n{space}')
+    assert found.status == "ok" and "stands under its own weight" in found.answer
+    assert "by jamming alone: settled on springs it falls" in found.answer
+    assert any("by forces that its weight does not call up" in text and "key falls" in text for text in found.warnings)
+
+
+@pytest.mark.parametrize("space", ["", "direction = 0.0\n"], ids=["plane", "space"])
+@pytest.mark.parametrize("spread", [-0.01, -0.1, -0.3])
+def test_a_keystone_that_sits_is_not_doubted(tmp_path, space, spread) -> None:
+    """One of slight taper sinks farther than closed joints give, until it sits."""
+    found = answered(tmp_path, keystone(spread), analysis=f'solver = "nonsmooth"\n{space}')
+    assert found.status == "ok" and "stands under its own weight" in found.answer
+    assert "jamming" not in found.answer and not any("wedged" in text for text in found.warnings)
+
+
+@pytest.mark.parametrize("space", ["", "direction = 0.0\n"], ids=["plane", "space"])
+@pytest.mark.parametrize("name", ["column", "arch", "leaning"])
+def test_what_stands_by_its_weight_is_not_doubted(tmp_path, name, space) -> None:
+    deck = tmp_path / "deck.toml"
+    deck.write_text(
+        f'[structure]\n{STANDING[name]}\n[[analysis]]\nkind = "dem"\nsolver = "nonsmooth"\nend_time = 0.05\n{space}'
+    )
+    found = extrados.run(deck).results[0]
+    assert found.status == "ok" and "jamming" not in found.answer
+    assert not any("wedged" in text or "no other method" in text for text in found.warnings)
+
+
+@pytest.mark.parametrize("space", ["", "direction = 0.0\n"], ids=["plane", "space"])
+def test_springs_that_come_to_no_end_accuse_nothing(tmp_path, monkeypatch, space) -> None:
+    monkeypatch.setattr(standing, "SETTLING", 16)
+    found = answered(tmp_path, keystone(-0.3), analysis=f'solver = "nonsmooth"\n{space}')
+    assert found.status == "ok" and "jamming" not in found.answer
+    assert any("does not come to rest in 16 steps" in text for text in found.warnings)
+
+
+@pytest.mark.parametrize(
+    ("space", "told"),
+    [
+        ("", "it has 9 joints, and they are asked of up to 8"),
+        ("direction = 0.0\n", "it has 8 solids, and they are asked of up to 7"),
+    ],
+    ids=["plane", "space"],
+)
+def test_what_is_too_large_for_other_methods_says_so(tmp_path, monkeypatch, space, told) -> None:
+    monkeypatch.setattr(standing, "MOST_JOINTS", 8)
+    monkeypatch.setattr(standing, "MOST_SOLIDS", 7)
+    arch = 'kind = "arch"\nradius = 1.0\nthickness = 0.2\nembrace = 150.0\nvoussoirs = 8'
+    deck = tmp_path / "deck.toml"
+    text = f'[structure]\n{arch}\n[[analysis]]\nkind = "dem"\n{space}'
+    for solver in ("compliant", "nonsmooth"):
+        deck.write_text(f'{text}solver = "{solver}"\n')
+        assert any(told in warning for warning in extrados.run(deck).results[0].warnings)
 
 
 STANDING = {

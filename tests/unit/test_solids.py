@@ -16,6 +16,7 @@ from extrados.building.errors import BadGeometry, NoView
 from extrados.building.geometry.solids.assembly import SolidAssembly, Stone, assemble, mass_properties
 from extrados.building.geometry.solids.contacts import touching
 from extrados.building.geometry.solids.polyhedra import Polyhedron, box, cut, hull, moments, overlap_depth, prism
+from extrados.building.templates.cross_vault import LEAST_PIECE
 from extrados.decks.reader import DeckError, make_deck
 from extrados.running.check import check_building, write_solids
 
@@ -203,6 +204,40 @@ def test_head_joints_do_not_stand_above_each_other(lengths: tuple[float, ...]) -
         below, above = middle[level == k], middle[level == k + 1]
         apart = np.linalg.norm(below[:, None, :2] - above[None, :, :2], axis=2)
         assert apart.min() > 0.09
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"voussoirs": 16, "stone_length": 0.9},
+        {"voussoirs": 8, "stone_length": 0.8, "oblong": 1.5},
+        {"voussoirs": 12, "stone_length": 0.5, "embrace": 180, "springers": 2},
+        {"voussoirs": 16, "stone_length": 0.7, "springers": 0},
+    ],
+    ids=["square", "oblong", "round", "without springers"],
+)
+def test_every_stone_of_a_groin_vault_has_a_bed(given: dict[str, Any]) -> None:
+    """Its course's lower joint bears it on the course below or the ground, a groin voussoir in both webs, over at least a
+    share of its length; and the bond cuts the vault into other stones, not into another vault."""
+    vault = {"kind": "cross-vault", "radius": 3, "thickness": 0.4, "embrace": 150, **given}
+    made = building(vault).solids()
+
+    def course(block: int) -> int:
+        if block < 0 or made.block_names[block].startswith("springer"):
+            return 0
+        return int(made.block_names[block].split("course ")[1].split(",")[0])
+
+    least = LEAST_PIECE * vault["stone_length"] * vault["thickness"]
+    for k, name in enumerate(made.block_names):
+        if name.startswith("springer"):
+            continue
+        sides = ((made.a, made.b), (made.b, made.a))
+        beds = [j for one, two in sides for j in np.flatnonzero(one == k) if course(two[j]) < course(k)]
+        across = {tuple(np.abs(np.round(made.normal[j, :2], 9)).argsort()) for j in beds if made.area[j] > least}
+        assert len(across) == (2 if name.startswith("groin") else 1), name
+    whole = building({key: value for key, value in vault.items() if key != "stone_length"}).solids()
+    assert made.mass.sum() == pytest.approx(whole.mass.sum(), rel=1e-12)
+    assert made.mass @ made.centroid == pytest.approx(whole.mass @ whole.centroid, rel=1e-9, abs=1e-6)
 
 
 @pytest.mark.parametrize(

@@ -22,6 +22,7 @@ MODES = ("#f4f1ea", "#cfe3d6", "#f2c28b", "#c8553d")
 #: Marks labels that are spread as a figure is saved
 LETTER = "letter"
 RINGS = (9.0, 12.0, 18.0, 26.0)  # points from the place
+LEGEND_LINE, LEGEND_LETTER = 0.55, 0.062  # width of an entry of a legend without its letters, and of a letter [in]
 RC = {
     "font.size": 9, "axes.titlesize": 10, "axes.labelsize": 9, "legend.fontsize": 8, "figure.dpi": 150,
     "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
@@ -92,11 +93,13 @@ def legend_below(fig: Figure, ax: Axes) -> None:
 
 
 def legend_above(ax: Axes, handles: list | None = None, labels: list[str] | None = None) -> None:
-    """The legend of `ax` over its upper right corner, in rows of four, where curves fill all of it."""
+    """The legend of `ax` over its upper right corner, in rows of up to four, where curves fill all of it."""
     if handles is None or labels is None:
         handles, labels = ax.get_legend_handles_labels()
+    entry = LEGEND_LINE + LEGEND_LETTER * max(map(len, labels), default=0)
+    fitting = int(ax.get_figure(root=True).get_figwidth() / entry)
     ax.legend(
-        handles, labels, ncols=min(max(1, len(labels)), 4), loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.0,
+        handles, labels, ncols=max(1, min(len(labels), fitting, 4)), loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.0,
         borderpad=0.1,
     )  # fmt: skip
 

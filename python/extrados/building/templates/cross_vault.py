@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from extrados.building.building import Building
     from extrados.building.mesh.shells import ShellMesh, ShellOptions
 
-LEAST_PIECE = 0.3  # of a stone's length: a shorter piece joins its neighbour
+LEAST_PIECE = 0.3  # of a stone's length: where the bed of a piece is shorter, it joins its neighbour
 QUARTER = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 SWAP = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 CORNERS = ("north-east", "north-west", "south-west", "south-east")
@@ -30,9 +30,10 @@ def make_cross_vault(
     """Two equal barrels over a bay: radius of the centre line, thickness, edge [m], embrace [deg].
 
     Four webs meet along the diagonals and reach `edge` beyond the corner of the extrados at the springing. A half web has
-    voussoirs / 2 courses, divided in stones of `stone_length` along the barrel, set off by half in every other course; the
-    lowest `springers` courses of both webs of a corner are one stone. across: length over width of the bay, by which the
-    whole is stretched in y; the barrel across the width is then an ellipse of the same rise.
+    voussoirs / 2 courses, divided in stones of `stone_length` along the barrel, set off by half in every other course; those
+    of both webs at the groin are one voussoir with an arm in either, while whole courses are mitred there. The lowest
+    `springers` courses of both webs of a corner are one stone. across: length over width of the bay, by which the whole is
+    stretched in y; the barrel across the width is then an ellipse of the same rise.
     """
     inner, outer = radius - 0.5 * thickness, radius + 0.5 * thickness
     half = np.radians(0.5 * embrace)
@@ -44,26 +45,31 @@ def make_cross_vault(
     down = np.array([np.cos(half), 0.0, -np.sin(half)])  # out of the lowest bed
     stretch = np.diag([1.0, across, 1.0])
     stones: list[Stone] = []
-    seats: list[tuple[int, np.ndarray]] = []
+    feet: dict[int, np.ndarray] = {}  # of parts that stand on the ground, by their identity
     for k in range(4):
         turn = stretch @ np.linalg.matrix_power(QUARTER, k)
         ways = ((turn, f"right of the {WEBS[k]} web"), (turn @ SWAP, f"left of the {WEBS[k - 1]} web"))
-        corner: list[Polyhedron] = []
-        for way, where in ways:
-            for i, course in enumerate(courses):
-                for n, piece in enumerate(course, start=1):
-                    placed = piece.moved(way)
-                    number = len(stones)
-                    if i < springers:
-                        corner.append(placed)
-                    else:
-                        stones.append(Stone(f"stone {n} of course {i + 1}, {where}", [placed], density))
-                    if i == 0:
-                        foot = int((piece.normals @ down).argmax())
-                        seats.append((-1 - k if springers else number, placed.vertices[list(placed.faces[foot])][::-1]))
+        springer: list[Polyhedron] = []
+        for i, course in enumerate(courses):
+            webs = {where: [piece.moved(way) for piece in course] for way, where in ways}
+            if i == 0:
+                for piece, *placed in zip(course, *webs.values(), strict=True):
+                    foot = int((piece.normals @ down).argmax())
+                    feet |= {id(part): part.vertices[list(part.faces[foot])][::-1] for part in placed}
+            if i < springers:
+                springer += [part for web in webs.values() for part in web]
+                continue
+            if stone_length is not None:
+                groin = [web.pop() for web in webs.values()]
+                stones.append(Stone(f"groin voussoir of course {i + 1}, {CORNERS[k]}", groin, density))
+            stones += [
+                Stone(f"stone {n} of course {i + 1}, {where}", [part], density)
+                for where, web in webs.items()
+                for n, part in enumerate(web, start=1)
+            ]
         if springers:
-            stones.append(Stone(f"springer {CORNERS[k]}", corner, density))
-            seats = [(len(stones) - 1 if block == -1 - k else block, points) for block, points in seats]
+            stones.append(Stone(f"springer {CORNERS[k]}", springer, density))
+    seats = [(n, feet[id(part)]) for n, stone in enumerate(stones) for part in stone.parts if id(part) in feet]
     return assemble(stones, seats=seats, what="cross-vault")
 
 
@@ -71,14 +77,15 @@ def _course(
     inner: float, outer: float, low: float, high: float, reach: float, length: float | None, half: bool
 ) -> list[Polyhedron]:
     """The stones of a course of the half web x > 0, y > x, between two angles from the vertical, from its edge to the groin;
-    `half`: it begins with half a stone."""
+    `half`: it begins with half a stone. The groin leans inwards as it rises: the last stone reaches beyond its bed."""
     section = [[r * np.sin(a), r * np.cos(a)] for r, a in ((inner, low), (outer, low), (outer, high), (inner, high))]
     rest = cut(body(np.array(section), 0.0, reach), np.zeros(3), np.array([-1.0, 1.0, 0.0]))
     assert rest is not None  # the edge lies beyond the groin
     found: list[Polyhedron] = []
     across = np.array([0.0, 1.0, 0.0])
     place = reach - (length or reach) * (0.5 if half else 1.0)
-    while length is not None and place > rest.low[1] + LEAST_PIECE * length:
+    bed = outer * np.sin(low)  # where that of the last stone begins
+    while length is not None and place > bed + LEAST_PIECE * length:
         stone, beyond = cut(rest, place * across, across), cut(rest, place * across, -across)
         if stone is None or beyond is None:
             break
@@ -88,7 +95,7 @@ def _course(
 
 
 class CrossVault(Spatial):
-    """Groin vault over a square or oblong bay: two barrels that cross, their courses mitred along the groins."""
+    """Groin vault over a square or oblong bay: two barrels that cross, bonded by groin voussoirs of both."""
 
     word: ClassVar = "cross-vault"
     kind: Literal["cross-vault"]
@@ -100,7 +107,9 @@ class CrossVault(Spatial):
     edge: Length | None = key(
         None, "how far the webs reach beyond the corner of the extrados at the springing; default the thickness", ge=0
     )
-    stone_length: Length | None = key(None, "length of a stone along the barrel; default whole courses", gt=0)
+    stone_length: Length | None = key(
+        None, "length of a stone along the barrel; default whole courses, mitred along the groins", gt=0
+    )
     springers: int = key(
         1, "courses from the springing that are one stone in each corner; with 0 the webs stand on feet of their own", ge=0, le=100
     )  # fmt: skip
