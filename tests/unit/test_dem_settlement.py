@@ -53,7 +53,7 @@ def test_what_falls_while_it_settles_is_refused(tmp_path, stones, who) -> None:
 
 def test_limit_analysis_is_asked_too(tmp_path) -> None:
     assert "limit analysis agrees: it stands only when pushed sideways" in answered(tmp_path, SLAB).reason
-    assert "as friction holds a stone that is wedged in" in answered(tmp_path, keystone(0.1)).reason
+    assert "friction may hold a stone that is wedged in" in answered(tmp_path, keystone(0.1)).reason
 
 
 def test_elements_held_by_mortar_say_that_limit_analysis_disagrees(tmp_path) -> None:

@@ -42,13 +42,13 @@ def _compared(
     doubt, warning = "", ""
     try:
         with interruptible():  # Ctrl-C between two runs stops the next one
-            result = find()
-            if options.rigid and not alone and result.status == "ok":
+            if options.rigid and not alone:  # first: Ctrl-C here loses nothing
                 doubt, warning = jammed(model, context.threads)
+            result = find()
     except dem_model.Falls as error:
         told = alone or against_limit(context.building, False)
         raise Refused(f"{error}; {told}" if told else str(error), WHOLE) from None
-    if doubt:
+    if doubt and result.status == "ok":
         result.answer += f" {doubt}"
     told = alone or against_limit(context.building, True)
     result.warnings += [text for text in (warning, told) if text]

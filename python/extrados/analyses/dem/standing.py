@@ -18,8 +18,8 @@ from extrados.limit.programme import LimitAnalysis
 from extrados.limit.solids import SolidLimit
 
 WEDGED = (
-    "limit analysis finds forces by which it could stand, as friction holds a stone that is wedged in; elements begin "
-    "without such forces"
+    "limit analysis does not find that it must fall: friction may hold a stone that is wedged in, by forces that elements "
+    "begin without"
 )
 JAMMED = (
     "it stands on rigid contacts by forces that its weight does not call up, as friction holds a stone that is wedged in; "
