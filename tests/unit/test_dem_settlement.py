@@ -34,12 +34,12 @@ def keystone(spread):
     }
 
 
-def answered(tmp_path, stones, joints="friction = 0.7", analysis=""):
+def answered(tmp_path, stones, joints="friction = 0.7", analysis="", kind="dem"):
     blocks = [{"name": name, "points": points} for name, points in stones.items()]
     (tmp_path / "stones.json").write_text(json.dumps({"unit": "m", "blocks": blocks}))
     deck = tmp_path / "deck.toml"
     deck.write_text(
-        f'[structure]\nkind = "blocks"\nfile = "stones.json"\n[joints]\n{joints}\n[[analysis]]\nkind = "dem"\n{analysis}'
+        f'[structure]\nkind = "blocks"\nfile = "stones.json"\n[joints]\n{joints}\n[[analysis]]\nkind = "{kind}"\n{analysis}'
     )
     return extrados.run(deck).results[0]
 
@@ -72,6 +72,12 @@ def test_what_rigid_contacts_hold_by_jamming_is_doubted(tmp_path, space, spread)
     assert found.status == "ok" and "stands under its own weight" in found.answer
     assert "by jamming alone: settled on springs it falls" in found.answer
     assert any("by forces that its weight does not call up" in text and "key falls" in text for text in found.warnings)
+
+
+def test_the_pulses_that_it_bears_are_doubted_too(tmp_path) -> None:
+    pulses = 'solver = "nonsmooth"\nmode_II = false\npulse = "step"\namplitudes = ["0.2 g"]\ndurations = [0.1, 0.2]\nsettle = 0.5'
+    found = answered(tmp_path, keystone(0.15), analysis=pulses, kind="dem-domain")
+    assert found.status == "ok" and "by jamming alone: settled on springs it falls" in found.answer
 
 
 @pytest.mark.parametrize("space", ["", "direction = 0.0\n"], ids=["plane", "space"])

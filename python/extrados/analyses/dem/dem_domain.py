@@ -13,6 +13,7 @@ from extrados.analyses.dem.model import JointValues, Model
 from extrados.analyses.dem.runs import Runs, SolidRuns, SolidTask, Task, answered
 from extrados.analyses.dem.settlement import farthest_settlement
 from extrados.analyses.dem.solid_model import SolidModel, SolidValues, make_solid_model
+from extrados.analyses.dem.standing import compared
 from extrados.analyses.dem.tables import DemDomain
 from extrados.analyses.dem.trial import start
 from extrados.analyses.needs import stones_of
@@ -22,7 +23,6 @@ from extrados.building.geometry.assembly import Assembly
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
 from extrados.core import dem, dem3, dem_run
-from extrados.core.calls import interruptible
 from extrados.core.errors import CoreError
 from extrados.results import dem as out
 from extrados.results.model import Array, Result, TableData
@@ -139,6 +139,10 @@ def run(context: Context, options: DemDomain) -> Result:
         model, varied = make_solid_model(context.building, options), []
         if not options.rigid or options.cross_check:
             context.warnings += dem_model.doubts_of_springs(model.values)
+    return compared(context, options.rigid, model, lambda: _found(context, options, model, varied))
+
+
+def _found(context: Context, options: DemDomain, model: Model | SolidModel, varied: list[Curve]) -> Result:
     base = model.values
     curves = [Curve("as given", base, options.rigid), *varied]
     if options.cross_check:
@@ -146,12 +150,11 @@ def run(context: Context, options: DemDomain) -> Result:
     amplitudes, durations = np.array(options.amplitudes), np.array(options.durations)
     refining = max(0.0, np.ceil(np.log2(max(float(np.diff(durations).max()), durations[0]) / options.accuracy)))
     search = Search(context, options, model, curves, len(durations) + refining)
-    with interruptible():  # Ctrl-C between two rounds stops the next one
-        shortest = _shortest(search.fails, len(curves), amplitudes, durations, options.accuracy)
-        at_once = (
-            _shortest(search.falls_at_once, 1, amplitudes, durations, options.accuracy)[0] if options.mode_II else None
-        )
-        checked = _cross_check(search, amplitudes, durations) if options.cross_check else None
+    shortest = _shortest(search.fails, len(curves), amplitudes, durations, options.accuracy)
+    at_once = (
+        _shortest(search.falls_at_once, 1, amplitudes, durations, options.accuracy)[0] if options.mode_II else None
+    )
+    checked = _cross_check(search, amplitudes, durations) if options.cross_check else None
     result = Result("dem-domain")
     numbers = {
         "pulse": options.pulse,
@@ -188,7 +191,7 @@ def run(context: Context, options: DemDomain) -> Result:
         )
         table["shortest duration, mode II"], units["shortest duration, mode II"] = at_once, "s"
     if checked is not None:
-        numbers["cross_check"] = _compared(checked, amplitudes, durations)
+        numbers["cross_check"] = _agreement(checked, amplitudes, durations)
         result.arrays |= {
             "duration": Array(durations, ("duration",), "s", "durations of the cells that both solvers were asked"),
             "fails": Array(
@@ -231,7 +234,7 @@ def _cross_check(search: Search, amplitudes: np.ndarray, durations: np.ndarray) 
     return np.reshape(search.fails(cells), (2, len(amplitudes), len(durations))).astype(int)
 
 
-def _compared(fails: np.ndarray, amplitudes: np.ndarray, durations: np.ndarray) -> out.CrossCheck:
+def _agreement(fails: np.ndarray, amplitudes: np.ndarray, durations: np.ndarray) -> out.CrossCheck:
     """In how many cells two maps agree, and where they do not."""
     apart = fails[0] != fails[1]
     return out.CrossCheck(

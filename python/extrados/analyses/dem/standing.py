@@ -1,21 +1,26 @@
 """Whether limit analysis, and springs where contacts are rigid, agree with elements on what stands under its own weight."""
 
+from collections.abc import Callable
+
 import numpy as np
 
-from extrados.analyses.context import Refused
+from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import settlement, solid_settlement
 from extrados.analyses.dem.model import Falls, Model, checked
 from extrados.analyses.dem.runs import Runs, SolidRuns, SolidTask, Task
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.limit.common import loads_of
 from extrados.building.building import Building
+from extrados.building.errors import WHOLE
 from extrados.building.geometry.solids.assembly import SolidAssembly
 from extrados.core import dem, dem3
+from extrados.core.calls import interruptible
 from extrados.limit.answer import why_not
 from extrados.limit.equilibrium import Disconnected
 from extrados.limit.errors import NoAnswer
 from extrados.limit.programme import LimitAnalysis
 from extrados.limit.solids import SolidLimit
+from extrados.results.model import Result
 
 WEDGED = (
     "limit analysis does not find that it must fall: friction may hold a stone that is wedged in, by forces that elements "
@@ -31,6 +36,25 @@ SETTLING = 20_000
 MOST_JOINTS = 3000
 #: Nor are more solids.
 MOST_SOLIDS = 300
+
+
+def compared(context: Context, rigid: bool, model: Model | SolidModel, find: Callable[[], Result]) -> Result:
+    """What elements find, with what other methods say of their standing under the own weight; Refused where they fall."""
+    alone, doubt, warning = left_out(model), "", ""
+    against = against_limit_analysis if isinstance(model, Model) else solids_against_limit_analysis
+    try:
+        with interruptible():  # Ctrl-C between two runs stops the next one
+            if rigid and not alone:  # first: Ctrl-C here loses nothing
+                doubt, warning = jammed(model, context.threads)
+            result = find()
+    except Falls as error:
+        told = alone or against(context.building, stands=False)
+        raise Refused(f"{error}; {told}" if told else str(error), WHOLE) from None
+    if doubt and result.status == "ok":
+        result.answer += f" {doubt}"
+    told = alone or against(context.building, stands=True)
+    result.warnings += [text for text in (warning, told) if text]
+    return result
 
 
 def left_out(model: Model | SolidModel) -> str:
