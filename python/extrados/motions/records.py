@@ -20,6 +20,7 @@ STRONGEST = 5.0 * GRAVITY
 SUFFIXES = {".at2", ".vt2", ".dt2", ".v1", ".v2", ".v1c", ".v2c", ".smc", ".asc", ".ns", ".ew", ".ud", ".ns1", ".ns2",
             ".ew1", ".ew2", ".ud1", ".ud2", ".acc", ".dat", ".csv", ".txt", ".th", ".mseed", ".sac"}  # fmt: skip
 MOST_RECORDS = 2000
+LONGEST = 10_800.0  # s: spectra take work by a motion's length over their shortest period, however few its samples
 
 
 @dataclass(frozen=True)
@@ -149,6 +150,10 @@ def record_motion(
     rows, step, notes = _together(record, [r for r in (second, vertical) if r is not None], do, name)
     try:
         step *= do.time_scale
+        if (lasts := step * (rows.shape[1] - 1)) > LONGEST:
+            raise ValueError(
+                f"{rows.shape[1]} samples every {step:g} s last {lasts:g} s, at most {LONGEST:g} s are taken"
+            )
         rows = processing.band_pass(rows, step, do.low_cut, do.high_cut)
         rows = processing.baseline(rows, step, do.baseline)
         if do.resample is not None:
