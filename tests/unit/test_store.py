@@ -205,6 +205,26 @@ def test_a_report_is_put_beside_one_that_was_edited(tmp_path, with_figures, capl
     assert write_report(run)[0].name == "report.html" and (run / "figures" / "mine.txt").exists()
 
 
+@pytest.mark.parametrize("sort", ["link", "file"])
+def test_figures_are_put_beside_what_is_no_folder_of_the_run(sort, tmp_path, with_figures, caplog) -> None:
+    run, mine = tmp_path / "run", tmp_path / "mine"
+    shutil.copytree(with_figures, run)
+    names = sorted(path.name for path in (run / "figures").iterdir())
+    if sort == "link":  # to figures that are unchanged: what is behind a link is the user's all the same
+        (run / "figures").rename(mine)
+        (run / "figures").symlink_to(mine)
+    else:
+        shutil.rmtree(run / "figures")
+        (run / "figures").write_text("mine")
+        mine.mkdir()
+    before = {path: path.stat().st_mtime_ns for path in mine.iterdir()}
+    for _ in range(2):  # and again in the same place
+        assert write_report(run)[0].name == "report.html" and "the new one is figures-2/" in caplog.text
+        assert sorted(path.name for path in (run / "figures-2").iterdir()) == names
+        assert {path: path.stat().st_mtime_ns for path in mine.iterdir()} == before
+        assert not (run / "figures-3").exists() and (run / "figures").is_symlink() == (sort == "link")
+
+
 def test_a_report_killed_while_it_is_put_in_place_leaves_nothing_strange(tmp_path, with_figures, monkeypatch) -> None:
     """The list says beforehand what is coming."""
     run = tmp_path / "run"
