@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 
@@ -15,6 +16,7 @@ from extrados.plots.report import write_report
 from extrados.results import store
 from extrados.results.model import Array, Result, TableData
 from extrados.results.statistics import RockingSpectrum
+from extrados.schema import files
 
 
 def sample() -> Result:
@@ -280,3 +282,40 @@ def test_full_disk(tmp_path, limit) -> None:
     assert "Traceback" not in run.stderr and str(tmp_path / "out") in run.stderr
     if (tmp_path / "out").exists():  # the results fitted and are whole; only the report did not
         assert store.read(tmp_path / "out")["tilt"] and not (tmp_path / "out" / "report.html").exists()
+
+
+@pytest.mark.parametrize("sort", ["fill", "compressed", "external", "virtual", "linked"])
+def test_arrays_lie_in_the_file_of_results(sort, tmp_path, with_figures) -> None:
+    """Small files that stand for gigabytes, and numbers of files elsewhere, whose checksum is as summary.json says."""
+    run, strange = tmp_path / "run", tmp_path / "strange.h5"
+    shutil.copytree(with_figures, run)
+    with h5py.File(strange, "w") as other:
+        other["a"] = np.arange(3.0)
+        other["a"].attrs["unit"] = "m"
+    with h5py.File(run / store.STORE, "a") as file:
+        group = next(iter(file.values()))
+        if sort == "fill":
+            group.create_dataset("a", shape=(10**9,), dtype="f8")
+        elif sort == "compressed":
+            group.create_dataset("a", data=np.zeros(10**6), compression="gzip")
+        elif sort == "external":
+            group.create_dataset("a", shape=(3,), dtype="f8", external=[(str(strange), 0, 24)])
+        elif sort == "virtual":
+            layout = h5py.VirtualLayout(shape=(3,), dtype="f8")
+            layout[:] = h5py.VirtualSource(strange, "a", shape=(3,))
+            group.create_virtual_dataset("a", layout)
+        else:
+            group["a"] = h5py.ExternalLink(strange, "a")
+        if sort != "linked":
+            group["a"].attrs["unit"] = "m"
+    summary = json.loads((run / store.SUMMARY).read_text())
+    summary["files"][store.STORE] = files.sum_of(store.STORE, run)
+    (run / store.SUMMARY).write_text(json.dumps(summary))
+    with pytest.raises(store.StoreError, match="'a' does not lie in the file whole"):
+        store.read(run)
+
+
+def test_a_summary_of_any_size_is_not_read(tmp_path, with_figures, monkeypatch) -> None:
+    monkeypatch.setattr(store, "LARGEST_SUMMARY", 1000)
+    with pytest.raises(store.StoreError, match=r"at most 0\.001 MB are read"):
+        store.read(with_figures)

@@ -32,6 +32,7 @@ STORE = "results.h5"
 CSV_ROWS = 10_000  # turned into text at a time
 #: Of arrays so many numbers are written or read at a time; results.h5 of more bytes leaves longer ones on disk
 LARGE, SMALL = 100_000, 8_000_000
+LARGEST_SUMMARY = 200_000_000  # bytes: a hundred times those of the longest that was seen
 REPORT = "report.html"
 #: Axes along which x, y and z stand
 AXES = ("axis", "axis3")
@@ -448,13 +449,19 @@ def _on_disk(path: Path, name: str, length: int, dtype: np.dtype) -> Streamed:
     return Streamed(length, dtype, pieces)
 
 
+def _elsewhere(store: Any, file: Any) -> bool:
+    """Whether the numbers of an array do not all lie in the file, as ours do: in files elsewhere, or one that stands for
+    gigabytes."""
+    return bool(store.file != file or store.external or store.is_virtual or store.nbytes > store.id.get_storage_size())
+
+
 def read(folder: str | Path) -> Stored:
     """Read a run's folder; StoreError where it is damaged."""
     import h5py
 
     folder = Path(folder)
     try:
-        summary = json.loads(files.read(SUMMARY, None, folder).text())
+        summary = json.loads(files.read(SUMMARY, LARGEST_SUMMARY, folder).text())
         _check_shape(summary)
         if files.sum_of(STORE, folder) != summary["files"].get(STORE):
             raise StoreError(f"{folder / STORE}: does not match its checksum in {SUMMARY}; the file is damaged")
@@ -465,6 +472,10 @@ def read(folder: str | Path) -> Stored:
             for name, group in file.items():
                 arrays[name] = {}
                 for title, store in group.items():
+                    if store is None or _elsewhere(store, file):
+                        raise StoreError(
+                            f"{folder / STORE}: '{title}' does not lie in the file whole; extrados wrote no such one"
+                        )
                     if "unit" not in store.attrs:
                         continue
                     if not small and store.ndim == 1 and len(store) > LARGE and store.dtype.kind in "iuf":
