@@ -2,6 +2,7 @@
 
 import errno
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -319,3 +320,27 @@ def test_a_summary_of_any_size_is_not_read(tmp_path, with_figures, monkeypatch) 
     monkeypatch.setattr(store, "LARGEST_SUMMARY", 1000)
     with pytest.raises(store.StoreError, match=r"at most 0\.001 MB are read"):
         store.read(with_figures)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("kind", ["tilt"], "analyses.0.kind: input should be a valid string"),
+        ("name", {"a": 1}, "analyses.0.name: input should be a valid string"),
+        ("name", "other", "results.h5: holds 'tilt', of which summary.json says nothing"),
+        ("assumptions", 5, "analyses.0.assumptions: input should be a valid dict"),
+        ("assumptions", {"a": {"b": 1}}, "analyses.0.assumptions.a.value: field required"),
+        ("answer", None, "analyses.0.answer"),
+        ("verdict", {"x": 1}, "analyses.0.verdict.demand: field required"),
+        ("warnings", 5, "analyses.0.warnings"),
+    ],
+)
+def test_results_of_another_version_are_told(key, value, words, tmp_path, with_figures) -> None:
+    """What is not as this version writes it is told by its place in the file, before a reader stumbles over it."""
+    run = tmp_path / "run"
+    shutil.copytree(with_figures, run)
+    summary = json.loads((run / store.SUMMARY).read_text())
+    summary["analyses"][0][key] = value
+    (run / store.SUMMARY).write_text(json.dumps(summary))
+    with pytest.raises(store.StoreError, match=re.escape(words)):
+        write_report(run)

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pydantic import ValidationError
+from pydantic import BaseModel, Field, ValidationError
 
 from extrados.results import written
 from extrados.results.fields import plain
@@ -428,12 +428,62 @@ class Stored:
         return "" if self.folder is None else f"{self.folder}: "
 
 
-def _check_shape(summary: dict[str, Any]) -> None:
-    """KeyError or TypeError where summary.json lacks what readers rely on."""
-    deck = summary["deck"]
-    _ = summary["extrados"]["version"], deck["path"], deck["sha256"], deck["resolved"].items()
-    for analysis in summary["analyses"]:
-        _ = analysis["name"], analysis["kind"], analysis["status"], analysis["results"].items()
+class _Assumed(BaseModel):
+    """What readers rely on in summary.json; so the following."""
+
+    value: Any
+    unit: str
+    origin: str = Field(alias="from")
+    exceptions: bool
+
+
+class _Judged(BaseModel):
+    demand: float | None
+    capacity: float | None
+    unit: str
+    ratio: float | None
+    outcome: str
+    statement: str
+
+
+class _Row(BaseModel):
+    name: str
+    kind: str
+    status: str
+    reason: str
+    seconds: float
+    answer: str
+    warnings: list[str]
+    verdict: _Judged | None
+    assumptions: dict[str, _Assumed]
+    results: dict[str, Any]
+
+
+class _Deck(BaseModel):
+    path: Any
+    sha256: Any
+    resolved: dict[str, Any]
+
+
+class _Program(BaseModel):
+    version: str
+
+
+class _Summary(BaseModel):
+    extrados: _Program
+    deck: _Deck
+    analyses: list[_Row]
+    files: dict[str, str]
+
+
+def _check_shape(summary: Any) -> None:
+    """ValueError where summary.json lacks what readers rely on, as that of another version may."""
+    try:
+        _Summary.model_validate(summary)
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(map(str, first["loc"]))
+        raise ValueError(f"{SUMMARY} is not what this version writes: {place}: {first['msg'].lower()}") from None
 
 
 def _on_disk(path: Path, name: str, length: int, dtype: np.dtype) -> Streamed:
@@ -484,6 +534,8 @@ def read(folder: str | Path) -> Stored:
                         data = store.asstr()[()] if h5py.check_string_dtype(store.dtype) else store[()]
                     dims = tuple(title if not len(d) else d[0].name.rsplit("/", 1)[1] for d in store.dims)
                     arrays[name][title] = Array(data, dims, *(store.attrs.get(mark, "") for mark in MARKS))
+        if untold := set(arrays) - {row["name"] for row in summary["analyses"]}:
+            raise StoreError(f"{folder / STORE}: holds '{min(untold)}', of which {SUMMARY} says nothing")
         head = {key: value for key, value in summary.items() if key != "analyses"}
         return Stored(folder, lambda: head, summary["analyses"], arrays)
     except files.BadFile as error:
