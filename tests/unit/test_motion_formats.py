@@ -247,7 +247,7 @@ def test_suites_stay_in_the_folder(tmp_path) -> None:
         with pytest.raises(RecordError, match=r"cannot be searched|no such folder|no records match"):
             list_suite(None, pattern, folder, tmp_path)
     tmp_path.joinpath(*["deep"] * 25).mkdir(parents=True)  # eight of them looked for minutes
-    with pytest.raises(RecordError, match="says .. 8 times, at most 2"):
+    with pytest.raises(RecordError, match=r"says .. 8 times, at most 2"):
         list_suite(None, "**/" * 8 + "*.at2", None, tmp_path)
     assert [p.name for p in list_suite(None, "**/**/b.at2", None, tmp_path)] == ["b.at2"]
     with pytest.raises(RecordError, match="no records match"):

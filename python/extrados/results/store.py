@@ -483,7 +483,9 @@ def _check_shape(summary: Any) -> None:
     except ValidationError as error:
         first = error.errors()[0]
         place = ".".join(map(str, first["loc"]))
-        raise ValueError(f"{SUMMARY} is not what this version writes: {place}: {first['msg'].lower()}") from None
+        raise ValueError(
+            f"{SUMMARY} is not what this version writes: {place}: {first['msg'].partition(' or instance')[0].lower()}"
+        ) from None
 
 
 def _on_disk(path: Path, name: str, length: int, dtype: np.dtype) -> Streamed:
