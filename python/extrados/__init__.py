@@ -91,15 +91,17 @@ def sweep(deck: "str | Path | dict[str, Any] | Deck", over: Any, **how: Any) -> 
 
 
 def export(deck: "str | Path | dict[str, Any] | Deck", form: str, path: str | Path | None = None) -> str:
-    """The building of a deck for another program; also written to `path`, where one is given.
+    """The building of a deck for another program; also written to `path`, where one is given, or beside what is there and
+    extrados did not write or was changed since, which is logged.
 
     form: "compas", "udec", "3dec" or "opensees". Lengths in m, forces in N. Returns the text; DeckError where the building has no such view.
     """
     from extrados.bridges import forms
+    from extrados.results import written
 
     text = forms.exported(_checked(deck), form)
     if path is not None:
-        Path(path).write_text(text, encoding="utf-8")
+        written.put_one(Path(path), text.encode(errors="backslashreplace"))
     return text
 
 

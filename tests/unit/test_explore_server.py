@@ -295,6 +295,26 @@ def test_hostile_messages_are_refused(page: Page, folder: Path, name: str, messa
     assert status(page.request()) == 200, "it goes on"
 
 
+@pytest.mark.parametrize(
+    "message",
+    [
+        {"do": "\ud800"}, {"do": "open", "starter": "\ud800"}, {"do": "hello", "kept": {"text": "", "drops": 1}},
+        {"do": "hello", "kept": {"text": "", "drops": "arch"}}, {"do": "hello", "kept": {"text": "", "drops": [None]}},
+        {"do": "save", "path": "taken.toml", "replace": True},
+    ],
+)  # fmt: skip
+def test_what_a_page_never_sends_is_no_fault_of_the_program(
+    folder: Path, tmp_path: Path, message: dict[str, Any]
+) -> None:
+    (tmp_path / "taken.toml").mkdir()
+    session = Session(tmp_path)
+    assert [reply for reply in session.answer({"do": "hello"}) if "scene" in reply.words]
+    *_, reply = session.answer(message)
+    words, _ = unpack(reply.pack())
+    told = words.get("bad") or " ".join(words["complaints"])
+    assert told and "fault of the program" not in told
+
+
 def test_there_are_sixty_hostile_requests_and_more() -> None:
     assert len(HOSTILE_REQUESTS) + len(HOSTILE_SOCKETS) + len(HOSTILE_MESSAGES) >= 60
 

@@ -37,6 +37,14 @@ def test_compas_is_read_back_with_the_same_capacity(stones, within: float, tmp_p
     assert extrados.export(DECK, "compas") == extrados.export(DECK, "compas")
 
 
+def test_what_somebody_else_wrote_stays(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    place = tmp_path / "stones.json"
+    place.write_text("mine")
+    text = extrados.export(DECK, "compas", place)
+    assert place.read_text() == "mine" and (tmp_path / "stones-2.json").read_text() == text
+    assert "stones-2.json" in caplog.text
+
+
 def test_compas_loads_it(tmp_path: Path) -> None:
     compas = pytest.importorskip("compas")
     pytest.importorskip("compas_assembly")

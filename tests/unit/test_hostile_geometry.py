@@ -18,7 +18,7 @@ from extrados.building.geometry.linework import net_of
 from extrados.building.geometry.polygons import crossing_edges
 from extrados.building.geometry.solids.assembly import Stone, assemble
 from extrados.building.geometry.solids.meshes import read_solids, stones_of
-from extrados.building.geometry.solids.polyhedra import box, hull, overlap_depth
+from extrados.building.geometry.solids.polyhedra import ManyFaces, box, hull, overlap_depth
 from extrados.building.templates.blocks import _marked as marked
 from extrados.schema.files import File
 
@@ -187,9 +187,17 @@ def test_bodies_of_many_corners_take_little_memory() -> None:
 
 def test_a_body_of_too_many_corners_is_told(monkeypatch) -> None:
     monkeypatch.setattr("extrados.building.geometry.solids.meshes.MOST_CORNERS", 100)
-    solids = read_solids({"graph": {"node": {"0": {"block": prism(60)}}}}, "a.json")
-    with pytest.raises(BadGeometry, match="block 0 is of 120 corners, at most 100 are looked at"):
-        stones_of(solids, 2000.0, None, "a.json")
+    few, many = (read_solids({"graph": {"node": {"0": {"block": prism(k)}}}}, "a.json") for k in (60, 400))
+    with pytest.raises(BadGeometry, match="block 0 is of more than 100 corners, the most that are looked at"):
+        stones_of(few, 2000.0, None, "a.json")
+    # told before their faces are compared with each other, and before Qhull, which is as slow and hears no signal
+    with pytest.raises(ManyFaces):
+        hull(many[0].points, most=200)
+    with pytest.raises(BadGeometry, match="block 0 is of more than 100 corners"):
+        stones_of(many, 2000.0, None, "a.json")
+    monkeypatch.setattr("extrados.building.geometry.solids.meshes.MOST_POINTS", 500)
+    with pytest.raises(BadGeometry, match="block 0 is a mesh of 800 points, at most 500 are looked at"):
+        stones_of(many, 2000.0, None, "a.json")
 
 
 def test_bodies_over_each_other_are_told_before_all_pairs_are_looked_at(monkeypatch) -> None:

@@ -246,6 +246,10 @@ def test_suites_stay_in_the_folder(tmp_path) -> None:
     for pattern, folder in (("x" * 300, None), (None, "x" * 300)):  # longer than a name may be
         with pytest.raises(RecordError, match=r"cannot be searched|no such folder|no records match"):
             list_suite(None, pattern, folder, tmp_path)
+    tmp_path.joinpath(*["deep"] * 25).mkdir(parents=True)  # eight of them looked for minutes
+    with pytest.raises(RecordError, match=r"says .. 8 times, at most 2"):
+        list_suite(None, "**/" * 8 + "*.at2", None, tmp_path)
+    assert [p.name for p in list_suite(None, "**/**/b.at2", None, tmp_path)] == ["b.at2"]
     with pytest.raises(RecordError, match="no records match"):
         list_suite(None, "*.v2", None, tmp_path)
     with pytest.raises(RecordError, match="out of the deck's folder"):

@@ -82,6 +82,22 @@ def test_units_and_steps_are_asked_for(tmp_path) -> None:
         record_motion(at2, Treatment(time_step=0.02))
 
 
+@pytest.mark.parametrize(
+    ("treatment", "words"),
+    [
+        ({"time_step": 10.0}, r"3000 samples every 10 s last 29990 s, at most 10800 s"),
+        ({"time_scale": 1e9}, "last 2.999e.10 s, at most"),
+        ({"resample": 1e-7}, r"1e-07 s for 29.99 s are 3e.08 samples, at most 5,000,000"),
+        ({"low_cut": 1e-6}, r"a filter at 1e-06 Hz and its run-in take 6e.08 samples, at most 5,000,000"),
+        ({"high_cut": 1e-6}, "a filter at 1e-06 Hz"),
+    ],
+)
+def test_a_few_samples_ask_for_bounded_memory_and_work(tmp_path, treatment, words) -> None:
+    few = read_record(write(tmp_path, "0.01\n-0.2\n0.03\n" * 1000))
+    with pytest.raises(RecordError, match=words):
+        record_motion(few, Treatment(unit="g", **{"time_step": 0.01, **treatment}))
+
+
 def test_paths_stay_in_the_folder(tmp_path) -> None:
     for bad in ("../x.at2", "a/../../x", "..", "\0"):
         with pytest.raises(RecordError):

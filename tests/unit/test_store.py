@@ -2,11 +2,13 @@
 
 import errno
 import json
+import re
 import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 
@@ -15,6 +17,7 @@ from extrados.plots.report import write_report
 from extrados.results import store
 from extrados.results.model import Array, Result, TableData
 from extrados.results.statistics import RockingSpectrum
+from extrados.schema import files
 
 
 def sample() -> Result:
@@ -205,6 +208,26 @@ def test_a_report_is_put_beside_one_that_was_edited(tmp_path, with_figures, capl
     assert write_report(run)[0].name == "report.html" and (run / "figures" / "mine.txt").exists()
 
 
+@pytest.mark.parametrize("sort", ["link", "file"])
+def test_figures_are_put_beside_what_is_no_folder_of_the_run(sort, tmp_path, with_figures, caplog) -> None:
+    run, mine = tmp_path / "run", tmp_path / "mine"
+    shutil.copytree(with_figures, run)
+    names = sorted(path.name for path in (run / "figures").iterdir())
+    if sort == "link":  # to figures that are unchanged: what is behind a link is the user's all the same
+        (run / "figures").rename(mine)
+        (run / "figures").symlink_to(mine)
+    else:
+        shutil.rmtree(run / "figures")
+        (run / "figures").write_text("mine")
+        mine.mkdir()
+    before = {path: path.stat().st_mtime_ns for path in mine.iterdir()}
+    for _ in range(2):  # and again in the same place
+        assert write_report(run)[0].name == "report.html" and "the new one is figures-2/" in caplog.text
+        assert sorted(path.name for path in (run / "figures-2").iterdir()) == names
+        assert {path: path.stat().st_mtime_ns for path in mine.iterdir()} == before
+        assert not (run / "figures-3").exists() and (run / "figures").is_symlink() == (sort == "link")
+
+
 def test_a_report_killed_while_it_is_put_in_place_leaves_nothing_strange(tmp_path, with_figures, monkeypatch) -> None:
     """The list says beforehand what is coming."""
     run = tmp_path / "run"
@@ -260,3 +283,64 @@ def test_full_disk(tmp_path, limit) -> None:
     assert "Traceback" not in run.stderr and str(tmp_path / "out") in run.stderr
     if (tmp_path / "out").exists():  # the results fitted and are whole; only the report did not
         assert store.read(tmp_path / "out")["tilt"] and not (tmp_path / "out" / "report.html").exists()
+
+
+@pytest.mark.parametrize("sort", ["fill", "compressed", "external", "virtual", "linked"])
+def test_arrays_lie_in_the_file_of_results(sort, tmp_path, with_figures) -> None:
+    """Small files that stand for gigabytes, and numbers of files elsewhere, whose checksum is as summary.json says."""
+    run, strange = tmp_path / "run", tmp_path / "strange.h5"
+    shutil.copytree(with_figures, run)
+    with h5py.File(strange, "w") as other:
+        other["a"] = np.arange(3.0)
+        other["a"].attrs["unit"] = "m"
+    with h5py.File(run / store.STORE, "a") as file:
+        group = next(iter(file.values()))
+        if sort == "fill":
+            group.create_dataset("a", shape=(10**9,), dtype="f8")
+        elif sort == "compressed":
+            group.create_dataset("a", data=np.zeros(10**6), compression="gzip")
+        elif sort == "external":
+            group.create_dataset("a", shape=(3,), dtype="f8", external=[(str(strange), 0, 24)])
+        elif sort == "virtual":
+            layout = h5py.VirtualLayout(shape=(3,), dtype="f8")
+            layout[:] = h5py.VirtualSource(strange, "a", shape=(3,))
+            group.create_virtual_dataset("a", layout)
+        else:
+            group["a"] = h5py.ExternalLink(strange, "a")
+        if sort != "linked":
+            group["a"].attrs["unit"] = "m"
+    summary = json.loads((run / store.SUMMARY).read_text())
+    summary["files"][store.STORE] = files.sum_of(store.STORE, run)
+    (run / store.SUMMARY).write_text(json.dumps(summary))
+    with pytest.raises(store.StoreError, match="'a' does not lie in the file whole"):
+        store.read(run)
+
+
+def test_a_summary_of_any_size_is_not_read(tmp_path, with_figures, monkeypatch) -> None:
+    monkeypatch.setattr(store, "LARGEST_SUMMARY", 1000)
+    with pytest.raises(store.StoreError, match=r"at most 0\.001 MB are read"):
+        store.read(with_figures)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "words"),
+    [
+        ("kind", ["tilt"], "analyses.0.kind: input should be a valid string"),
+        ("name", {"a": 1}, "analyses.0.name: input should be a valid string"),
+        ("name", "other", "results.h5: holds 'tilt', of which summary.json says nothing"),
+        ("assumptions", 5, "analyses.0.assumptions: input should be a valid dict"),
+        ("assumptions", {"a": {"b": 1}}, "analyses.0.assumptions.a.value: field required"),
+        ("answer", None, "analyses.0.answer"),
+        ("verdict", {"x": 1}, "analyses.0.verdict.demand: field required"),
+        ("warnings", 5, "analyses.0.warnings"),
+    ],
+)
+def test_results_of_another_version_are_told(key, value, words, tmp_path, with_figures) -> None:
+    """What is not as this version writes it is told by its place in the file, before a reader stumbles over it."""
+    run = tmp_path / "run"
+    shutil.copytree(with_figures, run)
+    summary = json.loads((run / store.SUMMARY).read_text())
+    summary["analyses"][0][key] = value
+    (run / store.SUMMARY).write_text(json.dumps(summary))
+    with pytest.raises(store.StoreError, match=re.escape(words)):
+        write_report(run)

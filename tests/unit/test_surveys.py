@@ -194,6 +194,30 @@ def test_references_to_blocks_are_exploded(tmp_path: Path) -> None:
     assert "lies within more than 16 others, or in itself" in run({"file": path.name}, tmp_path).reason
 
 
+@pytest.mark.parametrize("grid", [False, True])
+def test_references_to_blocks_are_counted_before_they_are_put_in_their_places(
+    tmp_path: Path, monkeypatch, grid
+) -> None:
+    """30^5 lines or a grid of 30,000 x 30,000 took more than 45 s before they were found to be too many."""
+
+    def draw(document: Any, space: Any) -> None:
+        document.blocks.new("B0").add_line((0, 0), (1, 0))
+        for k in range(1, 5):
+            outer = document.blocks.new(f"B{k}")
+            for i in range(30):
+                outer.add_blockref(f"b{k - 1}", (i, 0))
+        if grid:
+            space.add_blockref("B0", (0, 0)).grid((30_000, 30_000), (1, 1))
+        else:
+            space.add_blockref("B4", (0, 0))
+
+    sketch(tmp_path / "many.dxf", draw)
+    monkeypatch.setattr(
+        "ezdxf.entities.Insert.virtual_entities", lambda *_: pytest.fail("they were put in their places")
+    )
+    assert "more than 200,000 entities, those of its references" in run({"file": "many.dxf"}, tmp_path).reason
+
+
 def test_layers_for_material_friction_and_supports(tmp_path: Path) -> None:
     def draw(document: Any, space: Any) -> None:
         for k, layer in enumerate(("STONE", "BRICK", "BRICK")):
@@ -244,6 +268,8 @@ def test_georeferenced(tmp_path: Path) -> None:
     blocks = [Polygon(b.name, b.points + far) for b in (box("a", 0, 0), box("b", 0, 1))]
     here, there = run({"block": rows(box("a", 0, 0), box("b", 0, 1))}), {"block": rows(*blocks)}
     assert "origin = [431250, 5062480] would bring it near" in run(there).reason
+    beyond = run({"block": rows(*(Polygon(b.name, b.points + 1e14) for b in blocks))}).reason
+    assert "farther than" in beyond and "origin =" not in beyond  # in a file it may be 1e308
     for origin in (far.tolist(), "lower-left"):
         found = run({**there, "origin": origin})
         assert found["collapse_acceleration_g"] == pytest.approx(here["collapse_acceleration_g"], rel=1e-9)

@@ -133,14 +133,14 @@ class Folder:
         target = self.inside(path if path.endswith(".toml") else f"{path}.toml")
         if target.exists() and not replace:
             raise NotThere(f"{target.relative_to(self.root)} is there already: choose to replace it, or another name")
-        for name, content in beside.items():
-            place = self.inside((target.parent.relative_to(self.root) / name).as_posix())
-            if not place.exists():
-                place.parent.mkdir(parents=True, exist_ok=True)
-                place.write_bytes(content)
-            elif place.read_bytes() != content:
-                raise NotThere(f"{name} is there already, with other content: save the deck in another folder")
         try:
+            for name, content in beside.items():
+                place = self.inside((target.parent.relative_to(self.root) / name).as_posix())
+                if not place.exists():
+                    place.parent.mkdir(parents=True, exist_ok=True)
+                    place.write_bytes(content)
+                elif place.read_bytes() != content:
+                    raise NotThere(f"{name} is there already, with other content: save the deck in another folder")
             target.parent.mkdir(parents=True, exist_ok=True)
             scratch = target.with_name(f".{target.name}.{os.getpid()}")
             scratch.write_text(text, encoding="utf-8", newline="")

@@ -38,7 +38,7 @@ class Reply:
             told = _JSON.encode(words)
         except (TypeError, ValueError):  # not a number, infinite, or a key that is no text
             told = _JSON.encode(plain(words))
-        head = told.encode()
+        head = told.encode(errors="backslashreplace")  # halves of surrogate pairs that a page sent: JSON for the same
         head += b" " * (-(len(head) + 4) % 8)
         return b"".join([struct.pack("<I", len(head)), head, *parts])
 

@@ -6,6 +6,7 @@ from extrados.core import motion as core
 
 BASELINES = {"none": None, "mean": 0, "linear": 1, "quadratic": 2, "cubic": 3}
 _ORDER = 4  # of the Butterworth filter; run forth and back it acts as twice that
+MOST_SAMPLES = 5_000_000  # that a filter runs over or that resampling gives, twice those of the longest record
 
 
 def baseline(acceleration: np.ndarray, step: float, kind: str) -> np.ndarray:
@@ -53,7 +54,8 @@ def band_pass(acceleration: np.ndarray, step: float, low: float | None, high: fl
 
     sections = signal.butter(_ORDER, corner, kind, fs=1.0 / step, output="sos")
     # Long enough for the slowest part to die out (Converse and Brady 1992: 1.5 n / f)
-    pad = int(np.ceil(1.5 * _ORDER / (low or high) / step))
+    slowest = low or high or nyquist
+    pad = _countable(np.ceil(1.5 * _ORDER / slowest / step), f"a filter at {slowest:g} Hz and its run-in take")
     ends = [(0, 0)] * (acceleration.ndim - 1) + [(pad, pad)]
     filtered = signal.sosfiltfilt(sections, np.pad(acceleration, ends), axis=-1, padtype=None)
     return filtered[..., pad : pad + acceleration.shape[-1]]
@@ -67,10 +69,18 @@ def resample(acceleration: np.ndarray, step: float, new_step: float) -> np.ndarr
         acceleration = band_pass(acceleration, step, None, 0.4 / new_step)
     points = acceleration.shape[-1]
     old = np.arange(points) * step
-    new = np.arange(int(np.floor(old[-1] / new_step * (1.0 + 1e-12))) + 1) * new_step
+    count = _countable(np.floor(old[-1] / new_step * (1.0 + 1e-12)) + 1.0, f"{new_step:g} s for {old[-1]:g} s are")
+    new = np.arange(count) * new_step
     rows = np.atleast_2d(acceleration)
     out = np.stack([np.interp(new, old, row) for row in rows])
     return out.reshape(*acceleration.shape[:-1], len(new))
+
+
+def _countable(samples: float, what: str) -> int:
+    """A number of samples, ValueError where there are more than memory should be taken for."""
+    if not samples <= MOST_SAMPLES:
+        raise ValueError(f"{what} {samples:.3g} samples, at most {MOST_SAMPLES:,}")
+    return int(samples)
 
 
 def factor_to(

@@ -20,6 +20,8 @@ STRONGEST = 5.0 * GRAVITY
 SUFFIXES = {".at2", ".vt2", ".dt2", ".v1", ".v2", ".v1c", ".v2c", ".smc", ".asc", ".ns", ".ew", ".ud", ".ns1", ".ns2",
             ".ew1", ".ew2", ".ud1", ".ud2", ".acc", ".dat", ".csv", ".txt", ".th", ".mseed", ".sac"}  # fmt: skip
 MOST_RECORDS = 2000
+MOST_WILD = 2  # times that a pattern may say **: each multiplies the folders that are looked into by their depth
+LONGEST = 10_800.0  # s: spectra take work by a motion's length over their shortest period, however few its samples
 
 
 @dataclass(frozen=True)
@@ -78,6 +80,8 @@ def _matching(pattern: str, root: Path) -> list[Path]:
         raise RecordError(f"{pattern}: leads out of the deck's folder")
     if not asked.parts:  # "." and "./", which Path.glob of Python 3.11 answers by errors of its own
         raise RecordError(f"{pattern}: is no pattern: it names no file")
+    if (wild := asked.parts.count("**")) > MOST_WILD:
+        raise RecordError(f"{pattern}: says ** {wild} times, at most {MOST_WILD} are followed")
     try:
         return sorted(p for p in root.glob(pattern) if p.is_file())
     except ValueError as error:
@@ -149,6 +153,10 @@ def record_motion(
     rows, step, notes = _together(record, [r for r in (second, vertical) if r is not None], do, name)
     try:
         step *= do.time_scale
+        if (lasts := step * (rows.shape[1] - 1)) > LONGEST:
+            raise ValueError(
+                f"{rows.shape[1]} samples every {step:g} s last {lasts:g} s, at most {LONGEST:g} s are taken"
+            )
         rows = processing.band_pass(rows, step, do.low_cut, do.high_cut)
         rows = processing.baseline(rows, step, do.baseline)
         if do.resample is not None:

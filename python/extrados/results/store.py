@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pydantic import ValidationError
+from pydantic import BaseModel, Field, ValidationError
 
 from extrados.results import written
 from extrados.results.fields import plain
@@ -32,6 +32,7 @@ STORE = "results.h5"
 CSV_ROWS = 10_000  # turned into text at a time
 #: Of arrays so many numbers are written or read at a time; results.h5 of more bytes leaves longer ones on disk
 LARGE, SMALL = 100_000, 8_000_000
+LARGEST_SUMMARY = 200_000_000  # bytes: a hundred times those of the longest that was seen
 REPORT = "report.html"
 #: Axes along which x, y and z stand
 AXES = ("axis", "axis3")
@@ -427,12 +428,64 @@ class Stored:
         return "" if self.folder is None else f"{self.folder}: "
 
 
-def _check_shape(summary: dict[str, Any]) -> None:
-    """KeyError or TypeError where summary.json lacks what readers rely on."""
-    deck = summary["deck"]
-    _ = summary["extrados"]["version"], deck["path"], deck["sha256"], deck["resolved"].items()
-    for analysis in summary["analyses"]:
-        _ = analysis["name"], analysis["kind"], analysis["status"], analysis["results"].items()
+class _Assumed(BaseModel):
+    """What readers rely on in summary.json; so the following."""
+
+    value: Any
+    unit: str
+    origin: str = Field(alias="from")
+    exceptions: bool
+
+
+class _Judged(BaseModel):
+    demand: float | None
+    capacity: float | None
+    unit: str
+    ratio: float | None
+    outcome: str
+    statement: str
+
+
+class _Row(BaseModel):
+    name: str
+    kind: str
+    status: str
+    reason: str
+    seconds: float
+    answer: str
+    warnings: list[str]
+    verdict: _Judged | None
+    assumptions: dict[str, _Assumed]
+    results: dict[str, Any]
+
+
+class _Deck(BaseModel):
+    path: Any
+    sha256: Any
+    resolved: dict[str, Any]
+
+
+class _Program(BaseModel):
+    version: str
+
+
+class _Summary(BaseModel):
+    extrados: _Program
+    deck: _Deck
+    analyses: list[_Row]
+    files: dict[str, str]
+
+
+def _check_shape(summary: Any) -> None:
+    """ValueError where summary.json lacks what readers rely on, as that of another version may."""
+    try:
+        _Summary.model_validate(summary)
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(map(str, first["loc"]))
+        raise ValueError(
+            f"{SUMMARY} is not what this version writes: {place}: {first['msg'].partition(' or instance')[0].lower()}"
+        ) from None
 
 
 def _on_disk(path: Path, name: str, length: int, dtype: np.dtype) -> Streamed:
@@ -448,13 +501,19 @@ def _on_disk(path: Path, name: str, length: int, dtype: np.dtype) -> Streamed:
     return Streamed(length, dtype, pieces)
 
 
+def _elsewhere(store: Any, file: Any) -> bool:
+    """Whether the numbers of an array do not all lie in the file, as ours do: in files elsewhere, or one that stands for
+    gigabytes."""
+    return bool(store.file != file or store.external or store.is_virtual or store.nbytes > store.id.get_storage_size())
+
+
 def read(folder: str | Path) -> Stored:
     """Read a run's folder; StoreError where it is damaged."""
     import h5py
 
     folder = Path(folder)
     try:
-        summary = json.loads(files.read(SUMMARY, None, folder).text())
+        summary = json.loads(files.read(SUMMARY, LARGEST_SUMMARY, folder).text())
         _check_shape(summary)
         if files.sum_of(STORE, folder) != summary["files"].get(STORE):
             raise StoreError(f"{folder / STORE}: does not match its checksum in {SUMMARY}; the file is damaged")
@@ -465,6 +524,10 @@ def read(folder: str | Path) -> Stored:
             for name, group in file.items():
                 arrays[name] = {}
                 for title, store in group.items():
+                    if store is None or _elsewhere(store, file):
+                        raise StoreError(
+                            f"{folder / STORE}: '{title}' does not lie in the file whole; extrados wrote no such one"
+                        )
                     if "unit" not in store.attrs:
                         continue
                     if not small and store.ndim == 1 and len(store) > LARGE and store.dtype.kind in "iuf":
@@ -473,6 +536,8 @@ def read(folder: str | Path) -> Stored:
                         data = store.asstr()[()] if h5py.check_string_dtype(store.dtype) else store[()]
                     dims = tuple(title if not len(d) else d[0].name.rsplit("/", 1)[1] for d in store.dims)
                     arrays[name][title] = Array(data, dims, *(store.attrs.get(mark, "") for mark in MARKS))
+        if untold := set(arrays) - {row["name"] for row in summary["analyses"]}:
+            raise StoreError(f"{folder / STORE}: holds '{min(untold)}', of which {SUMMARY} says nothing")
         head = {key: value for key, value in summary.items() if key != "analyses"}
         return Stored(folder, lambda: head, summary["analyses"], arrays)
     except files.BadFile as error:

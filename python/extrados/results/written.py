@@ -48,7 +48,7 @@ def note(folder: Path, *sums: dict[str, str]) -> None:
 
 def is_ours(folder: Path, name: str, known: dict[str, list[str]]) -> bool:
     """Whether extrados wrote a file of the folder and nobody has changed it since."""
-    if name not in known:
+    if name not in known or not _within(folder, name):
         return False
     try:
         return files.sum_of(name, folder) in known[name]
@@ -102,6 +102,19 @@ def beside(path: Path) -> Path:
     return next(other for other in numbered if not os.path.lexists(other))
 
 
+def _within(folder: Path, name: str) -> bool:
+    """Whether the folders above a file of a folder are its own, no links and no files, or not there yet."""
+    above = [folder / parent for parent in Path(name).parents[:-1]]
+    return all(is_plain_folder(path) or not os.path.lexists(path) for path in above)
+
+
+def _place(folder: Path, name: str) -> str:
+    """A file's place in a folder: in NAME-2, NAME-3 ... where a folder that it lies in is somebody's link or file."""
+    parent, _, own = name.rpartition("/")
+    numbered = itertools.chain([name], (f"{parent}-{k}/{own}" for k in itertools.count(2)))
+    return next(place for place in numbered if _within(folder, place))
+
+
 def put(scratch: Path, folder: Path, belongs: Callable[[str], bool]) -> dict[str, str]:
     """Move the files of a scratch folder into a folder; the name that each got there.
 
@@ -113,9 +126,10 @@ def put(scratch: Path, folder: Path, belongs: Callable[[str], bool]) -> dict[str
     others = {name: sums[-1] for name, sums in known.items() if not belongs(name)}
     names = {}
     for name in new:
-        taken = os.path.lexists(folder / name) and not is_ours(folder, name, known)
-        names[name] = beside(folder / name).relative_to(folder).as_posix() if taken else name
-        if taken:
+        place = _place(folder, name)
+        taken = os.path.lexists(folder / place) and not is_ours(folder, place, known)
+        names[name] = beside(folder / place).relative_to(folder).as_posix() if taken else place
+        if names[name] != name:
             log.warning(
                 "%s: was not written by extrados or changed since; the new one is %s", folder / name, names[name]
             )

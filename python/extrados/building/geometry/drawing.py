@@ -67,10 +67,10 @@ def read_json(file: File) -> Drawing:
     if not isinstance(value, dict) or not isinstance(value.get("blocks"), list):
         raise BadGeometry(f'{name}: expected an object with a list "blocks", or an assembly of COMPAS')
     if unknown := set(value) - {"unit", "blocks", "ground", "title"}:
-        raise BadGeometry(f"{name}: unknown key '{sorted(unknown)[0]}'; known are unit, title, blocks, ground")
+        raise BadGeometry(f"{name}: unknown key {_shown(min(unknown))}; known are unit, title, blocks, ground")
     unit = value.get("unit", "m")
     if not isinstance(unit, str) or unit not in UNITS:
-        raise BadGeometry(f"{name}: unit {unit!r}; expected one of {', '.join(UNITS)}")
+        raise BadGeometry(f"{name}: unit {_shown(unit)}; expected one of {', '.join(UNITS)}")
     scale = UNITS[unit]
     if len(value["blocks"]) > MOST_BLOCKS:
         raise BadGeometry(f"{name}: {len(value['blocks'])} blocks, at most {MOST_BLOCKS}")
@@ -83,11 +83,17 @@ def read_json(file: File) -> Drawing:
         if density is not None and (
             isinstance(density, bool) or not isinstance(density, int | float) or not 0.0 < density < 3e4
         ):
-            raise BadGeometry(f"{name}: block '{title}': density {density!r}, expected kg/m^3 above 0")
+            raise BadGeometry(f"{name}: block '{title}': density {_shown(density)}, expected kg/m^3 above 0")
         points = numbers(entry.get("points"), 2, f"{name}: block '{title}': points")
         polygons.append(Polygon(title, scale * points, density))
     ground = value.get("ground")
     return Drawing(polygons, None if ground is None else scale * numbers(ground, 4, f"{name}: ground"))
+
+
+def _shown(value: object) -> str:
+    """A value of a file as complaints quote it: its beginning."""
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:40]}..."
 
 
 def numbers(value: object, width: int, where: str) -> np.ndarray:

@@ -67,11 +67,12 @@ def read_dxf(
     scale = UNITS[unit or _unit(name, int(document.header.get("$INSUNITS", 0)))]
     known = {k.upper(): v for k, v in (meaning or {}).items()}
     known.setdefault(GROUND_LAYER, Layer("ground"))
+    _refuse_many(document, name)
     found = _Read()
     seen = set()
     for count, (entity, layer) in enumerate(_entities(document, name)):
         if count >= MOST_ENTITIES:
-            raise BadGeometry(f"{name}: more than {MOST_ENTITIES} entities")
+            raise BadGeometry(_too_many(name))
         seen.add(layer)
         means = known.get(layer.upper(), Layer())
         if means.role == "left-out":
@@ -105,6 +106,33 @@ def _unit(name: str, code: int) -> str:
         what = "has no unit ($INSUNITS = 0)" if code == 0 else f"has a unit not known here ($INSUNITS = {code})"
         raise BadGeometry(f'{name}: {what}; say which with  unit = "mm"  (one of {", ".join(UNITS)})')
     return INSUNITS[code]
+
+
+def _refuse_many(document: Any, name: str) -> None:
+    """BadGeometry where references to blocks come to more than MOST_ENTITIES: counted first, since to put them in their
+    places takes ezdxf minutes. Those without end, or to what is not there, `_entities` tells."""
+    counts: dict[str, int] = {}
+
+    def count(entities: Iterable[Any], depth: int) -> int:
+        total = 0
+        for entity in entities:
+            total += 1
+            if entity.dxftype() == "INSERT" and depth <= DEEPEST and entity.dxf.name in document.blocks:
+                block = entity.dxf.name.lower()
+                if block not in counts:
+                    counts[block] = 0  # while it is counted: one within itself
+                    counts[block] = count(document.blocks[block], depth + 1)
+                # the places of a grid without distances are one, which ezdxf finds by looking at each
+                total += max(entity.dxf.row_count, 1) * max(entity.dxf.column_count, 1) * (1 + counts[block])
+            if total > MOST_ENTITIES:
+                raise BadGeometry(_too_many(name))
+        return total
+
+    count(document.modelspace(), 1)
+
+
+def _too_many(name: str) -> str:
+    return f"{name}: more than {MOST_ENTITIES:,} entities, those of its references to blocks counted in their places"
 
 
 def _entities(document: Any, name: str) -> Iterator[tuple[Any, str]]:

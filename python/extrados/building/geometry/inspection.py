@@ -196,7 +196,7 @@ def _outline(polygon: Polygon, tolerance: float, shift: np.ndarray) -> np.ndarra
     points = np.asarray(polygon.points, dtype=float) - shift
     if not (np.abs(points) <= FARTHEST).all():  # NaN too
         far = np.abs(points).max()
-        near = np.floor((points + shift).min(axis=0)) if np.isfinite(far) else None
+        near = np.floor((points + shift).min(axis=0)) if far <= 1e12 else None  # what is farther is no place on Earth
         hint = "" if near is None else f"; origin = [{near[0]:.0f}, {near[1]:.0f}] would bring it near"
         raise BadGeometry(f"block '{polygon.name}': a vertex lies farther than {FARTHEST:g} m from the origin{hint}")
     # Vertices this near are one; a survey's tolerance is no reason to lose the corners of its stones.

@@ -46,7 +46,10 @@ def hello(desk: Desk, message: Message) -> Iterator[Reply]:
     )  # fmt: skip
     kept = message.get("kept")
     if isinstance(kept, dict) and isinstance(kept.get("text"), str):
-        for drop in kept.get("drops", [])[:20]:
+        drops = kept.get("drops", [])
+        if not isinstance(drops, list) or not all(isinstance(drop, dict) for drop in drops):
+            raise BadMessage("expected a list of files that were dropped")
+        for drop in drops[:20]:
             _keep(desk, drop)
         yield from open_deck(desk, {**kept, "do": "open"})
     elif desk.first is not None:

@@ -13,10 +13,11 @@ from extrados.building.errors import BadGeometry
 from extrados.building.geometry.compas import FARTHEST, mesh_of, nodes_of
 from extrados.building.geometry.drawing import UNITS
 from extrados.building.geometry.solids.assembly import MOST_SOLIDS, MOST_TOLD, Stone
-from extrados.building.geometry.solids.polyhedra import Polyhedron, hull, moments
+from extrados.building.geometry.solids.polyhedra import ManyFaces, Polyhedron, hull, moments
 
 MOST_VERTICES = 2_000_000
 MOST_CORNERS = 2_000  # of a convex body: bodies that overlap are compared edge by edge
+MOST_POINTS = 10_000  # of its mesh: Qhull takes the square of those on a circle, and hears no signal meanwhile
 CONVEX = 1e-4  # of its volume: what the hull of a convex body may have more
 PLANE = 1e-5  # how far facets of one face of a mesh may turn
 MERGED = 1e-6  # of the size of a file: corners of STL triangles nearer than this are one
@@ -135,6 +136,8 @@ def stones_of(meshes: Sequence[Mesh], density: float, unit: str | None, name: st
 
 def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]]) -> Polyhedron:
     """The convex body within a closed mesh; ValueError says in words why there is none."""
+    if len(points) > MOST_POINTS:
+        raise ValueError(f"is a mesh of {len(points)} points, at most {MOST_POINTS} are looked at: draw it coarser")
     around_edge: dict[tuple[int, int], list[int]] = {}
     for k, face in enumerate(faces):
         for i, j in _edges(face):
@@ -147,12 +150,15 @@ def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]]) -> Polyhedro
     if not np.ptp(points, axis=0).all():
         raise ValueError("is flat: it has no volume")
     volume = abs(moments(points, triangles)[0])
+    fine = f"is of more than {MOST_CORNERS} corners, the most that are looked at: draw it coarser"
     try:
-        whole = hull(points, PLANE)
+        whole = hull(points, PLANE, 2 * MOST_CORNERS)  # more faces have more corners, by Euler
+    except ManyFaces:
+        raise ValueError(fine) from None
     except ValueError:
         raise ValueError("is flat: it has no volume") from None
     if len(whole.vertices) > MOST_CORNERS:
-        raise ValueError(f"is of {len(whole.vertices)} corners, at most {MOST_CORNERS} are looked at: draw it coarser")
+        raise ValueError(fine)
     around = moments(whole.vertices, whole.triangles)[0]
     if volume < (1.0 - CONVEX) * around:
         raise ValueError(

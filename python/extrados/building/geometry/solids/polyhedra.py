@@ -91,8 +91,13 @@ def loft(below: np.ndarray, above: np.ndarray) -> Polyhedron:
     return Polyhedron(np.concatenate([below, above]), (tuple(range(k - 1, -1, -1)), tuple(range(k, 2 * k)), *sides))
 
 
-def hull(points: np.ndarray, flat: float = FLAT) -> Polyhedron:
-    """The convex hull of points (n, 3); facets that turn by less than `flat` are one face. ValueError where it has no volume."""
+class ManyFaces(ValueError):
+    """A hull has more faces than were asked for."""
+
+
+def hull(points: np.ndarray, flat: float = FLAT, most: float = np.inf) -> Polyhedron:
+    """The convex hull of points (n, 3); facets that turn by less than `flat` are one face. ValueError where it has no volume,
+    ManyFaces where it has more than `most`: their number times that of the facets is the work."""
     points = np.asarray(points, dtype=float)
     middle, size = points.mean(axis=0), float(np.ptp(points, axis=0).max())
     try:
@@ -106,7 +111,10 @@ def hull(points: np.ndarray, flat: float = FLAT) -> Polyhedron:
         if len(near):
             groups[near[0]].append(k)
         else:
-            planes, groups = np.vstack([planes, plane]), [*groups, [k]]
+            planes = np.vstack([planes, plane])
+            groups.append([k])
+            if len(planes) > most:
+                raise ManyFaces(f"the hull has more than {most:g} faces")
     scaled = (points - middle) / (size or 1.0)
     faces = []
     for plane, facets in zip(planes, groups, strict=True):
