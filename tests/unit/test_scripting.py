@@ -74,6 +74,10 @@ def test_an_object_is_what_a_deck_says() -> None:
         (lambda: extrados.sweep(DECK, over={"structure.thickness": [1.2, -1.0]}), "structure.thickness: -1.0: input should"),
         (lambda: extrados.sweep(DECK, over={"structure.thicknes": [1.2]}), "did you mean 'thickness'"),
         (lambda: extrados.sweep(DECK, over={"structure.thickness": 1.2}), "structure.thickness: expected a list"),
+        (
+            lambda: extrados.sweep(DECK, over={f"structure.k{k}": [1.0] * 1000 for k in range(5)}),
+            "every value with every other is 1,000,000,000,000,000 members, at most 1,000,000",
+        ),
         (lambda: extrados.sweep(DECK, over={"analysis.sla.events": [1]}), "no analysis 'sla'; there are tilt, rocking"),
     ],
 )  # fmt: skip

@@ -4,6 +4,7 @@ import copy
 import hashlib
 import itertools
 import json
+import math
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -30,6 +31,8 @@ from extrados.schema.table import Table
 if TYPE_CHECKING:
     import pandas
     import xarray
+
+MOST_MEMBERS = 1_000_000  # of a grid: each keeps its values in memory before the first is computed
 
 Tell = Callable[[float, float, str], None]
 
@@ -259,6 +262,8 @@ def _members(over: Any) -> tuple[list[str], list[list[Any]], tuple[int, ...] | N
         short = [key for key in over if str(key) not in axes]
         if short or not axes:
             raise DeckError([f"over: {key}: expected a list of values" for key in short] or ["over: names no key"])
+        if (count := math.prod(map(len, axes.values()))) > MOST_MEMBERS:
+            raise DeckError([f"over: every value with every other is {count:,} members, at most {MOST_MEMBERS:,}"])
         return list(axes), [list(row) for row in itertools.product(*axes.values())], tuple(map(len, axes.values()))
     given = [dict(row) for row in over]
     if not given or any(set(row) != set(given[0]) or not row for row in given):
