@@ -2,8 +2,9 @@
 
 Each step goes a given length of the displacements' norm on from the last state (Crisfield 1981, cylindrical arc length).
 Within it all overloaded points lose teeth at once and the secant stiffness is solved anew, until no point is overloaded.
-A step that does not converge is tried again at half the length; after MOST_CUTS of them the analysis stalls. Sequentially
-linear analysis needs none of this: it has one point per event, and no iteration.
+A step that does not converge is tried again at half the length; where that is a small share of the longest, the analysis
+stalls: whether still shorter steps converge is a matter of the last bits, and they lead nowhere. Sequentially linear
+analysis needs none of this: it has one point per event, and no iteration.
 """
 
 from collections.abc import Callable
@@ -16,8 +17,10 @@ from extrados.analyses.sla.tables import Sla
 from extrados.core import sla as core
 from extrados.core.calls import cancel_requested
 
-#: Iterations of a step, halvings of its length before the analysis stalls, iterations after which it may grow again
-MOST_ITERATIONS, MOST_CUTS, FEW = 50, 6, 8
+#: Iterations of a step, those after which its length may grow again
+MOST_ITERATIONS, FEW = 50, 8
+#: Of the longest step; at less the analysis stalls
+SHORTEST = 1.0 / 256.0
 #: Length of the first step over the norm of the displacements at the first crack
 FIRST = 0.25
 STALLED = "no convergence"
@@ -70,15 +73,14 @@ def run_incremental(
     longest, compliance, peak = 4.0 * length, float((fb * ub).sum()), 0.0
     rows: list[tuple[float, ...]] = []
     external = 0.5 * float((fa * ua).sum())
-    reason, cracked, cuts = "", float(first.crack_total), 0
+    reason, cracked = "", float(first.crack_total)
     while len(rows) < options.events and not reason and not cancel_requested():
         found, energy = _step(core_model, fa, fb, step, way, length)
         if found is None:
-            cuts, length = cuts + 1, 0.5 * length
-            if cuts > MOST_CUTS:
+            length = 0.5 * length
+            if length < SHORTEST * longest:
                 reason = STALLED
             continue
-        cuts = 0
         way = found.u - step.u
         external += 0.5 * float(((2.0 * fa + (step.load + found.load) * fb) * way).sum())
         stored = 0.5 * float(((fa + found.load * fb) * found.u).sum())
