@@ -42,7 +42,10 @@ def read_measured(context: Context, file: str) -> Measured:
     lines = [(k, line) for k, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
     if len(lines) < 3:
         raise Refused(f"{file}: expected a line of names and at least two of numbers", KEY)
-    rows = list(csv.reader(line for _, line in lines))
+    try:
+        rows = [next(csv.reader([line])) for _, line in lines]
+    except csv.Error as error:
+        raise Refused(f"{file}: is no CSV: {error}", KEY) from None
     names, scales = zip(*(_column(file, title) for title in rows[0]), strict=True)
     wanted = ("displacement", "load") if "load" in names else ("displacement", "least", "greatest")
     if sorted(names) != sorted(wanted):
@@ -55,7 +58,7 @@ def read_measured(context: Context, file: str) -> Measured:
         try:
             values[k] = [float(cell) for cell in row]
         except ValueError:
-            raise Refused(f"{file}:{lines[k + 1][0]}: expected {len(names)} numbers, found {row}", KEY) from None
+            raise Refused(f"{file}:{lines[k + 1][0]}: expected {len(names)} numbers, found {','.join(row)[:60]!r}", KEY) from None
     if not np.isfinite(values).all():
         raise Refused(f"{file}: holds a number that is not finite", KEY)
     columns = dict(zip(names, (values * scales).T, strict=True))

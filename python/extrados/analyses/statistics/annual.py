@@ -36,7 +36,7 @@ def hazard_curve(options: Hazard, folder: Path) -> HazardCurve:
             continue
         try:
             x, rate = (float(cell) for cell in next(csv.reader([line])))
-        except ValueError:
+        except (ValueError, csv.Error):
             raise Refused(
                 f"{options.file}:{k}: expected an intensity and an annual rate, found {line[:60]!r}", FILE
             ) from None
