@@ -58,7 +58,9 @@ def read_measured(context: Context, file: str) -> Measured:
         try:
             values[k] = [float(cell) for cell in row]
         except ValueError:
-            raise Refused(f"{file}:{lines[k + 1][0]}: expected {len(names)} numbers, found {','.join(row)[:60]!r}", KEY) from None
+            raise Refused(
+                f"{file}:{lines[k + 1][0]}: expected {len(names)} numbers, found {','.join(row)[:60]!r}", KEY
+            ) from None
     if not np.isfinite(values).all():
         raise Refused(f"{file}: holds a number that is not finite", KEY)
     columns = dict(zip(names, (values * scales).T, strict=True))
