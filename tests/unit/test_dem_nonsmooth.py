@@ -160,7 +160,11 @@ ARCH = '[structure]\nkind = "arch"\nradius = 10.0\nthickness = 1.5\nembrace = 15
     ("structure", "friction"),
     [
         (ARCH, 2.0),
-        ('[structure]\nkind = "brickwork"\nunit_length = 0.5\nunit_height = 0.25\nunits = 2\ncourses = 4\n', 0.35),
+        pytest.param(
+            '[structure]\nkind = "brickwork"\nunit_length = 0.5\nunit_height = 0.25\nunits = 2\ncourses = 4\n',
+            0.35,
+            marks=pytest.mark.verify,
+        ),
         ('[structure]\nkind = "column"\nwidth = 0.5\nheight = 2.0\ndrums = 4\n', 0.7),
     ],
 )

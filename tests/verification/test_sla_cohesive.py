@@ -102,6 +102,7 @@ def errors(
     )
 
 
+@pytest.mark.verify
 def test_the_reference_converges() -> None:
     """Twice as many elements change the peak by a thousandth and the tail by two at most, also where only the last hundredth
     of the ligament is whole; an outside program found 1174 N."""
