@@ -23,12 +23,6 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell's background jo
 ROOT = Path(__file__).resolve().parents[1]
 
 
-@pytest.hookimpl(optionalhook=True)
-def pytest_xdist_auto_num_workers() -> int:
-    """One more than cores: many tests wait for a process of their own, a server or a signal."""
-    return (len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1) + 1
-
-
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Long validation and whole trials take what they take; all else that waits for ever fails by `timeout`."""
     whole = float(os.environ.get("EXTRADOS_TRIALS", "0")) > 0.0
