@@ -247,6 +247,19 @@ def test_a_load_is_added_and_dragged(page: Any) -> None:
     assert run["tilt"].collapse_acceleration_g == pytest.approx(capacity(page), rel=1e-12)
 
 
+def test_a_button_that_is_pressed_hears_its_click_whatever_is_answered_meanwhile(page: Any) -> None:
+    shown = "document.querySelector('[data-number=plus]').textContent"
+    settled(page)
+    before = page.evaluate(shown)
+    page.locator("text=Add a load").hover()
+    page.mouse.down()
+    page.evaluate("window.extrados.change({ 'structure.thickness': 1.1 })")
+    settled(page)
+    page.mouse.up()
+    page.wait_for_selector("[data-handle=load-0-x]")
+    until(page, f"before => {shown} !== before", before)
+
+
 def test_the_line_follows_a_drag_from_the_stones_and_its_thrust_is_a_handle(page: Any) -> None:
     place = """k => {
         const { joint_p: p, joint_q: q } = window.extrados.arrays, edge = document.querySelector(".stage").getBoundingClientRect();

@@ -20,9 +20,15 @@ export function sidebar(app, box) {
   // Answer
 
   const row = (label, value, about = "") => h("tr", { title: about }, h("th", { scope: "row" }, label), h("td", {}, value));
+  // What is pressed stays until it is let go: replaced between the two, a button would not hear its click.
+  let pressed = false, late = false;
+  pages.answer.addEventListener("pointerdown", () => { pressed = true; });
+  for (const end of ["pointerup", "pointercancel"]) addEventListener(end, () => setTimeout(() => { pressed = false; if (late) answer(); }));
   function answer() {
     const scene = app.scene;
     if (!scene) return;
+    late = pressed;
+    if (pressed) return;
     if (scene.seen) { pages.answer.replaceChildren(...app.solid.page(scene.seen, scene.empty)); return; }
     if (scene.empty) { pages.answer.replaceChildren(h("p", { class: "verdict" }, scene.empty)); return; }
     const parts = [];
