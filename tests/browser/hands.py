@@ -1,0 +1,67 @@
+"""What tests do to the page and read of it: nothing while it is on its way. `settled` waits until all that was asked for is
+seen, `until` for what comes by itself (maps, runs, films) and is asserted."""
+
+import time
+from typing import Any
+
+
+def drag(page: Any, selector: str, dx: float, dy: float, steps: int = 8) -> None:
+    box = page.locator(selector).bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    for k in range(1, steps + 1):
+        page.mouse.move(x + dx * k / steps, y + dy * k / steps)
+    page.mouse.up()
+
+
+def until(page: Any, condition: str, arg: Any = None, timeout: float = 60_000) -> None:
+    """Wait for a condition; Playwright's own waiting evaluates text in the page, which its policy forbids."""
+    end = time.monotonic() + timeout / 1000
+    while not page.evaluate(condition, arg):
+        assert time.monotonic() < end, f"waited in vain for {condition}"
+        page.wait_for_timeout(40)
+
+
+def settled(page: Any) -> str:
+    """The deck's text once the hand rests and all that it asked for is seen."""
+    until(page, "window.extrados.still")
+    return page.evaluate("window.extrados.text")
+
+
+def capacity(page: Any) -> float:
+    return page.evaluate("window.extrados.scene.capacity.plus_g")
+
+
+def open_text(page: Any, text: str) -> None:
+    page.evaluate("text => window.extrados.open({ text, name: 'deck.toml' })", text)
+    until(page, "text => window.extrados.text === text", arg=text)
+    settled(page)
+
+
+def data_of(text: str) -> dict[str, Any]:
+    import tomllib
+
+    return tomllib.loads(text)
+
+
+ROCKING = """title = "Oppenheim's arch"
+
+[structure]
+kind = "arch"
+radius = 10.0
+thickness = 1.5
+embrace = 157.5
+voussoirs = 7
+
+[motion]
+kind = "step-pulse"
+amplitude = "0.8 g"
+duration = 0.2
+
+[[analysis]]
+kind = "tilt"
+[[analysis]]
+kind = "rocking"
+end_time = 3.0
+"""
