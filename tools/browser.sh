@@ -1,12 +1,13 @@
 #!/bin/sh
-# A browser for the tests of the interactive page: chromium by apt where that may be, Playwright into .venv. Without them
+# A browser for the tests of the interactive page: chromium by apt where that may be, Playwright into .venv, and what makes
+# the page a widget of notebooks. Without them
 # these tests are skipped and say so; nothing else needs them.
 set -u
 
-.venv/bin/python -c 'import playwright' 2>/dev/null \
-  || .venv/bin/python -m pip install -q --disable-pip-version-check \
-    "$(.venv/bin/python -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["browser"])')" \
-    2>/dev/null \
+wanted='import tomllib; extras = tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]; print(*extras["browser"], *extras["notebook"])'
+# shellcheck disable=SC2046
+.venv/bin/python -c 'import anywidget, playwright' 2>/dev/null \
+  || .venv/bin/python -m pip install -q --disable-pip-version-check $(.venv/bin/python -c "$wanted") 2>/dev/null \
   || echo "Playwright could not be installed: tests in a browser are skipped" >&2
 for name in chromium chromium-browser google-chrome; do
   command -v "$name" >/dev/null 2>&1 && exit 0
