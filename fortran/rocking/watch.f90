@@ -20,13 +20,13 @@ module rocking_watch
    integer, parameter :: demand_numbers = 6
 
    type :: joint_watch
-      real(wp) :: friction = huge(1.0_wp)  !! coefficient that the joints have
       real(wp) :: tolerance = 0.0_wp       !! how far the resultant may leave a joint, over its length
       !> Horizontal acceleration of the ground at which the resting structure slides, of the sides +1 and -1 [m/s^2]
       real(wp) :: slides(2) = huge(1.0_wp)
       integer :: joints = 0
       integer :: panels = 0                !! between rest and the critical rotation
       real(wp) :: critical(2) = 0.0_wp     !! [rad]
+      real(wp), allocatable :: friction(:) !! (joints) coefficient that they have
       !> (quantity N T E, input w h q'^2, joint, 0 to panels, side)
       real(wp), allocatable :: value(:, :, :, :, :)
    contains
@@ -47,28 +47,31 @@ module rocking_watch
 
 contains
 
-   !> From a flat list: friction, tolerance, both accelerations that slide it [m/s^2], joints, panels, both critical rotations,
-   !> the values of rocking_watch in their order
+   !> From a flat list: tolerance, both accelerations that slide it [m/s^2], joints, panels, both critical rotations, friction
+   !> of the joints, the values in their order
    subroutine joint_watch_new(list, watch, status)
       real(wp), intent(in) :: list(:)
       type(joint_watch), intent(out) :: watch
       integer(c_int), intent(out) :: status
-      integer :: stat
+      integer :: last, stat
 
       status = status_invalid_argument
-      if (size(list) < 8) return
-      if (any(list(1:4) < 0.0_wp) .or. list(5) < 1.0_wp .or. list(6) < 4.0_wp .or. any(list(7:8) <= 0.0_wp)) return
-      watch%friction = list(1)
-      watch%tolerance = list(2)
-      watch%slides = list(3:4)
-      watch%joints = nint(list(5))
-      watch%panels = nint(list(6))
-      watch%critical = list(7:8)
-      if (size(list) /= 8 + 18 * watch%joints * (watch%panels + 1)) return
-      allocate (watch%value(3, 3, watch%joints, 0:watch%panels, 2), stat=stat)
+      if (size(list) < 7) return
+      if (any(list(1:3) < 0.0_wp) .or. any(list(6:7) <= 0.0_wp)) return
+      if (any(list(4:5) < [1.0_wp, 4.0_wp]) .or. any(list(4:5) > real(size(list), wp))) return
+      watch%tolerance = list(1)
+      watch%slides = list(2:3)
+      watch%joints = nint(list(4))
+      watch%panels = nint(list(5))
+      watch%critical = list(6:7)
+      if (real(size(list), wp) < 7.0_wp + list(4) * (1.0_wp + 18.0_wp * (list(5) + 1.0_wp)) - 0.5_wp) return
+      last = 7 + watch%joints
+      if (size(list) /= last + 18 * watch%joints * (watch%panels + 1)) return
+      allocate (watch%friction(watch%joints), watch%value(3, 3, watch%joints, 0:watch%panels, 2), stat=stat)
       status = merge(status_ok, status_out_of_memory, stat == 0)
       if (stat /= 0) return
-      watch%value(:, :, :, :, :) = reshape(list(9:), [3, 3, watch%joints, watch%panels + 1, 2])
+      watch%friction(:) = list(8:last)
+      watch%value(:, :, :, :, :) = reshape(list(last + 1:), [3, 3, watch%joints, watch%panels + 1, 2])
    end subroutine joint_watch_new
 
    !> Enter what the joints must carry in a state
@@ -105,7 +108,7 @@ contains
             needed = huge(needed)
             beyond = huge(beyond)
          end if
-         if (needed > watch%friction .and. demand%slips_at < 0.0_wp) then
+         if (needed > watch%friction(j) .and. demand%slips_at < 0.0_wp) then
             demand%slips_at = time
             demand%slips = j
          end if

@@ -96,14 +96,14 @@ def _demand(numbers: np.ndarray) -> JointDemand:
 
 
 def watched_body(
-    bare: Body, values: tuple[np.ndarray, np.ndarray], critical: tuple[float, float], friction: float, tolerance: float,
+    bare: Body, values: tuple[np.ndarray, np.ndarray], critical: tuple[float, float], friction: np.ndarray, tolerance: float,
     slides: tuple[float, float] = (np.inf, np.inf),
 ) -> Body:  # fmt: skip
     """A structure whose joints are watched while it rocks (fortran/rocking/watch.f90).
 
     values (steps + 1, joints, 3, 3), rocking to +x and to -x, at equal steps from rest to the `critical` rotation [rad]: forces
     at each joint by input (1 + a_v/g; side a_h [m/s^2]; squared rate [rad^2/s^2]) and quantity (compression [N]; shear [N]; moment
-    about the joint's first end over its length [N]). friction: coefficient that the joints have; tolerance: how far the thrust
+    about the joint's first end over its length [N]). friction (joints): coefficient that they have; tolerance: how far the thrust
     line may leave a joint, over its length; slides: ground acceleration that slides the resting structure the way it would
     rock to +x, to -x [m/s^2].
     """
@@ -113,7 +113,7 @@ def watched_body(
     most = np.finfo(float).max
     numbers = [
         [bare.kind, len(bare.parameters)], bare.parameters,
-        np.minimum([friction, tolerance, *slides, joints, steps, *critical], most), *(v.ravel() for v in values),
+        np.minimum([tolerance, *slides, joints, steps, *critical, *friction], most), *(v.ravel() for v in values),
     ]  # fmt: skip
     return Body(
         lists.number("rocking_body", "watched"),
