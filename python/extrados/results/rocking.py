@@ -20,6 +20,40 @@ class RockingHinge(ResultModel):
     y_m: float = fact("y of the hinge", "m")
 
 
+class JointTime(ResultModel):
+    """Where and when a condition of rocking first fails."""
+
+    joint: str = fact("name of the joint; empty where the resting structure slides")
+    time_s: float = fact("first time", "s")
+
+
+class Conditions(ResultModel):
+    """Conditions of rocking by fixed hinges, checked along the motion up to the critical rotation: joints do not slide, and the
+    thrust line stays within them."""
+
+    friction: float | None = maybe("least coefficient of friction of the joints; null excludes sliding")
+    required_friction: float | None = maybe(
+        "greatest coefficient of friction that the joints need while it rocks; null where a joint comes under tension"
+    )
+    slides_first: JointTime = maybe("of one run: where and when the joints first lack friction")
+    leaves_first: JointTime = maybe(
+        "of one run: where and when the thrust line first leaves a joint by more than 1 % of it"
+    )
+    thrust_line_outside: float | None = maybe(
+        "of one run: how far the thrust line leaves a joint, over its length; below 0 inside; null under tension"
+    )
+    sliding: int = maybe("of many runs: those in which blocks slide")
+    sliding_share: float = maybe("of many runs: share in which blocks slide")
+    hinges_elsewhere: int = maybe("of many runs: those in which hinges form elsewhere")
+    hinges_elsewhere_share: float = maybe("of many runs: share in which hinges form elsewhere")
+    energy_astray: float = maybe(
+        "share of the kinetic energy after an impact without rebound at all joints that lies outside the mechanism that rocks on; "
+        "above 0.2 hinges form elsewhere at impacts", source="Moreau 1988",
+    )  # fmt: skip
+    not_checked: str = fact("conditions that are not checked, and why; empty where all are")
+    violated: list[str] = fact("conditions that do not hold, a sentence each")
+
+
 class RuleOutcome(ResultModel):
     """What the motion does under an impact rule."""
 
@@ -123,7 +157,14 @@ class Rocking(KindResults):
     outcomes_by_rule: list[RuleOutcome] = maybe(
         "under each impact rule, where their c_v differ by more than 1.3, and by what discrete elements keep where the blow is unsafe"
     )
-    decided_by_last_digits: bool = fact("whether the motion scaled by 1 +- 1e-6 ends in another outcome")
+    decided_by_last_digits: bool = fact(
+        "whether the run is chaotic: sensitive to perturbations of 1e-6 of the motion, which end in another outcome or grow beyond 1e4"
+    )
+    perturbation_growth: float = fact(
+        "greatest separation of histories, over the critical rotation, under a motion scaled by 1 +- 1e-6, over that perturbation"
+    )
+    conditions: Conditions = maybe("whether joints slide or hinges form elsewhere")
+    violated: list[str] = fact("assumptions that were checked and do not hold, a sentence each")
     stack: StackRocking = maybe("of two stacked blocks")
     soft_base: SoftBaseRocking = maybe("on a base that gives way ([supports] stiffness)")
     thrust_line_residual_m: float = maybe("of an arch: greatest error of the closing thrust line", "m")
@@ -137,7 +178,7 @@ class Rocking(KindResults):
             "and stays up",
             "open": "The run ended before it came to rest",
         }[outcome]
-        return judge(f"{text}.", self.peak_rotation_ratio, 1.0, "", outcome)
+        return judge(f"{text}.", self.peak_rotation_ratio, 1.0, "", outcome, violated=self.violated)
 
 
 class ModeCurve(ResultModel):
