@@ -203,9 +203,28 @@ class AtAmplitudes(ResultModel):
     )
 
 
+class RuleCurve(ResultModel):
+    """The failure curve by an impact rule."""
+
+    rule: str = fact("word of [joints] restitution")
+    restitution: float = fact("rate after over before an impact, held between 0 and 1; of a mechanism to +x")
+    amplitudes_g: list[float | None] = fact("lowest failing amplitude at each duration; null: none below the cap", "g")
+
+
 class FailureDomain(KindResults):
     """failure-domain: which pulses bring an arch or a block down."""
 
+    sliding_from_g: list[float | None] = fact(
+        "at each duration: lowest amplitude of the map at which blocks slide; null: at none", "g"
+    )
+    hinges_elsewhere_from_g: list[float | None] = fact(
+        "at each duration: lowest amplitude of the map at which hinges form elsewhere; null: at none", "g"
+    )
+    conditions: Conditions = fact("over the map: whether blocks slide or hinges form elsewhere")
+    amplitudes_by_rule: list[RuleCurve] = maybe("failure curve by each impact rule, where their c_v differ by more than 1.3")
+    rule_ratio: float | None = maybe(
+        "greatest ratio of the failing amplitudes of two impact rules at one duration; null: no duration at which two fail"
+    )
     pulse: Pulse = fact("shape of the pulses")
     mode_I: ModeCurve = fact("lowest amplitudes that bring it down in either mode, Mode I after an impact")
     mode_II: ModeCurve = fact("lowest amplitudes that bring it down in the first half cycle, without an impact")
@@ -221,6 +240,23 @@ class FailureDomain(KindResults):
     )
     mode_names: str = maybe("of a block: how the modes are called elsewhere")
 
+    def _violated(self, duration: float, amplitude: float) -> list[str]:
+        """What does not hold of the assumptions for a pulse [s, g]: conditions at the neighbouring durations of the map, and impact
+        rules between whose curves it lies."""
+        places, found = self.mode_I.durations_s, []
+        slides = _least(places, self.sliding_from_g, duration)
+        if slides is not None and amplitude >= slides:
+            found.append(f"Blocks slide from {slides:.3g} g on at this duration. Use dem, or check the friction.")
+        elsewhere = _least(places, self.hinges_elsewhere_from_g, duration)
+        if elsewhere is not None and amplitude >= elsewhere:
+            found.append(f"Hinges form elsewhere from {elsewhere:.3g} g on at this duration. Use dem.")
+        curves = [(one.rule, between(places, one.amplitudes_g, duration)) for one in self.amplitudes_by_rule or []]
+        fails = {rule: capacity is not None and amplitude >= capacity for rule, capacity in curves}
+        if len(set(fails.values())) > 1:
+            told = ", ".join(f'"{rule}" {"collapses" if one else "stands"}' for rule, one in fails.items())
+            found.append(f"The impact rule decides the outcome: {told}.")
+        return found
+
     def judged(self, demand: Demand) -> Verdict:
         """A motion that is such a pulse [g] against the curve between its durations; without one the lowest failing
         amplitude of all is told."""
@@ -232,7 +268,7 @@ class FailureDomain(KindResults):
                 word = "stays below" if amplitude < capacity else "reaches"
                 return judge(
                     f"The motion, {amplitude:.3g} g for {duration:.3g} s, {word} the failure curve ({capacity:.3g} g there).",
-                    amplitude, capacity, "g",
+                    amplitude, capacity, "g", violated=self._violated(duration, amplitude),
                 )  # fmt: skip
         failing = [a for a in curve if a is not None]
         if not failing:
@@ -241,6 +277,14 @@ class FailureDomain(KindResults):
             f"Over the {self.pulse} pulses tried the lowest amplitude that brings it down is {min(failing):.3g} g.",
             None, min(failing), "g",
         )  # fmt: skip
+
+
+def _least(places: list[float], values: list[float | None], place: float) -> float | None:
+    """The least value at the neighbours of a place; None where both have none."""
+    order = sorted(zip(places, values, strict=True), key=lambda pair: abs(pair[0] - place))
+    low = [pair for pair in order if pair[0] <= place][:1]
+    high = [pair for pair in order if pair[0] >= place][:1]
+    return min((value for _, value in low + high if value is not None), default=None)
 
 
 def between(places: list[float], values: list[float | None], place: float) -> float | None:

@@ -65,6 +65,10 @@ class Rocker:
             return self.watch.watched(body)
         return body if self.restraints is None else self.restraints.hold(body)
 
+    def rivals(self, factor: float) -> dict[str, tuple[float, Body]]:
+        """Rule -> (c_v, structure) of all impact rules where they differ by more than the factor; none where there is one."""
+        return {} if isinstance(self.model, SoftBaseModel) else self.model.rivals(factor)
+
     def rebounding(self, factor: float) -> "Rocker":
         """The same with c_v times a factor, as long as an impact creates no energy."""
         assert not isinstance(self.model, SoftBaseModel) and self.restitution is not None
