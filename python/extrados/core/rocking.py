@@ -16,8 +16,22 @@ from extrados.core.ground import Ground, MotionSet, as_motion_set
 from extrados.core.handles import Owner
 
 __all__ = [
-    "EVENTS", "FAILED", "OUTCOMES", "Body", "BodyList", "Ensemble", "Ground", "MotionSet", "Response", "arch_body", "block_body",
-    "JointDemand", "ensemble", "history", "limits", "watched_body",
+    "EVENTS",
+    "FAILED",
+    "OUTCOMES",
+    "Body",
+    "BodyList",
+    "Ensemble",
+    "Ground",
+    "JointDemand",
+    "MotionSet",
+    "Response",
+    "arch_body",
+    "block_body",
+    "ensemble",
+    "history",
+    "limits",
+    "watched_body",
 ]  # fmt: skip
 
 #: Outcomes by their number, from 0; events by theirs.

@@ -221,7 +221,9 @@ class FailureDomain(KindResults):
         "at each duration: lowest amplitude of the map at which hinges form elsewhere; null: at none", "g"
     )
     conditions: Conditions = fact("over the map: whether blocks slide or hinges form elsewhere")
-    amplitudes_by_rule: list[RuleCurve] = maybe("failure curve by each impact rule, where their c_v differ by more than 1.3")
+    amplitudes_by_rule: list[RuleCurve] = maybe(
+        "failure curve by each impact rule, where their c_v differ by more than 1.3"
+    )
     rule_ratio: float | None = maybe(
         "greatest ratio of the failing amplitudes of two impact rules at one duration; null: no duration at which two fail"
     )
@@ -272,10 +274,10 @@ class FailureDomain(KindResults):
                 )  # fmt: skip
         failing = [a for a in curve if a is not None]
         if not failing:
-            return judge("None of the pulses tried brings it down.", None, None, "g")
+            return judge("None of the pulses tried brings it down.", None, None, "g", violated=self.conditions.violated)
         return judge(
             f"Over the {self.pulse} pulses tried the lowest amplitude that brings it down is {min(failing):.3g} g.",
-            None, min(failing), "g",
+            None, min(failing), "g", violated=self.conditions.violated,
         )  # fmt: skip
 
 
@@ -322,6 +324,21 @@ class FailureCurve(ResultModel):
         "of each motion: its primary impulse against the curve; null: its period lies outside the curve"
     )
     run_outcomes: list[RockingOutcome | None] = fact("of each motion: what it does, run through; null: no answer")
+    sliding_from_g: list[float | None] = fact(
+        "at each duration: lowest amplitude tried up to the curve at which blocks slide; null: at none", "g"
+    )
+    hinges_elsewhere_from_g: list[float | None] = fact(
+        "at each duration: lowest amplitude tried up to the curve at which hinges form elsewhere; null: at none", "g"
+    )
+    conditions: Conditions = fact(
+        "over the points of the curve: below how many of them blocks slide or hinges form elsewhere"
+    )
+    amplitudes_by_rule: list[RuleCurve] = maybe(
+        "the curve by each impact rule, where their c_v differ by more than 1.3"
+    )
+    rule_ratio: float | None = maybe(
+        "greatest ratio of the failing amplitudes of two impact rules at one duration; null: no duration at which two fail"
+    )
 
 
 class FailureCurves(KindResults):
@@ -346,8 +363,9 @@ class FailureCurves(KindResults):
         if not lowest:
             return judge("None of the pulses tried brings any of them down.", None, None, "g")
         least, label = min(lowest)
+        violated = next(c.conditions.violated for c in self.curves if c.label == label)
         return judge(
-            f"Of the {len(self.curves)} curves that of {label} goes lowest: {least:.3g} g.", None, least, "g"
+            f"Of the {len(self.curves)} curves that of {label} goes lowest: {least:.3g} g.", None, least, "g", violated=violated
         )  # fmt: skip
 
 
@@ -394,6 +412,11 @@ class Assessment(KindResults):
     verdict: Literal["stands", "fails"] = fact("whether one of them brings it down by the criterion")
     run_outcome: RockingOutcome | None = fact("what the whole motion does by the equation of motion")
     margin: float | None = fact("least failing amplitude over amplitude; null where no impulse can do harm")
+    conditions: Conditions = fact("under the whole motion: whether blocks slide or hinges form elsewhere")
+    margins_by_rule: dict[str, float | None] = maybe(
+        "margin by each impact rule, from a curve fitted by it, where their c_v differ by more than 1.3; null: no impulse can do harm"
+    )
+    violated: list[str] = fact("assumptions that were checked and do not hold, a sentence each")
     primary_impulse: PrimaryImpulse | None = fact("the strongest impulse; null where the motion has none")
 
     def judged(self, demand: Demand) -> Verdict:
@@ -404,11 +427,13 @@ class Assessment(KindResults):
             if i.margin is not None and i.failing_amplitude_g is not None
         ]
         if not harmful:
-            return judge("No impulse of the motion is long enough to bring it down.", None, None, "g", "stands")
+            return judge(
+                "No impulse of the motion is long enough to bring it down.", None, None, "g", "stands", violated=self.violated
+            )  # fmt: skip
         _, failing, worst = min(harmful, key=lambda row: row[0])
         size = abs(worst.amplitude_g)
         word = "below" if size < failing else "at or above"
         return judge(
             f"The motion's impulse of {size:.3g} g over {worst.period_s:.3g} s is {word} the failing amplitude of "
-            f"{failing:.3g} g.", size, failing, "g",
+            f"{failing:.3g} g.", size, failing, "g", violated=self.violated,
         )  # fmt: skip

@@ -13,7 +13,6 @@ from extrados.building.rockers.soft_base import SoftBaseModel
 from extrados.building.rockers.watch import LOST, Watch
 from extrados.core.rocking import FAILED, JointDemand, Response
 from extrados.results.rocking import Conditions, JointTime
-from extrados.schema.constants import GRAVITY
 
 #: What a member of an ensemble keeps of the demand on its joints, see `rows_of`
 ROWS = ("friction", "slips", "strays")
@@ -109,7 +108,7 @@ def violated(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
     assert watch is not None
     found = []
     if counted.sliding:
-        share = _percent(counted.sliding, counted.runs)
+        share = _share(counted.sliding, counted.runs, runs)
         given = friction_of(watch)
         if np.isfinite(min(watch.capacity)):
             reason = f"the resting {rocker.word} slides from {min(watch.capacity):.3g} g on, and rocking starts at {rocker.uplift:.3g} g"
@@ -118,12 +117,20 @@ def violated(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
         else:
             reason = "a joint comes under tension"
         found.append(
-            f"Friction {given:.2f} is too low in {share} of the {runs}: {reason}. Blocks slide first. Use dem, or check the friction."
+            f"Friction {given:.2f} is too low {share}: {reason}. Blocks slide first. Use dem, or check the friction."
         )
     if counted.elsewhere:
-        share = _percent(counted.elsewhere, counted.runs)
-        found.append(f"Hinges form elsewhere in {share} of the {runs}: {_elsewhere(rocker)}. Use dem.")
+        share = _share(counted.elsewhere, counted.runs, runs)
+        found.append(
+            f"Hinges form elsewhere {share}: {_elsewhere(rocker)}. Use dem." if watch.strikes
+            else f"The base lifts off as a whole {share}: rocking without flight is assumed. Use dem."
+        )  # fmt: skip
     return found
+
+
+def told(conditions: Conditions) -> list[str]:
+    """What is said of the conditions beside an answer."""
+    return [*conditions.violated, *(text for text in [conditions.not_checked] if text)]
 
 
 def _elsewhere(rocker: Rocker) -> str:
@@ -136,9 +143,16 @@ def _elsewhere(rocker: Rocker) -> str:
     return "the thrust line leaves a joint"
 
 
-def _percent(part: int, whole: int) -> str:
-    share = 100.0 * part / max(whole, 1)
-    return f"{share:.0f} %" if 1.0 <= share <= 99.0 or part == whole else f"{share:.2g} %"
+def _share(part: int, whole: int, runs: str) -> str:
+    """In how many of the runs."""
+    if whole == 1:
+        return "under the motion"
+    share = 100.0 * part / whole
+    return (
+        f"in {share:.0f} % of the {runs}"
+        if 1.0 <= share <= 99.0 or part == whole
+        else f"in {share:.2g} % of the {runs}"
+    )
 
 
 def of_one(rocker: Rocker, response: Response) -> tuple[dict[str, Any], list[str]]:
@@ -174,8 +188,9 @@ def of_one(rocker: Rocker, response: Response) -> tuple[dict[str, Any], list[str
             else ", and a joint comes under tension"
         )
         found.append(
-            f"Hinges form elsewhere: the thrust line leaves {leaves.joint} at {leaves.time_s:.3f} s{far}. Use dem."
-        )
+            f"Hinges form elsewhere: the thrust line leaves {leaves.joint} at {leaves.time_s:.3f} s{far}. Use dem." if watch.strikes
+            else f"The base lifts off as a whole at {leaves.time_s:.3f} s: rocking without flight is assumed. Use dem."
+        )  # fmt: skip
     astray = astray_of(rocker)
     if response.half_cycles > 1 and astray > LOST:
         found.append(
@@ -197,8 +212,3 @@ def of_one(rocker: Rocker, response: Response) -> tuple[dict[str, Any], list[str
 
 def _upper(text: str) -> str:
     return text[:1].upper() + text[1:]
-
-
-def at_rest(rocker: Rocker) -> float:
-    """Acceleration of the ground at which the resting structure slides before it rocks [m/s^2]; infinite where it rocks first."""
-    return min(rocker.watch.capacity) * GRAVITY if rocker.watch is not None else np.inf

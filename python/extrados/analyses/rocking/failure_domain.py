@@ -13,7 +13,7 @@ import numpy as np
 from extrados.analyses.batches import computed, sweep
 from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
-from extrados.analyses.rocking.conditions import ROWS, Counted, astray_of, of_many
+from extrados.analyses.rocking.conditions import ROWS, Counted, astray_of, of_many, told
 from extrados.analyses.rocking.doubts import DIFFER
 from extrados.analyses.rocking.tables import FailureDomain
 from extrados.analyses.runs import RunsJob, runs_job
@@ -353,20 +353,18 @@ def run(context: Context, options: FailureDomain) -> Result:
     return result
 
 
-def warned(r: out.FailureDomain) -> list[str]:
+def warned(r: out.FailureDomain | out.FailureCurve) -> list[str]:
     """Conditions that do not hold or are not checked, and the band of the impact rules."""
-    conditions = r.conditions
-    found = [*conditions.violated, *(text for text in [conditions.not_checked] if text)]
-    return [*found, *(text for text in [rule_band(r.amplitudes_by_rule, r.rule_ratio)] if text)]
+    return [*told(r.conditions), *(text for text in [rule_band(r.amplitudes_by_rule, r.rule_ratio)] if text)]
 
 
 def rule_band(curves: list[out.RuleCurve] | None, ratio: float | None) -> str:
     """What the impact rules leave open of a failure curve, in words; "" where they agree."""
     if not curves:
         return ""
-    told = ", ".join(f'"{one.rule}" {one.restitution:.3f}' for one in curves)
+    each = ", ".join(f'"{one.rule}" {one.restitution:.3f}' for one in curves)
     band = "" if ratio is None else f"; the failing amplitude differs by up to {ratio:.2f} between them"
-    return f"The impact rules differ by more than {DIFFER:g} for this structure ({told}){band}. Use dem where this decides."
+    return f"The impact rules differ by more than {DIFFER:g} for this structure ({each}){band}. Use dem where this decides."
 
 
 def _by_rule(
@@ -377,7 +375,13 @@ def _by_rule(
         rule: (
             c_v,
             LowestAmplitudes(
-                model.held(body), options.pulse, durations, amplitudes, settle, options.accuracy * GRAVITY, model.start_rotation
+                model.held(body),
+                options.pulse,
+                durations,
+                amplitudes,
+                settle,
+                options.accuracy * GRAVITY,
+                model.start_rotation,
             ),
         )
         for rule, (c_v, body) in model.rivals(DIFFER).items()
@@ -392,18 +396,19 @@ def curves_by_rule(
     if not jobs:
         return {}
     found = {
-        rule: computed(context, "failure-curves", job, count, f"failure curve by the impact rule {rule}", context.threads)["amplitude"]
+        rule: computed(
+            context, "failure-curves", job, count, f"failure curve by the impact rule {rule}", context.threads
+        )["amplitude"]
         for rule, (_, job) in jobs.items()
     }
     every = np.array(list(found.values()))
-    both = np.isfinite(every).sum(axis=0) > 1
-    with np.errstate(invalid="ignore", divide="ignore"):
-        ratio = np.where(both, np.nanmax(every[:, :], axis=0, initial=0.0) / np.nanmin(every, axis=0, initial=np.inf), 1.0)
+    fail = every[:, np.isfinite(every).sum(axis=0) > 1]
     return {
         "amplitudes_by_rule": [
-            out.RuleCurve(rule=rule, restitution=jobs[rule][0], amplitudes_g=curve / GRAVITY) for rule, curve in found.items()
+            out.RuleCurve(rule=rule, restitution=jobs[rule][0], amplitudes_g=curve / GRAVITY)
+            for rule, curve in found.items()
         ],
-        "rule_ratio": float(ratio.max(initial=1.0)) if both.any() else None,
+        "rule_ratio": float((np.nanmax(fail, axis=0) / np.nanmin(fail, axis=0)).max()) if fail.size else None,
     }
 
 

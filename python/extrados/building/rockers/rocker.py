@@ -65,6 +65,10 @@ class Rocker:
             return self.watch.watched(body)
         return body if self.restraints is None else self.restraints.hold(body)
 
+    def unwatched(self) -> "Rocker":
+        """The same without the tables of its joints."""
+        return self if self.watch is None else replace(self, body=self.model.body, watch=None)
+
     def rivals(self, factor: float) -> dict[str, tuple[float, Body]]:
         """Rule -> (c_v, structure) of all impact rules where they differ by more than the factor; none where there is one."""
         return {} if isinstance(self.model, SoftBaseModel) else self.model.rivals(factor)

@@ -1,6 +1,5 @@
 """What a rocking structure takes for granted of its joints: that they do not slide, and that no other hinge opens."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
