@@ -330,7 +330,7 @@ def test_a_proof_of_collapse_overrules_all_else() -> None:
     ]
     found = facts(rows)
     overall, words = conclusion(found, [], found.pairs(), "arch", (0.0, "tilt"), rows)
-    assert overall == "cannot stand" and "overrules sla" in words and "Proof." in words
+    assert overall == "cannot stand" and "overrules the opposite result of sla" in words and "Proof." in words
     assert found.relation("tilt", "sla") == "disagree"
     assert facts([rows[0], verdict("dem", "collapses")]).relation("tilt", "dem") == "agree"
 
@@ -484,3 +484,25 @@ def test_elements_that_a_millionth_turns_are_open(monkeypatch: pytest.MonkeyPatc
     assert rows["dem"].outcome == "open" and "last digits" in rows["dem"].statement
     (one,) = [x for x in r.reasons if x.rule == "last-digits"]
     assert one.numbers["displacement_nudged_m"] == 9.0
+
+
+@pytest.mark.parametrize(
+    "structure",
+    [
+        {"kind": "stack", "lower_width": 1.0, "lower_height": 1.5, "upper_width": 0.6, "upper_height": 2.0},
+        {
+            "kind": "wall",
+            "unit_length": 0.4,
+            "unit_height": 0.2,
+            "thickness": 0.2,
+            "height": 0.8,
+            "legs": [{"length": 1.2}, {"length": 0.8}],
+        },
+    ],
+)
+def test_what_strategies_cannot_look_at_ends_no_assessment(structure: dict) -> None:
+    run = extrados.run({"structure": structure, "motion": PULSE, "analysis": [{"kind": "assess", "budget": 5}]})
+    r = run["assess"]
+    rows = {v.strategy: v for v in r.verdicts}
+    assert rows["tilt"].status == "ok" and r.overall != "open"
+    assert not [v.reason for v in r.verdicts if "internal" in v.reason] + [n for n in r.not_done if "internal" in n]

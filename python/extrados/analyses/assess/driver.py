@@ -27,7 +27,7 @@ from extrados.analyses.assess.words import answer, conclusion, table_of
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import faulty
 from extrados.analyses.context import Context, Refused
-from extrados.building.errors import BadGeometry
+from extrados.building.errors import BadGeometry, NoView
 from extrados.motions.from_deck import is_set
 from extrados.results import assess as out
 from extrados.results.dem import DemRun
@@ -441,7 +441,10 @@ class _Work:
             def needed(amplitude: float) -> float | None:
                 if "rocking" not in self.results:
                     return None
-                unit = self.context.building.rocker().time_unit
+                try:
+                    unit = self.context.building.rocker().time_unit
+                except NoView:  # it rocks in several coordinates
+                    return None
                 keys = {"pulse": "rectangular", "durations": [0.02 * unit, 20.0 * unit], "amplitudes": 2, "at_amplitudes": [f"{amplitude!r} g"],
                         "max_amplitude": f"{2.0 * amplitude!r} g"}  # fmt: skip
                 found = self._probe(

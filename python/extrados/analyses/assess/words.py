@@ -56,10 +56,10 @@ def conclusion(
     if proven:
         overall = "cannot stand"
         first = next(facts.rows[n] for n in facts.judged() if facts.outcome(n) == "cannot-stand")
-        said.append(f"The {word} cannot stand: {_list(proven)} {_verb(proven, 'prove')} collapse under self-weight.")
+        said.append(f"The {word} cannot stand: collapse under self-weight is proved by {_list(proven)}.")
         said.append(first.statement)
         if stands:
-            said.append(f"This proof overrules {_list(stands)}, which {_verb(stands, 'find')} that the {word} stands.")
+            said.append(f"The proof overrules the opposite result of {_list(stands)}.")
     elif not stands and not collapses and not left:
         overall = "open"
         said.append(f"No strategy has a verdict on the {word} under this hazard.")
@@ -79,7 +79,7 @@ def conclusion(
         if stands or collapses:
             said.append(f"The {word} {'stands' if stands else 'collapses'} by {_list(stands or collapses)}.")
     if left:
-        said.append(f"{_list(left)[:1].upper()}{_list(left)[1:]} {_verb(left, 'leave')} the question open.")
+        said.append(f"The outcome stays open by {_list(left)}.")
     decisive = [one for one in reasons if any(facts.relation(*p) in ("disagree", "open") for p in one.explains)]  # type: ignore[misc]
     if decisive:
         said.append(f"The difference comes from {_list(list(dict.fromkeys(one.headline for one in decisive)))}.")
@@ -104,11 +104,6 @@ def _count(words: list[str]) -> str:
     if len(words) == 1:
         return f"the one strategy that has a verdict, {words[0]}"
     return f"all {len(words)} strategies that have a verdict"
-
-
-def _verb(who: list[str], verb: str) -> str:
-    """The verb in the third person for one subject or several."""
-    return f"{verb}s" if len(who) == 1 else verb
 
 
 def _list(words: list[str]) -> str:
