@@ -164,7 +164,9 @@ class Rocking(KindResults):
         "greatest separation of histories, over the critical rotation, under a motion scaled by 1 +- 1e-6, over that perturbation"
     )
     conditions: Conditions = maybe("whether joints slide or hinges form elsewhere")
-    violated: list[str] = fact("assumptions that were checked and do not hold, a sentence each")
+    violated: list[str] = fact(
+        "further assumptions that were checked and do not hold: chaos, impact rules, a sentence each"
+    )
     stack: StackRocking = maybe("of two stacked blocks")
     soft_base: SoftBaseRocking = maybe("on a base that gives way ([supports] stiffness)")
     thrust_line_residual_m: float = maybe("of an arch: greatest error of the closing thrust line", "m")
@@ -178,7 +180,8 @@ class Rocking(KindResults):
             "and stays up",
             "open": "The run ended before it came to rest",
         }[outcome]
-        return judge(f"{text}.", self.peak_rotation_ratio, 1.0, "", outcome, violated=self.violated)
+        broken = [] if self.conditions is None else self.conditions.violated
+        return judge(f"{text}.", self.peak_rotation_ratio, 1.0, "", outcome, violated=[*broken, *self.violated])
 
 
 class ModeCurve(ResultModel):
@@ -361,7 +364,8 @@ class FailureCurves(KindResults):
             (min(failing), c.label) for c in self.curves if (failing := [a for a in c.amplitudes_g if a is not None])
         ]
         if not lowest:
-            return judge("None of the pulses tried brings any of them down.", None, None, "g")
+            every = [f"{c.label}: {text}" for c in self.curves for text in c.conditions.violated]
+            return judge("None of the pulses tried brings any of them down.", None, None, "g", violated=every)
         least, label = min(lowest)
         violated = next(c.conditions.violated for c in self.curves if c.label == label)
         return judge(
@@ -416,7 +420,7 @@ class Assessment(KindResults):
     margins_by_rule: dict[str, float | None] = maybe(
         "margin by each impact rule, from a curve fitted by it, where their c_v differ by more than 1.3; null: no impulse can do harm"
     )
-    violated: list[str] = fact("assumptions that were checked and do not hold, a sentence each")
+    violated: list[str] = fact("further assumptions that were checked and do not hold, a sentence each")
     primary_impulse: PrimaryImpulse | None = fact("the strongest impulse; null where the motion has none")
 
     def judged(self, demand: Demand) -> Verdict:
@@ -428,12 +432,12 @@ class Assessment(KindResults):
         ]
         if not harmful:
             return judge(
-                "No impulse of the motion is long enough to bring it down.", None, None, "g", "stands", violated=self.violated
+                "No impulse of the motion is long enough to bring it down.", None, None, "g", "stands", violated=[*self.conditions.violated, *self.violated]
             )  # fmt: skip
         _, failing, worst = min(harmful, key=lambda row: row[0])
         size = abs(worst.amplitude_g)
         word = "below" if size < failing else "at or above"
         return judge(
             f"The motion's impulse of {size:.3g} g over {worst.period_s:.3g} s is {word} the failing amplitude of "
-            f"{failing:.3g} g.", size, failing, "g", violated=self.violated,
+            f"{failing:.3g} g.", size, failing, "g", violated=[*self.conditions.violated, *self.violated],
         )  # fmt: skip

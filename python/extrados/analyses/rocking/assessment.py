@@ -69,7 +69,7 @@ def run(context: Context, options: Assessment) -> Result:
         margin=worst.margin if worst else None,
         **conditions,
         **({"margins_by_rule": by_rule} if by_rule else {}),
-        violated=[*conditions["conditions"].violated, *_undecided(by_rule)],
+        violated=_undecided(by_rule),
         primary_impulse=out.PrimaryImpulse(**{k: rows[0][k] for k in out.PrimaryImpulse.model_fields})
         if rows
         else None,

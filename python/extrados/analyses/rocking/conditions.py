@@ -155,11 +155,11 @@ def _share(part: int, whole: int, runs: str) -> str:
     )
 
 
-def of_one(rocker: Rocker, response: Response) -> tuple[dict[str, Any], list[str]]:
-    """Results of the conditions of one run, and a sentence for each that does not hold."""
+def of_one(rocker: Rocker, response: Response) -> dict[str, Any]:
+    """Results of the conditions of one run."""
     watch, joints = rocker.watch, response.joints
     if watch is None or joints is None:
-        return {"conditions": Conditions(not_checked=not_checked(rocker), violated=[])}, []
+        return {"conditions": Conditions(not_checked=not_checked(rocker), violated=[])}
     found: list[str] = []
     given, needed, outside = friction_of(watch), float(joints.friction), float(joints.outside)
     slides = leaves = None
@@ -207,7 +207,7 @@ def of_one(rocker: Rocker, response: Response) -> tuple[dict[str, Any], list[str
         not_checked=not_checked(rocker),
         violated=found,
     )
-    return {"conditions": results}, found
+    return {"conditions": results}
 
 
 def _upper(text: str) -> str:

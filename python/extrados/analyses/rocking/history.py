@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.rocking.conditions import of_one
+from extrados.analyses.rocking.conditions import of_one, told
 from extrados.analyses.rocking.doubts import Doubts
 from extrados.analyses.rocking.tables import Rocking
 from extrados.building.rockers.arch import ArchModel
@@ -75,7 +75,6 @@ def rocking_result(
     """
     impacts = [(t, v) for kind, t, v in response.events if kind == "impact"]
     collapse = response.outcome == "collapse"
-    conditions, broken = of_one(rocker, response)
     energy = response.kinetic + response.potential + response.stored
     scale = max(float(np.abs(energy).max(initial=0.0)), abs(response.work), 1e-300)
     result = Result("rocking", status="interrupted" if response.interrupted else "ok")
@@ -105,14 +104,14 @@ def rocking_result(
         rejected_steps=response.rejected,
         decided_by_last_digits=doubt.chaotic,
         perturbation_growth=doubt.growth,
-        **conditions,
-        violated=[*broken, *doubt.violated],
+        **of_one(rocker, response),
+        violated=doubt.violated,
         **({"outcomes_by_rule": doubt.rules} if doubt.rules else {}),
         **_held(rocker, response),
         **further,
     )
     result.results = r
-    result.warnings += [*r.violated, *doubt.warnings, *(text for text in [r.conditions.not_checked] if text)]
+    result.warnings += [*told(r.conditions), *r.violated, *doubt.warnings]
     result.tables["rocking"] = TableData(
         {
             "time": response.time, "rotation": response.rotation, "rotation_rate": response.rate,
