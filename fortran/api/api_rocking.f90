@@ -83,7 +83,8 @@ contains
       integer(c_int), intent(in) :: restraints              !! that the structure has
       !> outcome, half cycles, impacts, steps, rejected, settled, output times reached, events (may exceed room)
       integer(c_int), intent(out) :: counts(8)
-      !> peak [rad], peak ratio, stop time [s], work, loss, spent in restraints [J], demand on the joints (see joint_demand)
+      !> peak [rad], peak ratio, stop time [s], work, loss, spent in restraints [J], the demand on the joints
+      !> (see joint_demand)
       real(c_double), intent(out) :: measures(12)
       real(c_double), intent(out) :: state(9 + restraints, nt)  !! see response_history
       real(c_double), intent(out) :: kept(3, restraints)    !! of each: least, greatest force, path that stays

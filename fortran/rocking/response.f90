@@ -580,8 +580,8 @@ contains
       real(wp) :: horizontal, vertical
       if (.not. allocated(state%problem%body%watch)) return
       call state%problem%ground%value_at(state%problem%segment, state%t, horizontal, vertical)
-      call state%problem%body%watch%look(side_index(state%problem%side), state%q, state%v, horizontal, vertical, state%t, &
-         state%answer%joints)
+      call state%problem%body%watch%look(side_index(state%problem%side), state%q, state%v, horizontal, vertical, &
+         state%t, state%answer%joints)
    end subroutine look
 
    !> Does the resting structure slide before a time? It does so as another mechanism would rise

@@ -1,13 +1,13 @@
 !> What the joints of a rocking structure must carry while it rocks: friction, and the place of the thrust line.
 !>
-!> Of one degree of freedom the forces across a joint are linear in w = 1 + a_v/g, in the ground acceleration towards the
-!> other side, h = side a_h, and in the square of the rate, with coefficients that depend on the rotation alone:
+!> Of one degree of freedom the forces across a joint are linear in w = 1 + a_v/g, in the ground acceleration
+!> towards the other side, h = side a_h, and in the square of the rate, with coefficients that depend on the rotation:
 !>
 !>    (N, T, E) = C_w(q) w + C_h(q) h + C_v(q) q'^2,
 !>
-!> N the compression, T the shear, E = M_p / L the moment about the end p over the length, so that the resultant meets the joint
-!> at the share E/N of its length. The coefficients are tabulated at equal steps from rest to the critical rotation and read by
-!> cubics through four neighbours; beyond it nothing is looked at.
+!> N the compression, T the shear, E = M_p / L the moment about the end p over the length, so that the resultant meets
+!> the joint at the share E/N of its length. The coefficients are tabulated at equal steps from rest to the critical
+!> rotation and read by cubics through four neighbours; beyond it nothing is looked at.
 module rocking_watch
    use common_kinds, only : wp, gravity
    use common_status, only : status_ok, status_invalid_argument, status_out_of_memory
@@ -27,8 +27,8 @@ module rocking_watch
       integer :: panels = 0                !! between rest and the critical rotation
       real(wp) :: critical(2) = 0.0_wp     !! [rad]
       real(wp), allocatable :: friction(:) !! (joints) coefficient that they have
-      !> (quantity N T E, input w h q'^2, joint, 0 to panels, side)
-      real(wp), allocatable :: value(:, :, :, :, :)
+      !> (joint and quantity N T E, input w h q'^2, 0 to panels, side)
+      real(wp), allocatable :: value(:, :, :, :)
    contains
       procedure :: look
    end type joint_watch
@@ -47,8 +47,8 @@ module rocking_watch
 
 contains
 
-   !> From a flat list: tolerance, both accelerations that slide it [m/s^2], joints, panels, both critical rotations, friction
-   !> of the joints, the values in their order
+   !> From a flat list: tolerance, both accelerations that slide it [m/s^2], joints, panels, both critical rotations,
+   !> friction of the joints, the values in their order
    subroutine joint_watch_new(list, watch, status)
       real(wp), intent(in) :: list(:)
       type(joint_watch), intent(out) :: watch
@@ -67,11 +67,11 @@ contains
       if (real(size(list), wp) < 7.0_wp + list(4) * (1.0_wp + 18.0_wp * (list(5) + 1.0_wp)) - 0.5_wp) return
       last = 7 + watch%joints
       if (size(list) /= last + 18 * watch%joints * (watch%panels + 1)) return
-      allocate (watch%friction(watch%joints), watch%value(3, 3, watch%joints, 0:watch%panels, 2), stat=stat)
+      allocate (watch%friction(watch%joints), watch%value(3 * watch%joints, 3, 0:watch%panels, 2), stat=stat)
       status = merge(status_ok, status_out_of_memory, stat == 0)
       if (stat /= 0) return
       watch%friction(:) = list(8:last)
-      watch%value(:, :, :, :, :) = reshape(list(last + 1:), [3, 3, watch%joints, watch%panels + 1, 2])
+      watch%value(:, :, :, :) = reshape(list(last + 1:), [3 * watch%joints, 3, watch%panels + 1, 2])
    end subroutine joint_watch_new
 
    !> Enter what the joints must carry in a state
@@ -84,8 +84,8 @@ contains
       real(wp), intent(in) :: vertical       !! ground acceleration, up [m/s^2]
       real(wp), intent(in) :: time           !! [s]
       type(joint_demand), intent(inout) :: demand
-      real(wp) :: x, t, weight(4), input(3), force(3), needed, beyond
-      integer :: first, j, k
+      real(wp) :: force(watch%joints, 3), x, t, weight(4), input(3), needed, beyond
+      integer :: first, j, k, l
 
       x = max(q, 0.0_wp) / watch%critical(i)
       if (x > 1.0_wp) return
@@ -95,15 +95,16 @@ contains
       weight = [-(t - 1.0_wp) * (t - 2.0_wp) * (t - 3.0_wp) / 6.0_wp, 0.5_wp * t * (t - 2.0_wp) * (t - 3.0_wp), &
          -0.5_wp * t * (t - 1.0_wp) * (t - 3.0_wp), t * (t - 1.0_wp) * (t - 2.0_wp) / 6.0_wp]
       input = [1.0_wp + vertical / gravity, real(3 - 2 * i, wp) * horizontal, v**2]
-      do j = 1, watch%joints
-         force = 0.0_wp
-         do k = 1, 4
-            force = force + weight(k) * (watch%value(:, 1, j, first + k - 1, i) * input(1) &
-               + watch%value(:, 2, j, first + k - 1, i) * input(2) + watch%value(:, 3, j, first + k - 1, i) * input(3))
+      force = 0.0_wp
+      do k = 1, 4
+         do l = 1, 3
+            call add(3 * watch%joints, weight(k) * input(l), watch%value(:, l, first + k - 1, i), force)
          end do
-         if (force(1) > 0.0_wp) then
-            needed = abs(force(2)) / force(1)
-            beyond = max(-force(3) / force(1), force(3) / force(1) - 1.0_wp)
+      end do
+      do j = 1, watch%joints
+         if (force(j, 1) > 0.0_wp) then
+            needed = abs(force(j, 2)) / force(j, 1)
+            beyond = max(-force(j, 3) / force(j, 1), force(j, 3) / force(j, 1) - 1.0_wp)
          else
             needed = huge(needed)
             beyond = huge(beyond)
@@ -120,6 +121,15 @@ contains
          demand%outside = max(demand%outside, beyond)
       end do
    end subroutine look
+
+   !> total + factor part, of lists
+   pure subroutine add(n, factor, part, total)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: factor
+      real(wp), intent(in) :: part(n)
+      real(wp), intent(inout) :: total(n)
+      total = total + factor * part
+   end subroutine add
 
    !> Friction, outside, both times, both joints
    pure function flat(demand) result(list)

@@ -127,7 +127,7 @@ def watched_body(
     most = np.finfo(float).max
     numbers = [
         [bare.kind, len(bare.parameters)], bare.parameters,
-        np.minimum([tolerance, *slides, joints, steps, *critical, *friction], most), *(v.ravel() for v in values),
+        np.minimum([tolerance, *slides, joints, steps, *critical, *friction], most), *(v.transpose(0, 2, 3, 1).ravel() for v in values),
     ]  # fmt: skip
     return Body(
         lists.number("rocking_body", "watched"),

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.rocking.conditions import of_one, told
 from extrados.analyses.rocking.failure_domain import MODE_I, Mapper, natural_durations
 from extrados.analyses.rocking.history import answer, rest_time, run_history
 from extrados.analyses.rocking.shapes import States, shapes
@@ -50,7 +51,7 @@ def history(
         "critical_rad": list(rocker.critical), "uplift_g": rocker.uplift, "restitution": rocker.restitution,
         "peak_ground_g": motion.peak / GRAVITY, "stop_time_s": response.stop_time, "end_time_s": end, "word": rocker.word,
         "answer": answer(context, response, f"The {rocker.word}", "comes down", rocker.uplift),
-        "warnings": [*rocker.warnings, *motion.notes],
+        "warnings": [*told(of_one(rocker, response)["conditions"]), *rocker.warnings, *motion.notes],
     }  # fmt: skip
     moving = np.flatnonzero(response.rotation)
     last = float(response.time[moving[-1]]) if len(moving) else 0.0

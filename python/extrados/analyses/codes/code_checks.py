@@ -9,6 +9,7 @@ from extrados.analyses.codes import ntc
 from extrados.analyses.codes.code_rules import Line, asce43, housner, ishiyama, more_piers, piers, west
 from extrados.analyses.codes.tables import CodeChecks
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.rocking.conditions import of_one, told
 from extrados.building.templates.block import BlockAssembly
 from extrados.core import motion as core_motion
 from extrados.core import rocking as core_rocking
@@ -95,9 +96,10 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
         context.warnings += motion.notes
         start = rocker.start_rotation
         dynamic = core_rocking.history(
-            model.body, motion.ground, motion.end + 30.0 / float(model.frequency.min()), 0.01,
+            rocker.body, motion.ground, motion.end + 30.0 / float(model.frequency.min()), 0.01,
             start_side=1 if start >= 0.0 else -1, start_rotation=abs(start),
         )  # fmt: skip
+        context.warnings += told(of_one(rocker, dynamic)["conditions"])
         beside |= {"dynamic_outcome": dynamic.outcome, "dynamic_peak_rotation_ratio": dynamic.peak_ratio}
     alpha = float(model.alpha.min())
     # one body: all its mass takes part (e* = 1); d* is the displacement of the centre of mass

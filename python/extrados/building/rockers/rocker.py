@@ -67,7 +67,9 @@ class Rocker:
 
     def unwatched(self) -> "Rocker":
         """The same without the tables of its joints."""
-        return self if self.watch is None else replace(self, body=self.model.body, watch=None)
+        if self.watch is None or isinstance(self.model, SoftBaseModel):
+            return self
+        return replace(self, body=self.model.body, watch=None)
 
     def rivals(self, factor: float) -> dict[str, tuple[float, Body]]:
         """Rule -> (c_v, structure) of all impact rules where they differ by more than the factor; none where there is one."""
@@ -155,10 +157,11 @@ def _watched(
     """The rocker with its joints watched; CannotStand where the friction of the joints does not carry its weight."""
     given = building.friction()
     friction = np.full(len(stones.a), np.inf)
-    if given is not None and (np.ndim(given) == 0 or len(given) == len(stones.a)):
+    if given is not None and np.size(given) in (1, len(stones.a)):
         friction = np.broadcast_to(np.asarray(given, dtype=float), len(stones.a))
         friction = np.where(friction < NO_SLIDING_COEFFICIENT, friction, np.inf)
-    model, needed = free.model, None
+    model = free.model
+    needed: tuple[np.ndarray, ...] | None = None
     if isinstance(model, ArchModel):
         needed = (model.collapse[0].friction,)
     elif isinstance(model, MechanismModel) and not isinstance(model, FrameModel):

@@ -102,7 +102,7 @@ class Watch:
 
 
 def sliding_capacity(
-    assembly: Assembly, friction: np.ndarray, rocking: tuple[float, float], needed: tuple[np.ndarray, np.ndarray] | None,
+    assembly: Assembly, friction: np.ndarray, rocking: tuple[float, float], needed: tuple[np.ndarray, ...] | None,
     loads: Loads | None = None,
 ) -> tuple[float, float]:  # fmt: skip
     """Horizontal acceleration [g] of the ground at which the resting structure slides the way it would rock to +x and to -x;
