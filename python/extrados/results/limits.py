@@ -14,8 +14,8 @@ LIMITS: dict[str, tuple[str, str]] = {
     "rocking": (
         "The building moves as one mechanism, that of limit analysis, without sliding; impacts lose energy by the rule of "
         "[joints] restitution.",
-        "Hinges do not move along the building, stones do not slide, bounce or crush. Where rules of impact differ, or the run is "
-        "decided by its last digits, ask for a probability.",
+        "Hinges do not move along the building, blocks do not slide, bounce or crush: sliding and other hinges are checked along the "
+        "motion. Where impact rules disagree, or the run is chaotic, use fragility.",
     ),
     "failure-domain": (
         "Single pulses on a mechanism at rest.",

@@ -319,14 +319,14 @@ def sine_for_record(facts: Facts, pairs: list[Pair]) -> Reason | None:
 
 
 def last_digits(facts: Facts, pairs: list[Pair]) -> Reason | None:
-    """The run is decided by its last digits."""
+    """The run is chaotic."""
     r = facts.of("rocking")
     mine = dynamic(pairs, "rocking")
     if not mine or not isinstance(r, Rocking) or not r.decided_by_last_digits:
         return None
     return reason(
-        "last-digits", mine, "Rocking under this motion is decided by its last digits: a motion stronger or weaker by a millionth "
-        f"ends in another outcome. It turned by {100 * r.peak_rotation_ratio:.0f} % of the critical rotation.",
+        "last-digits", mine, "Rocking under this motion is chaotic: sensitive to perturbations of 1e-6. One run is one sample. Its greatest "
+        f"rotation is {100 * r.peak_rotation_ratio:.0f} % of the critical one.",
         rotation_ratio=r.peak_rotation_ratio,
     )  # fmt: skip
 

@@ -122,7 +122,7 @@ def violated(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
     if counted.elsewhere:
         share = _share(counted.elsewhere, counted.runs, runs)
         found.append(
-            f"Hinges form elsewhere {share}: {_elsewhere(rocker)}. Use dem." if watch.strikes
+            f"Hinges form elsewhere {share}: {_elsewhere(rocker)}. Use dem." if len(watch.joints) > 1
             else f"The base lifts off as a whole {share}: rocking without flight is assumed. Use dem."
         )  # fmt: skip
     return found
@@ -188,7 +188,7 @@ def of_one(rocker: Rocker, response: Response) -> dict[str, Any]:
             else ", and a joint comes under tension"
         )
         found.append(
-            f"Hinges form elsewhere: the thrust line leaves {leaves.joint} at {leaves.time_s:.3f} s{far}. Use dem." if watch.strikes
+            f"Hinges form elsewhere: the thrust line leaves {leaves.joint} at {leaves.time_s:.3f} s{far}. Use dem." if len(watch.joints) > 1
             else f"The base lifts off as a whole at {leaves.time_s:.3f} s: rocking without flight is assumed. Use dem."
         )  # fmt: skip
     astray = astray_of(rocker)

@@ -18,7 +18,7 @@ DIFFER = 1.3
 #: A motion scaled by 1 plus and minus this is the same motion to every instrument.
 NUDGE = 1e-6
 #: Growth of a perturbation beyond which a run is chaotic: one of a millionth parts histories by a hundredth of the critical
-#: rotation. In 192 runs of six blocks under four records and three sines 16 grow so much (tests/unit/test_conditions.py)
+#: rotation. In 192 runs of six blocks under five records and three sines 16 grow so much (tests/unit/test_conditions.py)
 CHAOTIC = 1e4
 #: A motion repeats itself where it is this much like itself a period later, over so many periods
 ALIKE, OFTEN = 0.5, 4.0
