@@ -67,6 +67,7 @@ module rocking_response
       real(wp) :: h_next = 0.0_wp          !! length of the next step [s]
       real(wp) :: atol_q = 0.0_wp
       real(wp) :: atol_v = 0.0_wp
+      real(wp) :: look_every = huge(1.0_wp)  !! longest time between two looks at the joints [s]
       integer :: attempts = 0
       integer :: last_whole = 0            !! last segment of the ground motion that ends within the run
       integer(c_int) :: status = status_ok
@@ -97,10 +98,13 @@ module rocking_response
       procedure :: leave_mode
       procedure :: hold_at_rest
       procedure :: look
+      procedure :: look_within
       procedure :: look_at_rest
    end type run_state
 
    integer, parameter :: poll_every = 2000
+   !> Looks at the joints within the natural time of the structure, sqrt(M q_cr / V')
+   real(wp), parameter :: looks = 50.0_wp
 
 contains
 
@@ -187,6 +191,8 @@ contains
       do i = 1, 2
          call body%coefficients(3 - 2 * i, 0.0_wp, m, half_dm, state%problem%rest_dv(i), &
             state%problem%rest_dh(i), closed)
+         if (allocated(body%watch)) state%look_every = min(state%look_every, &
+            sqrt(m * body%critical(i) / state%problem%rest_dv(i)) / looks)
       end do
       i = side_index(options%start_side)
       state%atol_q = 0.01_wp * options%tolerance * maxval(body%critical)
@@ -387,6 +393,7 @@ contains
       call polish_impact(state%problem, state%q, state%v, state%a, state%atol_q, state%atol_v, &
          state%options%tolerance, fraction, state%step)
       call state%note_turning()
+      call state%look_within(1.0_wp)
       if (associated(state%history)) call state%history%cover(state%problem, state%step, 1.0_wp)
       state%from_rest = .false.
       state%t = state%step%t + state%step%h
@@ -432,6 +439,7 @@ contains
       real(wp), intent(in) :: fraction  !! of the step
       real(wp) :: limit
       limit = state%problem%body%limit(side_index(state%problem%side))
+      call state%look_within(fraction)
       if (associated(state%history)) call state%history%cover(state%problem, state%step, fraction)
       state%t = state%step%t + fraction * state%step%h
       state%answer%outcome = outcome_collapse
@@ -449,6 +457,7 @@ contains
       real(wp), intent(in) :: t_next
       logical :: was_quiet, whole
       call state%note_turning()
+      call state%look_within(1.0_wp)
       if (associated(state%history)) call state%history%cover(state%problem, state%step, 1.0_wp)
       state%from_rest = .false.
       whole = state%step%h >= t_next - state%t
@@ -583,6 +592,23 @@ contains
       call state%problem%body%watch%look(side_index(state%problem%side), state%q, state%v, horizontal, vertical, &
          state%t, state%answer%joints)
    end subroutine look
+
+   !> What they must carry within the first part of the last step, where it is long
+   subroutine look_within(state, part)
+      class(run_state), intent(inout) :: state
+      real(wp), intent(in) :: part  !! of the step
+      real(wp) :: x, t, horizontal, vertical
+      integer :: k, count
+      if (.not. allocated(state%problem%body%watch)) return
+      count = min(1000, ceiling(part * state%step%h / state%look_every))
+      do k = 1, count - 1
+         x = part * real(k, wp) / real(count, wp)
+         t = state%step%t + x * state%step%h
+         call state%problem%ground%value_at(state%problem%segment, t, horizontal, vertical)
+         call state%problem%body%watch%look(side_index(state%problem%side), state%step%coordinate(x), &
+            state%step%rate(x), horizontal, vertical, t, state%answer%joints)
+      end do
+   end subroutine look_within
 
    !> Does the resting structure slide before a time? It does so as another mechanism would rise
    subroutine look_at_rest(state, until)
