@@ -1,9 +1,10 @@
 """The local mechanisms that engineers meet, as one body that turns about a hinge: from their table to weights and pushes."""
 
 import math
+from dataclasses import replace
 
 from extrados.analyses.codes.kinematics import Overturning, Push, Weight
-from extrados.analyses.codes.tables import LocalMechanism
+from extrados.analyses.codes.tables import Floor, LocalMechanism
 from extrados.analyses.context import Refused
 from extrados.schema.constants import GRAVITY
 
@@ -60,9 +61,7 @@ def _upright(options: LocalMechanism, density: float, strength: float | None) ->
         level = floor.height - options.hinge_height
         if level < 0.0:
             continue  # what lies below the hinge does not move
-        if floor.load > 0.0:
-            arm = thickness / 2.0 if floor.arm is None else floor.arm
-            weights.append(Weight(floor.load, arm, level, floor.sways))
+        weights += _of_floor(floor, thickness / 2.0, level)
         if floor.thrust:
             pushes.append(Push(floor.thrust, level))
     for tie in options.ties:
@@ -75,13 +74,20 @@ def _upright(options: LocalMechanism, density: float, strength: float | None) ->
     return Overturning(tuple(weights), tuple(pushes))
 
 
+def _of_floor(floor: Floor, middle: float, level: float) -> list[Weight]:
+    """What a floor lays on the wall, and what only pushes it; middle: how far behind the hinge the wall's own middle is [m]."""
+    arm = middle if floor.arm is None else floor.arm
+    found = [Weight(floor.load, arm, level, floor.sways), Weight(floor.pushing, arm, level, rests=False)]
+    return [w for w in found if w.weight > 0.0]
+
+
 def set_back(weights: list[Weight], strength: float, width: float, thickness: float) -> list[Weight]:
     """Weights about a hinge that lies within the wall by 2 P/(3 f_d w), for a strength f_d [Pa] and a width w [m]; Refused where
     that is the middle of the thickness [m]."""
-    setback = 2.0 * sum(w.weight for w in weights) / (3.0 * strength * width)
+    setback = 2.0 * sum(w.weight for w in weights if w.rests) / (3.0 * strength * width)
     if setback >= thickness / 2.0:
         raise Refused("the weight alone crushes the wall at the hinge", ("material", "compressive_strength"))
-    return [Weight(w.weight, w.arm - setback, w.height, w.sways) for w in weights]
+    return [replace(w, arm=w.arm - setback) for w in weights]
 
 
 def _with_side_walls(
@@ -109,8 +115,8 @@ def _corner(options: LocalMechanism, density: float) -> Overturning:
     pushes = []
     for floor in options.floors:
         level = floor.height - options.hinge_height
-        if level >= 0.0 and floor.load > 0.0:
-            weights.append(Weight(floor.load, arm if floor.arm is None else floor.arm, level, floor.sways))
+        if level >= 0.0:
+            weights += _of_floor(floor, arm, level)
         if level >= 0.0 and floor.thrust:
             pushes.append(Push(floor.thrust, level))
     pushes += [Push(-t.force, t.height - options.hinge_height) for t in options.ties if t.height > options.hinge_height]

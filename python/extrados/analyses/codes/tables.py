@@ -31,7 +31,9 @@ class CodeChecks(BuildingAnalysis):
         "where there is no spectrum of a code, take the response spectrum of the deck's motion, and its peak velocity",
     )
     pulse_period: Time | None = key(None, "period of the sine whose half Housner's formula takes; asks for it", gt=0)
-    behaviour_factor: float = key(2.0, "q of the linear check", ge=1, le=6, source="Circ. 7/2019, C8.7.1.2.1.7")
+    behaviour_factor: float = key(
+        2.0, "q of the linear check, which is for mechanisms without a displacement check", ge=1, le=6, source="Circ. 7/2019, C8.7.1.2.1.7"
+    )
     confidence_factor: float = key(1.35, "FC", ge=1, le=2, source="Circ. 7/2019, Table C8.5.IV")
     axial_load: Force | None = key(None, "vertical load on top of the wall; asks for the pier rules", ge=0)
     thickness: Length | None = key(None, "thickness of the pier; default the depth of the block", gt=0)
@@ -57,7 +59,13 @@ class Floor(Table):
     """A floor, roof or vault that rests on the wall."""
 
     height: Length = key(about="height at which it acts, above the foot of the wall", ge=0)
-    load: Force = key(0.0, "its weight on the mechanism", ge=0)
+    load: Force = key(0.0, "weight that rests on the wall (P)", ge=0, source="Circ. 7/2019 [C8.7.1.1]")
+    pushing: Force = key(
+        0.0,
+        "weight that does not rest on the wall and whose mass pushes it (Q): it drives the mechanism and does not hold it down",
+        ge=0,
+        source="Circ. 7/2019 [C8.7.1.1]",
+    )
     arm: Length | None = key(None, "how far behind the hinge it rests; default the middle of the wall", ge=0)
     sways: bool = key(True, "whether its mass is accelerated with the wall; false where other walls hold it")
     thrust: Force = key(0.0, "its horizontal thrust at rest, outward")
@@ -116,22 +124,33 @@ class LocalMechanism(BuildingAnalysis):
     motion_spectrum: bool = key(
         False, "where there is no spectrum of a code, take the response spectrum of the deck's motion"
     )
-    behaviour_factor: float = key(2.0, "q of the linear checks", ge=1, le=6, source="Circ. 7/2019, C8.7.1.2.1.7")
-    confidence_factor: float = key(1.35, "FC", ge=1, le=2, source="Circ. 7/2019, Table C8.5.IV")
-    base_height: Length = key(
-        0.0, "height z of the hinge's place above the foundation: above 0 the floor amplifies", ge=0
+    behaviour_factor: float = key(
+        2.0, "q of the linear check, which is for mechanisms without a displacement check", ge=1, le=6, source="Circ. 7/2019, C8.7.1.2.1.7"
     )
-    building_height: Length | None = key(None, "height H of the building, where base_height is above 0", gt=0)
+    confidence_factor: float = key(
+        1.35, "FC; where compression strength is neglected that of LC1, 1.35", ge=1, le=2, source="Circ. 7/2019, C8.7.1.2.1.3, Table C8.5.IV"
+    )
+    base_height: Length | None = key(
+        None,
+        "height z of the mechanism above the foundation: above 0 the floor amplifies; default from the geometry, the lowest hinge "
+        "between what moves and what does not, of a table `hinge_height`",
+        ge=0,
+    )
+    building_height: Length | None = key(
+        None, "height H of the building, where z is above 0; default from the geometry, the top of all, of a table `height`", gt=0
+    )
     building_period: Time | None = key(
         None, "first period T_1 of the building; default 0.05 H^0.75", gt=0, source="EN 1998-1 Eq. 4.6"
     )
     storeys: int = key(1, "storeys N of the building, for the modal participation", ge=1, le=50)
-    one_second_acceleration: Acceleration | None = key(None, "S_X1; asks for the slenderness limits of ASCE 41", gt=0)
+    one_second_acceleration: Acceleration | None = key(
+        None, "S_X1; asks for the slenderness limits of ASCE 41, which are for walls anchored at their top", gt=0
+    )
     storey: Literal["one-story", "first", "top", "other"] = key("one-story", "where the wall stands, for ASCE 41")
 
     @model_validator(mode="after")
     def _elevated(self) -> "LocalMechanism":
-        if self.base_height > 0.0 and self.building_height is None:
+        if self.base_height and self.mechanism != "building" and self.building_height is None:
             raise ValueError("base_height above 0 needs building_height")
         return self
 
