@@ -88,7 +88,7 @@ def test_written_and_drawn(whole: Run, tmp_path: Path, monkeypatch: pytest.Monke
     drawn = report.draw(Run.read(tmp_path / "out"), tmp_path)
     assert [name for name, _ in drawn["assess"]] == ["assess-margins", "assess-agreement", "assess-hazard"]
     told = json.loads((tmp_path / "out" / "summary.json").read_text())["analyses"][0]
-    assert told["verdict"]["outcome"] in ("stands", "falls", "open") and "limit analysis" in told["answer"]
+    assert told["verdict"]["outcome"] in ("stands", "collapses", "open") and "limit analysis" in told["answer"]
 
 
 def test_first_table_comes_before_the_costly_strategies(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -241,7 +241,7 @@ def test_a_suite_of_records_is_a_hazard(tmp_path: Path) -> None:
     )
     rows = {v.strategy: v for v in r.verdicts}
     assert rows["probability"].demand == 0.25, "one of four"
-    assert rows["tilt"].demand == pytest.approx(5.0 / GRAVITY, rel=0.01) and rows["rocking"].outcome == "falls"
+    assert rows["tilt"].demand == pytest.approx(5.0 / GRAVITY, rel=0.01) and rows["rocking"].outcome == "collapses"
     alone = extrados.run(
         make_deck({"structure": COLUMN, "motion": {**motion, "member": 3}, "analysis": {"kind": "rocking"}}, tmp_path)
     )
@@ -280,10 +280,12 @@ def test_codes_are_asked_with_the_spectrum_of_the_motion_and_with_what_holds_the
         and checks["NTC nonlinear"].demand is not None
     )
     (row,) = run["assess"].verdicts
-    assert row.outcome in ("stands", "falls") and "without" not in row.parameters and "motion itself" in row.parameters
+    assert (
+        row.outcome in ("stands", "collapses") and "without" not in row.parameters and "motion itself" in row.parameters
+    )
     free = extrados.run(deck(assess={"strategies": ["code-checks"]}))
     assert free["code-checks"].checks["Ishiyama velocity"].demand is not None
-    assert free["assess"].verdicts[0].outcome in ("stands", "falls")
+    assert free["assess"].verdicts[0].outcome in ("stands", "collapses")
 
 
 # ----- the table and the statement (the rules: test_reasons.py)
@@ -311,7 +313,7 @@ def test_relations_and_overall_statement() -> None:
     assert near.relation("tilt", "dem") == "agree"
     overall, words = conclusion(f, [], [("tilt", "dem")], "block", (1.25, "tilt"), far)
     assert overall == "stands under all" and "1.25" in words
-    split = facts([verdict("tilt", "falls"), verdict("dem", "stands")])
+    split = facts([verdict("tilt", "collapses"), verdict("dem", "stands")])
     overall, words = conclusion(split, [], [("tilt", "dem")], "block", (None, None), list(split.rows.values()))
     assert overall == "depends" and "No rule finds a reason" in words
     assert far[1].margin_told() == "above 2" and "tilt" in table_of(far)
@@ -407,7 +409,9 @@ def test_ctrl_c_keeps_what_was_asked_before(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setattr(driver._Work, "ask", stopped)
     (first, *parts) = extrados.run(deck(assess={"strategies": ["tilt", "dem"]})).analyses
     assert first["status"] == "interrupted" and [p["name"] for p in parts] == ["tilt"]
-    assert [v["strategy"] for v in first["results"]["verdicts"]] == ["tilt"] and first["verdict"]["outcome"] == "falls"
+    assert [v["strategy"] for v in first["results"]["verdicts"]] == ["tilt"] and first["verdict"][
+        "outcome"
+    ] == "collapses"
 
 
 def test_elements_that_a_millionth_turns_are_open(monkeypatch: pytest.MonkeyPatch) -> None:

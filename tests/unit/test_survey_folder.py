@@ -114,7 +114,7 @@ def test_what_changed_between_two_runs() -> None:
     (verdict,) = found.verdicts
     assert (
         (verdict.key, verdict.ratio) == ("tilt", pytest.approx(1.2))
-        and verdict.old.startswith("falls")
+        and verdict.old.startswith("collapses")
         and verdict.new.startswith("stands")
     )
     numbers = {c.key: c.ratio for c in found.numbers["tilt"]}

@@ -6,7 +6,7 @@ from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judge
 
 Axis = Literal["acceleration", "pulse", "displacement", "probability", "check"]
-Overall = Literal["stands under all", "falls under all", "depends", "open"]
+Overall = Literal["stands under all", "collapses under all", "depends", "open"]
 Agreement = Literal["agree", "apart", "disagree", "open"]
 
 
@@ -36,7 +36,7 @@ class StrategyVerdict(ResultModel):
     demand: float | None = fact("what is asked, in `unit`")
     capacity: float | None = fact("what is borne, in `unit`")
     unit: str = fact("unit of both")
-    outcome: Outcome = fact("stands, falls, open or none")
+    outcome: Outcome = fact("stands, collapses, cannot-stand, open or not-applicable")
     margin: float | None = fact("factor on the hazard at which the verdict turns; null: not known")
     margin_at_least: float | None = fact("greatest factor at which it was seen to stand; null: none")
     margin_below: float | None = fact("least factor at which it was seen to fall; null: none")
@@ -125,5 +125,5 @@ class Assess(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The overall answer; the capacity is the least factor on the hazard."""
-        outcome: Outcome = {"stands under all": "stands", "falls under all": "falls"}.get(self.overall, "open")  # type: ignore[assignment]
+        outcome: Outcome = {"stands under all": "stands", "collapses under all": "collapses"}.get(self.overall, "open")  # type: ignore[assignment]
         return judge(self.statement, 1.0, self.least_margin, "hazard", outcome)

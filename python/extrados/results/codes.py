@@ -35,7 +35,7 @@ class Checked(KindResults):
     confidence_factor: float = maybe("FC by which the capacity of the checks of NTC is divided")
     behaviour_factor: float = maybe("q of the linear check of NTC")
     bound: Bound = maybe("which side of the exact capacity the checks lie on")
-    violated: list[str] = maybe("assumptions of the checks that were checked and do not hold")
+    violated: list[str] = maybe("assumptions on the unsafe side that were checked and do not hold: what holds is then open")
 
     def judged(self, demand: Demand) -> Verdict:
         """The overall verdict; the deck's motion is no demand of a code."""
@@ -72,11 +72,13 @@ class Checked(KindResults):
             remarks += " All partial and confidence factors are 1: the capacity holds no margin for what is not known of the masonry."
         if decided:
             _, name, worst = decided[0]
+            holds = worst.verdict == "holds"  # what is violated errs on the unsafe side: a check that fails, fails all the same
             unit = f" {worst.unit}" if worst.unit else ""
             return judge(
                 f"{worst.code} governs and {worst.verdict}, by {name}: demand {worst.demand:.3g}, capacity {worst.capacity:.3g}{unit}."
                 f"{remarks}",
-                worst.demand, worst.capacity, worst.unit, "stands" if worst.verdict == "holds" else None, self.bound, self.violated or (),
+                worst.demand, worst.capacity, worst.unit, "stands" if holds and self.bound != "upper" else None, self.bound,
+                (self.violated or ()) if holds else (),
             )  # fmt: skip
         strengths = {name: c.capacity for name, c in self.checks.items() if c.unit == "N" and c.capacity is not None}
         if strengths:

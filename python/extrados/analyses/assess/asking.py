@@ -23,7 +23,7 @@ from extrados.results.model import Result
 from extrados.results.shell import Pushover
 from extrados.results.sla import Sla
 from extrados.results.statistics import Ensemble, OverLevels
-from extrados.results.verdict import acceleration
+from extrados.results.verdict import judge_acceleration
 
 #: A strategy is stopped where it takes this many budgets
 STOPPED_AFTER = 2.0
@@ -128,11 +128,11 @@ def row_of(
         wanted, borne, unit, outcome, statement, low, high = _probability(r, acceptable)
     elif isinstance(r, Tilt) and wall is not None:
         away = r.collapse_acceleration_g if wall == "left" else r.collapse_acceleration_opposite_g
-        judged = acceleration(away, demand)
+        judged = judge_acceleration(away, demand)
         borne, outcome, margin = away, judged.outcome, judged.ratio
         statement = f"Pushed away from the wall: {judged.statement[:1].lower()}{judged.statement[1:]}"
     elif isinstance(r, Tilt) and (cracked := _cracked(r)) is not None and cracked < (borne or 0.0):
-        broken = acceleration(cracked, demand)
+        broken = judge_acceleration(cracked, demand)
         borne, outcome, margin = cracked, broken.outcome, broken.ratio
         statement = f"With the leeward buttress cracked: {broken.statement[:1].lower()}{broken.statement[1:]}"
     elif isinstance(r, Sla | Pushover) and any(c.peak_load_N is None for c in (r, r.minus) if c is not None):
@@ -159,7 +159,7 @@ def no_row(strategy: Strategy, status: str, reason: str, words: str = "") -> Str
     """The row of a strategy without a result."""
     return StrategyVerdict(
         strategy=strategy.name, label=strategy.label, part=None, status=status, reason=reason, axis=strategy.axis, demand=None,
-        capacity=None, unit="", outcome="none", margin=None, margin_at_least=None, margin_below=None, parameters=words,
+        capacity=None, unit="", outcome="not-applicable", margin=None, margin_at_least=None, margin_below=None, parameters=words,
         assumes=strategy.assumes, statement="",
     )  # fmt: skip
 
@@ -184,7 +184,7 @@ def _probability(r: Ensemble | OverLevels, acceptable: float) -> tuple:
         return None, acceptable, "probability", "open", "No motion could be run.", low, high
     share = collapsed / count
     least, most = wilson(collapsed, count)
-    outcome = "stands" if share <= acceptable else "falls" if share > 0.5 else "open"
+    outcome = "stands" if share <= acceptable else "collapses" if share > 0.5 else "open"
     text = (
         f"{collapsed} of {count} come down: {100 * share:.3g} %, between {100 * float(least):.3g} and {100 * float(most):.3g} % by the count; "
         f"{100 * acceptable:g} % are acceptable."

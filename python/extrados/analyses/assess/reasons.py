@@ -58,7 +58,7 @@ class Facts:
 
     def judged(self) -> list[str]:
         """The strategies with a verdict."""
-        return [n for n, r in self.rows.items() if r.status == "ok" and r.outcome in ("stands", "falls", "open")]
+        return [n for n, r in self.rows.items() if r.status == "ok" and r.outcome in ("stands", "collapses", "open")]
 
     def relation(self, a: str, b: str) -> str:
         """agree, apart, disagree or open (results.assess)."""
@@ -87,7 +87,7 @@ class Facts:
     def split(self, pair: Pair) -> tuple[str, str]:
         """The pair with that first which says less is borne."""
         a, b = pair
-        order = {"falls": 0, "open": 1, "stands": 2}
+        order = {"collapses": 0, "open": 1, "stands": 2}
         key_a, key_b = ((order[self.outcome(n)], self.interval(n)) for n in (a, b))
         return (a, b) if key_a <= key_b else (b, a)
 

@@ -48,9 +48,10 @@ def conclusion(
 ) -> tuple[Overall, str]:
     """The overall answer, and its statement: which strategies say what, why they differ, and the least margin."""
     groups = {
-        o: [facts.rows[n].label for n in facts.judged() if facts.outcome(n) == o] for o in ("stands", "falls", "open")
+        o: [facts.rows[n].label for n in facts.judged() if facts.outcome(n) == o]
+        for o in ("stands", "collapses", "open")
     }
-    stands, falls, left = groups["stands"], groups["falls"], groups["open"]
+    stands, falls, left = groups["stands"], groups["collapses"], groups["open"]
     said: list[str] = []
     overall: Overall
     if not stands and not falls and not left:
@@ -59,7 +60,7 @@ def conclusion(
         overall = "stands under all"
         said.append(f"The {word} stands under {_count(stands)}.")
     elif not stands and not left:
-        overall = "falls under all"
+        overall = "collapses under all"
         said.append(f"The {word} falls under {_count(falls)}.")
     elif stands and falls:
         overall = "depends"
@@ -82,7 +83,7 @@ def conclusion(
         label = facts.rows[least[1]].label
         row = next(r for r in rows if r.strategy == least[1])
         said.append(f"The least factor on the hazard at which a verdict turns is {row.margin_told()}, that of {label}.")
-    none = [row.label for row in rows if row.status != "ok" or row.outcome == "none"]
+    none = [row.label for row in rows if row.status != "ok" or row.outcome == "not-applicable"]
     if none:
         said.append(f"Without an answer: {_list(none)}.")
     return overall, " ".join(s for s in said if s)

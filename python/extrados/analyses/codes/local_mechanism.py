@@ -92,8 +92,7 @@ def _refuse_fallen(turning: _Turning) -> None:
         return
     work = "" if turning.body is None else f": they do work of {-turning.body.work() / 1e3:.3g} kNm per radian, and nothing resists it"
     raise CannotStand(
-        f"{turning.words} collapses under its own weight, with a multiplier of {turning.found.alpha0:.3g}: weights and thrusts set the "
-        f"mechanism in motion{work}"
+        f"{turning.words} has a multiplier of {turning.found.alpha0:.3g} at rest; proof: weights and thrusts set it in motion{work}"
     )
 
 
