@@ -15,7 +15,7 @@ def draw_local_mechanism(run: Stored, name: str, folder: Path) -> list[tuple[str
             run.array(name, "displacement"),
             run.array(name, "acceleration"),
             color=style.EDGE,
-            label="capacity, finite rotation",
+            label="capacity at finite rotations",
         )
         if r.zero_displacement_m is not None:
             ax.plot(
@@ -30,7 +30,7 @@ def draw_local_mechanism(run: Stored, name: str, folder: Path) -> list[tuple[str
             )
         check = r.checks.get("NTC nonlinear")
         if check is not None and check.demand is not None:
-            ax.axvline(check.demand, color="#d98200", linewidth=1.2, label="asked: S_D(T_SLV)")
+            ax.axvline(check.demand, color="#d98200", linewidth=1.2, label="demand S_D(T_SLV)")
         ax.set_xlim(0.0, None)
         ax.set_ylim(0.0, None)
         ax.set_xlabel("displacement d* [m]")

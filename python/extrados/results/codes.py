@@ -6,7 +6,6 @@ from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.rocking import RockingOutcome
 from extrados.results.verdict import Bound, Demand, KindResults, Verdict, judge
 
-
 Applied = Literal["holds", "fails", "not-applicable", ""]
 
 
@@ -21,7 +20,9 @@ class Check(ResultModel):
     note: str = fact("values on which capacity and demand rest")
     code: str = fact("code whose check it is; empty for a formula for comparison or a strength")
     scope: str = fact("element, restraint and height that the rule is for")
-    alternative: str = fact("checks of one code with the same word are alternatives: one that holds suffices; empty: must hold by itself")
+    alternative: str = fact(
+        "checks of one code with the same word are alternatives: one that holds suffices; empty: must hold by itself"
+    )
     reason: str = fact("why the rule does not apply; empty where it does")
 
 
@@ -35,44 +36,49 @@ class Checked(KindResults):
     confidence_factor: float = maybe("FC by which the capacity of the checks of NTC is divided")
     behaviour_factor: float = maybe("q of the linear check of NTC")
     bound: Bound = maybe("which side of the exact capacity the checks lie on")
-    violated: list[str] = maybe("assumptions on the unsafe side that were checked and do not hold: what holds is then open")
+    violated: list[str] = maybe(
+        "assumptions on the unsafe side that were checked and do not hold: what holds is then open"
+    )
 
     def judged(self, demand: Demand) -> Verdict:
         """The overall verdict; the deck's motion is no demand of a code."""
         return self.overall()
 
-    def _best(self) -> tuple[list[Row], list[str]]:
-        """Of the checks that apply: of each group of alternatives that is decided the check that allows most, as margin, name and
-        check, the worst first; the codes of groups that are not: one of their checks fails, or none has a demand."""
+    def _groups(self) -> list[tuple[str, Row | None, bool]]:
+        """Of the checks that apply, each group of alternatives: its code; margin, name and check of that which allows most, None without
+        a demand; whether it is decided: one holds, or all fail."""
         groups: dict[tuple[str, str], list[tuple[str, Check]]] = {}
         for name, check in self.checks.items():
             if check.code and check.verdict != "not-applicable":
                 groups.setdefault((check.code, check.alternative or name), []).append((name, check))
-        decided: list[Row] = []
-        undecided = set()
+        found = []
         for (code, _), rows in groups.items():
             margins = [(c.capacity / c.demand, n, c) for n, c in rows if c.demand and c.capacity is not None]
             best = max(margins, key=lambda r: r[0], default=None)
-            if best is None or (best[2].verdict == "fails" and any(c.demand is None for _, c in rows)):
-                undecided.add(code)
-            else:
-                decided.append(best)
-        return sorted(decided, key=lambda row: row[0]), sorted(undecided)
+            known = best is not None and (best[2].verdict == "holds" or all(c.demand is not None for _, c in rows))
+            found.append((code, best, known))
+        return found
+
+    def least(self) -> float | None:
+        """Least margin of what is known, also of codes that are not decided; None without a demand."""
+        return min((best[0] for _, best, _ in self._groups() if best is not None), default=None)
 
     def governing(self) -> list[Row]:
         """Margin, name and check by which each code that is decided says what it says, the one that allows least first."""
-        return self._best()[0]
+        return sorted((best for _, best, known in self._groups() if known and best is not None), key=lambda row: row[0])
 
     def overall(self) -> Verdict:
         """One verdict for all: the most unfavourable check that applies, of alternatives the one that allows most. Formulas for
         comparison and the computed rocking do not count; without a demand the weakest strength of a pier [N]."""
-        decided, undecided = self._best()
+        decided, undecided = self.governing(), sorted({code for code, _, known in self._groups() if not known})
         remarks = f" Open for want of a demand: {', '.join(undecided)}." if undecided else ""
         if self.confidence_factor == 1.0:
             remarks += " All partial and confidence factors are 1: the capacity holds no margin for what is not known of the masonry."
         if decided:
             _, name, worst = decided[0]
-            holds = worst.verdict == "holds"  # what is violated errs on the unsafe side: a check that fails, fails all the same
+            holds = (
+                worst.verdict == "holds"
+            )  # what is violated errs on the unsafe side: a check that fails, fails all the same
             unit = f" {worst.unit}" if worst.unit else ""
             return judge(
                 f"{worst.code} governs and {worst.verdict}, by {name}: demand {worst.demand:.3g}, capacity {worst.capacity:.3g}{unit}."
@@ -83,7 +89,12 @@ class Checked(KindResults):
         strengths = {name: c.capacity for name, c in self.checks.items() if c.unit == "N" and c.capacity is not None}
         if strengths:
             name, least = min(strengths.items(), key=lambda item: item[1])
-            return judge(f"{name} gives the least strength, {least / 1e3:.4g} kN, with all partial factors at 1.", None, least, "N")
+            return judge(
+                f"{name} gives the least strength, {least / 1e3:.4g} kN, with all partial factors at 1.",
+                None,
+                least,
+                "N",
+            )
         barred = {c.code: c.reason for c in self.checks.values() if c.code and c.verdict == "not-applicable"}
         if undecided or not barred:
             return judge("The deck holds no demand for the checks that apply: give the spectrum of the code.")
@@ -125,7 +136,8 @@ class LocalMechanism(Checked):
     )
     activation_acceleration_g: float = fact("a_0* = alpha_0 g/(e* FC)", "g", source="Circ. 7/2019 C8.7.1.2.1")
     zero_displacement_m: float | None = fact(
-        "d_0*, at which the multiplier vanishes, by the horizontal displacement of the centre of what moves; null: at none", "m",
+        "d_0*, at which the multiplier vanishes, by the horizontal displacement of the centre of what moves; null: at none",
+        "m",
         source="Circ. 7/2019 [C8.7.1.4]",
     )
     ultimate_displacement_m: float | None = fact("d_SLV = 0.4 d_0*", "m", source="Circ. 7/2019 C8.7.1.2.1.6")
@@ -134,9 +146,12 @@ class LocalMechanism(Checked):
         "T_SLV = 1.68 pi sqrt(d_SLV/a(d_SLV)) on the straight capacity curve", "s", source="Circ. 7/2019 C8.7.1.2.1.8"
     )
     swaying_weight_N: float = fact(
-        "weight of the kinematic chain: what moves in the mechanism, with what rests on it and sways, and what pushes it", "N"
+        "weight of the kinematic chain: what moves in the mechanism, with what rests on it and sways, and what pushes it",
+        "N",
     )
-    base_height_m: float = fact("z, height of the mechanism above the foundation: at 0 the demand is that of the ground", "m")
+    base_height_m: float = fact(
+        "z, height of the mechanism above the foundation: at 0 the demand is that of the ground", "m"
+    )
     building_height_m: float = maybe("H, of a mechanism above the ground: the height of the building", "m")
     floor_acceleration_g: float = maybe(
         "of a place above the ground: a_Z, the acceleration there, the demand of the linear check",

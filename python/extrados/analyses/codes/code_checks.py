@@ -42,7 +42,11 @@ def run(context: Context, options: CodeChecks) -> Result:
         "capacity": Array(np.array(rows.columns["capacity"]), ("rule",), "", "each in its unit, see code_checks.csv"),
         "demand": Array(np.array(rows.columns["demand"]), ("rule",)),
     }
-    said = [f"{x.rule} {x.verdict} ({x.demand:.3g} against {x.capacity:.3g} {x.unit})" for x in lines if x.verdict in ("holds", "fails")]
+    said = [
+        f"{x.rule} {x.verdict} ({x.demand:.3g} against {x.capacity:.3g} {x.unit})"
+        for x in lines
+        if x.verdict in ("holds", "fails")
+    ]
     words = [r.overall().statement, f"In detail: {'; '.join(said)}."] if said else []
     if r.dynamic_outcome:
         ratio = r.dynamic_peak_rotation_ratio
@@ -52,7 +56,9 @@ def run(context: Context, options: CodeChecks) -> Result:
     strengths = {x.rule: x.capacity for x in lines if x.unit == "N" and x.capacity is not None}
     if strengths:
         weakest = min(strengths, key=lambda rule: strengths[rule])
-        words.append(f"As a pier its least strength is {strengths[weakest] / 1e3:.4g} kN ({weakest}), with all partial factors at 1.")
+        words.append(
+            f"As a pier its least strength is {strengths[weakest] / 1e3:.4g} kN ({weakest}), with all partial factors at 1."
+        )
     if not said:
         words.insert(0, "Capacities without a demand: give spectrum or peak_acceleration, the values of the code.")
     result.answer = " ".join(words)

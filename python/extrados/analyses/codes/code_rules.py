@@ -78,7 +78,16 @@ def housner(p: float, alpha: float, pga: float | None, period: float) -> Line:
     """Half of a sine of period T = 2 pi/w: a = g tan alpha sqrt(1 + (w/p)^2); unconservative (see the theory page)."""
     x = float(np.hypot(1.0, 2.0 * np.pi / (period * p)))
     note = f"for half a sine of {period:.3g} s"
-    return Line("Housner half sine", "PGA", x * np.tan(alpha), pga, "g", "Housner 1963, Eq. 15 (verify clause)", note, scope=BLOCK)
+    return Line(
+        "Housner half sine",
+        "PGA",
+        x * np.tan(alpha),
+        pga,
+        "g",
+        "Housner 1963, Eq. 15 (verify clause)",
+        note,
+        scope=BLOCK,
+    )
 
 
 def ishiyama(width: float, height: float, pga: float | None, pgv: float | None) -> tuple[Line, Line]:
@@ -87,8 +96,30 @@ def ishiyama(width: float, height: float, pga: float | None, pgv: float | None) 
     speed = 10.0 * 100.0 * width / np.sqrt(100.0 * height) / 100.0
     note = "overturns only where both limits are passed"
     return (
-        Line("Ishiyama acceleration", "PGA", width / height, pga, "g", source, note, "Ishiyama", scope=BLOCK, alternative="overturning needs both"),
-        Line("Ishiyama velocity", "PGV", float(speed), pgv, "m/s", source, note, "Ishiyama", scope=BLOCK, alternative="overturning needs both"),
+        Line(
+            "Ishiyama acceleration",
+            "PGA",
+            width / height,
+            pga,
+            "g",
+            source,
+            note,
+            "Ishiyama",
+            scope=BLOCK,
+            alternative="overturning needs both",
+        ),
+        Line(
+            "Ishiyama velocity",
+            "PGV",
+            float(speed),
+            pgv,
+            "m/s",
+            source,
+            note,
+            "Ishiyama",
+            scope=BLOCK,
+            alternative="overturning needs both",
+        ),
     )
 
 
@@ -148,7 +179,13 @@ def piers(
     shear = area * (cohesion + friction * stress) / (1.0 + slenderness)
     return [
         Line(
-            "FEMA 356 rocking", "lateral strength", fema, None, "N", "FEMA 356 Eq. 7-4: 0.9 alpha P L/h (verify clause)", scope=PIER
+            "FEMA 356 rocking",
+            "lateral strength",
+            fema,
+            None,
+            "N",
+            "FEMA 356 Eq. 7-4: 0.9 alpha P L/h (verify clause)",
+            scope=PIER,
         ),
         Line(
             "FEMA 356 bed-joint sliding",
@@ -178,7 +215,13 @@ def piers(
             scope=PIER,
         ),
         Line(
-            "Magenes-Calvi shear", "lateral strength", shear, None, "N", "Magenes and Calvi 1997, Eq. 6 (verify clause)", scope=PIER
+            "Magenes-Calvi shear",
+            "lateral strength",
+            shear,
+            None,
+            "N",
+            "Magenes and Calvi 1997, Eq. 6 (verify clause)",
+            scope=PIER,
         ),
         Line(
             "Magenes-Calvi sliding",

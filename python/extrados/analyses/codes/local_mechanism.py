@@ -15,14 +15,12 @@ from extrados.analyses.codes.walls import WallPart, wall_parts
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import limit_of
 from extrados.analyses.limit.tables import Tilt
-from extrados.building.errors import WHOLE
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.rockers.restraints import Restraints, members_of
 from extrados.building.templates.plan import Plan
 from extrados.building.ties import Tie
 from extrados.core import mechanism as core_mechanism
-from extrados.core.errors import CoreError
 from extrados.core.restraints import FREE
 from extrados.limit.errors import CannotStand
 from extrados.limit.linkage import laden
@@ -77,12 +75,16 @@ def run(context: Context, options: LocalMechanism) -> Result:
             context.warnings.append("a corner turns about its outer edge, as if the stone did not crush there")
         body = overturning(options, building.material.density, building.material.compressive_strength)
         z = options.hinge_height if options.base_height is None else options.base_height
-        turnings = [_body(body, f"the {options.mechanism}", (z, (options.building_height or options.height) if z else None))]
+        turnings = [
+            _body(body, f"the {options.mechanism}", (z, (options.building_height or options.height) if z else None))
+        ]
     for turning in turnings:
         _refuse_fallen(turning)
     judged = [_judged(context, options, turning) for turning in turnings]
     context.warnings = list(dict.fromkeys(context.warnings))  # what goes for one goes for the others
-    judged.sort(key=lambda j: (j.margin is None, j.margin or 0.0, j.results.activation_acceleration_g))
+    judged.sort(
+        key=lambda j: (np.inf if (least := j.results.least()) is None else least, j.results.activation_acceleration_g)
+    )
     return _of_walls(context, judged) if on_plan else _result(judged[0])
 
 
@@ -90,9 +92,14 @@ def _refuse_fallen(turning: _Turning) -> None:
     """CannotStand where the weights and thrusts of a mechanism drive it at rest, which is the proof."""
     if turning.found.alpha0 > 0.0:
         return
-    work = "" if turning.body is None else f": they do work of {-turning.body.work() / 1e3:.3g} kNm per radian, and nothing resists it"
+    work = (
+        ""
+        if turning.body is None
+        else f": they do work of {-turning.body.work() / 1e3:.3g} kNm per radian, and nothing resists it"
+    )
     raise CannotStand(
-        f"{turning.words} has a multiplier of {turning.found.alpha0:.3g} at rest; proof: weights and thrusts set it in motion{work}"
+        f"{turning.words} has a multiplier of {turning.found.alpha0:.3g} at rest; proof: weights and thrusts set it in motion{work}",
+        neglects=(),
     )
 
 
@@ -238,7 +245,9 @@ def _side(context: Context, options: LocalMechanism, model: MechanismModel, held
             context.warnings.append(
                 "The mechanism is the one without dampers and added hinges, which then resist it: its multiplier is an upper bound."
             )
-        return _Turning(found, (np.asarray(spectral(*moving, travel)), alpha), words, _place(stones, chain, options), bound)
+        return _Turning(
+            found, (np.asarray(spectral(*moving, travel)), alpha), words, _place(stones, chain, options), bound
+        )
     multiplier, field, slides = weaker
     chain = in_chain(field, stones.size)
     found = capacity(multiplier, weight[chain], field[chain, 0], None)
@@ -329,7 +338,16 @@ def _checks(
     fc, raised = options.confidence_factor, height is not None
     free = options.mechanism in ("parapet", "gable")
     lines = ntc.checks(
-        found.acceleration / fc, found.d0, options.behaviour_factor, a_g, spectrum, note, at_height, found.alone / fc, raised, free
+        found.acceleration / fc,
+        found.d0,
+        options.behaviour_factor,
+        a_g,
+        spectrum,
+        note,
+        at_height,
+        found.alone / fc,
+        raised,
+        free,
     )
     if options.collapse_spectrum is not None and found.d0 is not None:
         rare, above = spectrum_of(context, options.collapse_spectrum, "collapse_spectrum"), None

@@ -120,7 +120,11 @@ def checks(
                  "NTC 2018, Circ. 7/2019 C8.7.1.2.1.8: d_SLV = 0.4 d_0 >= S_D(T_SLV) at 8 %, T_SLV = 1.68 pi sqrt(d_SLV/a(d_SLV)) "
                  "[C8.7.1.10], [C8.7.1.12]", f"T_SLV = {period:.3f} s", "NTC 2018", scope=SCOPE, alternative="SLV"),
         ]  # fmt: skip
-    vibrates = "a part free to vibrate answers at its own period T_0: its demand is S_eZ(T_0) [C8.7.1.9], not a_Z" if free else ""
+    vibrates = (
+        "a part free to vibrate answers at its own period T_0: its demand is S_eZ(T_0) [C8.7.1.9], not a_Z"
+        if free
+        else ""
+    )
     if asked is not None:
         lines.append(
             Line(f"NTC activation ({where})", quantity, a0 / GRAVITY, felt, "g",

@@ -32,7 +32,11 @@ class CodeChecks(BuildingAnalysis):
     )
     pulse_period: Time | None = key(None, "period of the sine whose half Housner's formula takes; asks for it", gt=0)
     behaviour_factor: float = key(
-        2.0, "q of the linear check, which is for mechanisms without a displacement check", ge=1, le=6, source="Circ. 7/2019, C8.7.1.2.1.7"
+        2.0,
+        "q of the linear check, which is for mechanisms without a displacement check",
+        ge=1,
+        le=6,
+        source="Circ. 7/2019, C8.7.1.2.1.7",
     )
     confidence_factor: float = key(1.35, "FC", ge=1, le=2, source="Circ. 7/2019, Table C8.5.IV")
     axial_load: Force | None = key(None, "vertical load on top of the wall; asks for the pier rules", ge=0)
@@ -125,10 +129,18 @@ class LocalMechanism(BuildingAnalysis):
         False, "where there is no spectrum of a code, take the response spectrum of the deck's motion"
     )
     behaviour_factor: float = key(
-        2.0, "q of the linear check, which is for mechanisms without a displacement check", ge=1, le=6, source="Circ. 7/2019, C8.7.1.2.1.7"
+        2.0,
+        "q of the linear check, which is for mechanisms without a displacement check",
+        ge=1,
+        le=6,
+        source="Circ. 7/2019, C8.7.1.2.1.7",
     )
     confidence_factor: float = key(
-        1.35, "FC; where compression strength is neglected that of LC1, 1.35", ge=1, le=2, source="Circ. 7/2019, C8.7.1.2.1.3, Table C8.5.IV"
+        1.35,
+        "FC; where compression strength is neglected that of LC1, 1.35",
+        ge=1,
+        le=2,
+        source="Circ. 7/2019, C8.7.1.2.1.3, Table C8.5.IV",
     )
     base_height: Length | None = key(
         None,
@@ -137,7 +149,9 @@ class LocalMechanism(BuildingAnalysis):
         ge=0,
     )
     building_height: Length | None = key(
-        None, "height H of the building, where z is above 0; default from the geometry, the top of all, of a table `height`", gt=0
+        None,
+        "height H of the building, where z is above 0; default from the geometry, the top of all, of a table `height`",
+        gt=0,
     )
     building_period: Time | None = key(
         None, "first period T_1 of the building; default 0.05 H^0.75", gt=0, source="EN 1998-1 Eq. 4.6"
