@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 from extrados.analyses.codes.kinematics import Overturning, Push, Weight
+from extrados.analyses.codes.ntc import toothed_edge
 from extrados.analyses.codes.tables import Floor, LocalMechanism
 from extrados.analyses.context import Refused
 from extrados.schema.constants import GRAVITY
@@ -45,6 +46,13 @@ def _refuse_sizes(options: LocalMechanism) -> None:
                 )
     if options.mechanism == "corner" and options.side_walls is not None:
         raise Refused("both walls of a corner turn with it: leave side_walls out", ("analysis", "side_walls"))
+    if options.interlocking is not None and (options.mechanism != "facade" or options.side_walls is not None):
+        raise Refused(
+            "teeth hold a facade that leaves its side walls behind: leave interlocking, or side_walls, out",
+            ("analysis", "interlocking"),
+        )
+    if options.interlocking is not None and options.interlocking.unit_height > top - options.hinge_height:
+        raise Refused("a course is higher than the wall that turns", ("analysis", "interlocking", "unit_height"))
 
 
 def _upright(options: LocalMechanism, density: float, strength: float | None) -> Overturning:
@@ -67,6 +75,11 @@ def _upright(options: LocalMechanism, density: float, strength: float | None) ->
     for tie in options.ties:
         if tie.height > options.hinge_height:
             pushes.append(Push(-tie.force, tie.height - options.hinge_height))
+    if options.interlocking is not None:
+        teeth = options.interlocking
+        courses = int(height / teeth.unit_height * (1.0 + 1e-9))
+        force, below = toothed_edge(courses, teeth.unit_height, teeth.overlap, teeth.thickness, density * GRAVITY)
+        pushes.append(Push(-teeth.count * force, height - below))
     if options.side_walls is not None:
         weights, pushes = _with_side_walls(options, density, height, weights, pushes)
     if strength is not None:

@@ -76,6 +76,23 @@ def floor(ground: Spectrum, height: float, building: float, storeys: int, period
     return Floor(ground, period or 0.05 * building**0.75, height / building * 3.0 * storeys / (2.0 * storeys + 1.0))
 
 
+#: Friction of teeth of masonry, and the share of the force by which every course holds [C8.7.1.2]
+TOOTH_FRICTION, TOOTH_SHARE = 0.577, 0.8
+
+
+def toothed_edge(
+    courses: int, unit_height: float, overlap: float, thickness: float, weight: float
+) -> tuple[float, float]:
+    """Friction F by which a toothed edge holds a wall, F = 0.4 n (n + 1) phi mu l^2 t_s w with phi = h_b/l [C8.7.1.2], and how far [m]
+    below the top of the teeth it acts: every course holds by the weight of those above, so that it is two thirds of the depth.
+
+    Courses n of height h_b and overlap l in a side wall of thickness t_s [m]; weight w per volume: F has its force.
+    """
+    n = courses
+    force = 0.5 * TOOTH_SHARE * n * (n + 1) * unit_height / overlap * TOOTH_FRICTION * overlap**2 * thickness * weight
+    return force, unit_height * (2 * n + 1) / 3.0
+
+
 def below_lc1(fc: float) -> str:
     """What is wrong with a lesser FC where the multiplier takes no strength into account (C8.7.1.2.1.3)."""
     return (

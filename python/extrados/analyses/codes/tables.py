@@ -90,6 +90,15 @@ class SideWalls(Table):
     count: int = key(2, "how many", ge=1, le=4)
 
 
+class Interlocking(Table):
+    """Teeth by which side walls hold the whole height of a wall that turns; they slip out before collapse."""
+
+    unit_height: Length = key(about="height h_b of the units, one course", gt=0)
+    overlap: Length = key(about="overlap l of the units, the length of a tooth", gt=0)
+    thickness: Length = key(about="thickness t_s of each side wall", gt=0)
+    count: int = key(2, "number of toothed edges", ge=1, le=4)
+
+
 class LocalMechanism(BuildingAnalysis):
     """A local mechanism by the kinematic analysis of codes: multiplier, participating mass, linear and nonlinear checks."""
 
@@ -114,6 +123,9 @@ class LocalMechanism(BuildingAnalysis):
     floors: list[Floor] = key([], "floors, roofs and vaults on it", max_length=50)
     ties: list[WallTie] = key([], "ties that hold it", max_length=50)
     side_walls: SideWalls | None = key(None, "wedges of side walls that go with it")
+    interlocking: Interlocking | None = key(
+        None, "teeth of side walls that hold a facade by friction", source="Circ. 7/2019 [C8.7.1.2]"
+    )
     spectrum: CodeSpectrum | None = key(
         None,
         "elastic spectrum of the site; default that of a `compatible` motion",
