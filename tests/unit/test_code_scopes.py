@@ -202,3 +202,12 @@ def test_the_worst_check_that_applies_governs() -> None:
     assert CodeChecks(checks=half).overall().outcome == "not-applicable"
     none = CodeChecks(checks={"barred": one(9.0, 0.5, "Y", reason="it is a tower")}).overall()
     assert none.outcome == "not-applicable" and "it is a tower" in none.statement
+
+
+def test_a_block_that_slides_first_is_not_said_to_hold() -> None:
+    """1 x 2 m: rocking needs a friction of 0.5."""
+    deck = {"structure": {"kind": "block", "width": 1.0, "height": 2.0}, "analysis": {"kind": "code-checks", "spectrum": QUIET, "peak_velocity": 0.05}}  # fmt: skip
+    for friction, outcome in ((0.3, "open"), (0.6, "stands"), ("no-sliding", "stands")):
+        verdict = extrados.run({**deck, "joints": {"friction": friction}})["code-checks"].overall()
+        assert verdict.outcome == outcome, friction
+        assert any("slides first" in text for text in verdict.violated) == (friction == 0.3)

@@ -87,8 +87,16 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
         "peak_ground_acceleration_g": pga, "peak_ground_velocity_m_s": pgv, "confidence_factor": options.confidence_factor,
         "behaviour_factor": options.behaviour_factor,
     }  # fmt: skip
+    violated, friction = [], context.building.joints.coefficient
     if options.confidence_factor < ntc.LC1 and context.building.material.compressive_strength is None:
-        beside["violated"] = [ntc.below_lc1(options.confidence_factor)]
+        violated.append(ntc.below_lc1(options.confidence_factor))
+    if friction is not None and friction < np.tan(model.alpha.min()):
+        violated.append(
+            f"Friction {friction:g} is below the {np.tan(model.alpha.min()):.3g} that rocking needs: the block slides first, which these "
+            "rules do not consider."
+        )
+    if violated:
+        beside["violated"] = violated
     if context.deck.motion is not None:
         motion = context.motion
         context.warnings += motion.notes

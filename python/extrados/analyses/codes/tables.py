@@ -17,7 +17,9 @@ class CodeChecks(BuildingAnalysis):
     """Rules for rocking bodies, and for walls as piers, beside the dynamics; each with its source."""
 
     kind: Literal["code-checks"]
-    uses: ClassVar = ("material.density", "material.compressive_strength", "joints.cohesion", "joints.restitution")
+    uses: ClassVar = (
+        "material.density", "material.compressive_strength", "joints.friction", "joints.cohesion", "joints.restitution",
+    )  # fmt: skip
     beside: ClassVar = ("joints.energy_ratio", "initial.rotation_ratio", "supports.abutting_wall", "supports.stiffness")
     view: ClassVar = ""
     structures: ClassVar = ("block", "column", "panel", "brickwork")
@@ -55,7 +57,13 @@ class CodeChecks(BuildingAnalysis):
         if self.axial_load is None:
             found -= {"material.compressive_strength", "joints.cohesion"}
         if building.structure is not None and building.structure.rocks_as == "piers":
-            found -= {"joints.restitution", "joints.energy_ratio", "initial.rotation_ratio", "supports.stiffness"}
+            found -= {
+                "joints.friction",
+                "joints.restitution",
+                "joints.energy_ratio",
+                "initial.rotation_ratio",
+                "supports.stiffness",
+            }
         return found
 
 
