@@ -320,6 +320,7 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
             "it has no demand": lambda f: having(f, **{"code-checks": checked(0.24, None, nonlinear=check(0.8, 0.2, "m"))}),
             "the linear check governs": lambda f: having(f, **{"code-checks": checked(0.24, nonlinear=check(0.8, 2.0, "m"))}),
             "both agree": lambda f: rated(f, row("code-checks", "collapses", margin=0.5)),
+            "the multiplier turns no verdict": lambda f: having(f, **{"code-checks": checked(0.32, nonlinear=check(0.8, 0.2, "m"))}),
         },
     ),
     "a code that allows less than another": (

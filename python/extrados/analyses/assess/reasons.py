@@ -502,7 +502,7 @@ def code_factors(facts: Facts, pairs: list[Pair]) -> Reason | None:
     return reason(
         "code-factors", other,
         f"{name} of the code compares a demand of {check.demand:.3g} g with {check.capacity:.3g} g: the {least:.3g} g of statics{taking}, "
-        f"times {q / fc:.3g}, the behaviour factor q = {q:g} over the confidence factor FC = {fc:g}.{reserve}",
+        f"times {q / fc:.3g}, {'one' if q == 1.0 else f'the behaviour factor q = {q:g}'} over the confidence factor FC = {fc:g}.{reserve}",
         code_capacity=check.capacity, static_capacity=least, demand=check.demand, factor=q / fc, participating_part=part,
     )  # fmt: skip
 
@@ -525,8 +525,10 @@ def code_check(facts: Facts, pairs: list[Pair]) -> Reason | None:
         other, what = others[0][0], f"{others[0][2].code}, the next code ({others[0][1]}),"
     else:
         return None
-    if (other > 1.0) == (margin > 1.0) and max(other, margin) < facts.apart * min(other, margin):
-        return None
+    if (other > 1.0) == (margin > 1.0):  # which check governs turns no verdict, and may yet set margins apart
+        mine = [p for p in mine if facts.relation(*p) != "disagree"]
+        if not mine or max(other, margin) < facts.apart * min(other, margin):
+            return None
     moves = ", a displacement, which statics does not know" if check.unit == "m" else ""
     return reason(
         "code-check", mine,
