@@ -33,7 +33,7 @@ def row(strategy: str, outcome: str, **more: object) -> StrategyVerdict:
         "label": strategy, "part": None, "status": "ok", "reason": "", "axis": "acceleration", "unit": "g", "capacity": None,
         "demand": None, "margin": None, "margin_at_least": None, "margin_below": None, "parameters": "", "assumes": "", "statement": "",
     }  # fmt: skip
-    return StrategyVerdict(strategy=strategy, outcome=outcome, **(keys | more))
+    return StrategyVerdict(strategy=strategy, outcome=outcome, bound=None, violated=[], **(keys | more))
 
 
 # Results with no more than what a rule reads: one that reads more fails at once.
