@@ -229,3 +229,34 @@ def test_the_chain_by_the_centres_of_its_links(structure: dict) -> None:
     assert found.participating_mass_kg == pytest.approx((m @ dx) ** 2 / (m @ dx**2), rel=1e-6)
     assert found.swaying_weight_N == pytest.approx(m.sum() * GRAVITY, rel=1e-6)
     assert min(dy) < 0.0 < max(dy), "stones go up and down"
+
+
+def test_of_both_senses_the_one_of_least_margin_is_the_result() -> None:
+    """A wall with one inclined face, towards +x, towards -x, and free: no wall beside it stops a sense."""
+    face = {"kind": "blocks", "block": [{"name": "wall", "points": [[0.0, 0.0], [2.0, 0.0], [0.8, 5.0], [0.0, 5.0]]}]}
+    analysis = {"kind": "local-mechanism", "mechanism": "building", "spectrum": SITE}
+
+    def found(**supports: object) -> object:
+        return extrados.run({"structure": face, "analysis": analysis, **supports})["local-mechanism"]
+
+    held = [found(supports={"abutting_wall": side, "rebound": 0.4}) for side in ("left", "right")]
+    margins = [r.governing()[0][0] for r in held]
+    assert margins[0] != pytest.approx(margins[1], rel=0.1)
+    same(found(), held[int(np.argmin(margins))])
+
+
+def test_the_place_of_a_mechanism_comes_from_the_geometry() -> None:
+    """Of a table the hinge; said otherwise by the deck; at the ground where the chain reaches it."""
+    wall = {"kind": "local-mechanism", "mechanism": "facade", "height": 6.0, "thickness": 0.5, "spectrum": SITE}
+
+    def found(**keys: object) -> object:
+        return extrados.run({"analysis": {**wall, **keys}})["local-mechanism"]
+
+    assert found().base_height_m == 0.0 and "NTC activation (at the ground)" in found().checks
+    high = found(hinge_height=3.0)
+    assert (high.base_height_m, high.building_height_m) == (3.0, 6.0)
+    assert high.floor_acceleration_g == pytest.approx(0.18 * 2.5 * 0.5 * np.sqrt(1.01))
+    assert high.checks["NTC activation (at height z)"].demand == pytest.approx(high.floor_acceleration_g)
+    assert found(hinge_height=3.0, base_height=0.0).base_height_m == 0.0
+    other = found(hinge_height=3.0, base_height=7.0, building_height=14.0)
+    assert (other.base_height_m, other.building_height_m) == (7.0, 14.0)

@@ -35,7 +35,7 @@ def draw_local_mechanism(run: Stored, name: str, folder: Path) -> list[tuple[str
         ax.set_ylim(0.0, None)
         ax.set_xlabel("displacement d* [m]")
         ax.set_ylabel("acceleration a* [g]")
-        ax.set_title(f"Capacity of the {r.mechanism}")
+        ax.set_title("Capacity of the mechanism" if r.mechanism == "building" else f"Capacity of the {r.mechanism}")
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-capacity")
     caption = "Capacity curve of the equivalent oscillator, with the confidence factor; the straight line is that of the code."

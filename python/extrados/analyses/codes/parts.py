@@ -99,6 +99,7 @@ def nzsee(part: Part, spectrum: Callable[[float, float], float] | None) -> Line:
     period = float(np.sqrt(0.65 * h * slope))
     barred, demand, note = "", None, f"T_p {period:.3f} s"
     if part.element != "parapet":
+        note = ""
         barred = f"the constants are those of a parapet of one thickness, this is none ({part.element})"
     elif not part.elevated:
         barred = "the height of the parapet above the ground is not given (base_height, building_height): its demand is not known"
@@ -109,7 +110,7 @@ def nzsee(part: Part, spectrum: Callable[[float, float], float] | None) -> Line:
         if spectrum is not None:
             demand = 1.5 / slope * spectrum(0.0, 0.05) * at * by * (period / (2.0 * np.pi)) ** 2
     return Line(
-        "NZSEE C8 parapet", "displacement", USABLE * t, demand, "m",
+        "NZSEE C8 parapet", "displacement", USABLE * t if part.element == "parapet" else None, demand, "m",
         "NZSEE/MBIE 2017 C8: D_m = 0.3 D_i, D_i = t, T_p = sqrt(0.65 h (1 + (t/h)^2)), gamma = 1.5/(1 + (t/h)^2) (verify clause); "
         "NZS 1170.5 section 8: C_p = C(0) C_Hi C_i", note, "NZSEE", scope="parapet; cantilever; on a building, at z > 0", barred=barred,
     )  # fmt: skip
