@@ -211,3 +211,11 @@ def test_a_block_that_slides_first_is_not_said_to_hold() -> None:
         verdict = extrados.run({**deck, "joints": {"friction": friction}})["code-checks"].overall()
         assert verdict.outcome == outcome, friction
         assert any("slides first" in text for text in verdict.violated) == (friction == 0.3)
+
+
+def test_a_wall_that_its_weight_crushes_cannot_stand_and_one_near_it_is_refused() -> None:
+    """0.5 m by 6 m of 2000 kg/m^3 weigh 117.7 kPa on their foot."""
+    keys = {"height": 6.0, "thickness": 0.5, "peak_acceleration": "0.1 g"}
+    for strength, outcome in ((110e3, "cannot-stand"), (150e3, None), (1e6, "stands")):
+        (told,) = run("facade", {"compressive_strength": strength}, **keys).analyses
+        assert (told["verdict"] or {}).get("outcome") == outcome, strength

@@ -7,6 +7,7 @@ from extrados.analyses.codes.kinematics import Overturning, Push, Weight
 from extrados.analyses.codes.ntc import toothed_edge
 from extrados.analyses.codes.tables import Floor, LocalMechanism
 from extrados.analyses.context import Refused
+from extrados.limit.errors import CannotStand
 from extrados.schema.constants import GRAVITY
 
 #: What each mechanism needs beyond density and height
@@ -96,10 +97,21 @@ def _of_floor(floor: Floor, middle: float, level: float) -> list[Weight]:
 
 def set_back(weights: list[Weight], strength: float, width: float, thickness: float) -> list[Weight]:
     """Weights about a hinge that lies within the wall by 2 P/(3 f_d w), for a strength f_d [Pa] and a width w [m]; Refused where
-    that is the middle of the thickness [m]."""
-    setback = 2.0 * sum(w.weight for w in weights if w.rests) / (3.0 * strength * width)
+    that is the middle of the thickness [m], CannotStand where no stress within the strength carries the weight."""
+    weight, most = sum(w.weight for w in weights if w.rests), strength * width * thickness
+    if weight > most:
+        raise CannotStand(
+            f"the weight crushes the wall at the hinge; proof: {weight / 1e3:.3g} kN rest on a section that carries {most / 1e3:.3g} kN at "
+            "most",
+            neglects=(),
+        )
+    setback = 2.0 * weight / (3.0 * strength * width)
     if setback >= thickness / 2.0:
-        raise Refused("the weight alone crushes the wall at the hinge", ("material", "compressive_strength"))
+        raise Refused(
+            "the triangle of stress under the weight is wider than the wall at the hinge: more than 0.75 of the compressive strength is "
+            "used at rest",
+            ("material", "compressive_strength"),
+        )
     return [replace(w, arm=w.arm - setback) for w in weights]
 
 
