@@ -269,3 +269,18 @@ def test_the_place_of_a_mechanism_comes_from_the_geometry() -> None:
     assert found(hinge_height=3.0, base_height=0.0).base_height_m == 0.0
     other = found(hinge_height=3.0, base_height=7.0, building_height=14.0)
     assert (other.base_height_m, other.building_height_m) == (7.0, 14.0)
+
+
+def test_e_star_by_links_is_said_where_it_differs_from_that_by_stones() -> None:
+    """Three drums that turn as one: (1 + 3 + 5)^2/(3 (1 + 9 + 25)) by stones, 1 by the one link; a single block says nothing."""
+    analysis = {"kind": "local-mechanism", "mechanism": "building", "peak_acceleration": "0.1 g"}
+
+    def told(drums: int) -> tuple[float, list[str]]:
+        column = {"kind": "column", "width": 1.0, "height": 6.0, "drums": drums}
+        run = extrados.run({"structure": column, "joints": {"friction": "no-sliding"}, "analysis": analysis})
+        return run["local-mechanism"].participating_part, run.analyses[0]["warnings"]
+
+    part, warnings = told(3)
+    assert part == pytest.approx(81.0 / 105.0) and any("e* is 1, and a_0* -23 %" in text for text in warnings)
+    part, warnings = told(1)
+    assert part == pytest.approx(1.0) and not warnings

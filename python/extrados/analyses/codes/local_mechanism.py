@@ -32,6 +32,8 @@ from extrados.schema.constants import GRAVITY
 STEPS = 61
 #: Limit analysis with friction, strength and ties finds another mechanism where its multiplier is less than this share
 WEAKER = 0.99
+#: e* by stones and by rigid links that differ by less than this share are alike
+ALIKE = 0.02
 
 
 @dataclass(frozen=True)
@@ -239,6 +241,12 @@ def _side(context: Context, options: LocalMechanism, model: MechanismModel, held
         parts = core_mechanism.follow(one, turned)[0][:, :, 0]
         travel = sense * ((parts - parts[0]) @ one.mass) * GRAVITY / float(moving[0] @ moving[1])
         found = capacity(float(alpha[0]), *moving, float(travel[-1]), model.uplift[side])
+        links = capacity(found.alpha0, one.mass * GRAVITY, core_mechanism.follow(one, [0.0])[1][0, :, 0], None)
+        if abs(links.part / found.part - 1.0) > ALIKE:
+            context.warnings.append(
+                f"e* takes each stone as a weight of its own: {found.part:.3g}. With one weight for each of the {len(one.mass)} rigid links of "
+                f"the chain, as [C8.7.1.1] defines P_k, e* is {links.part:.3g}, and a_0* {100.0 * (found.part / links.part - 1.0):+.0f} %."
+            )
         # only limit analysis looks for the mechanism that ties leave; dampers and added hinges it does not know
         bound = None if all(isinstance(r, Tie) for r in building.restraints) else "upper"
         if bound:
