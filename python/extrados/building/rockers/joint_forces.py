@@ -8,6 +8,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.rockers.mechanism import carried
 from extrados.core import mechanism as core_mechanism
 from extrados.limit.linkage import Linkage, laden
 from extrados.schema.constants import GRAVITY
@@ -88,7 +89,7 @@ class JointForces:
         out = np.zeros((n, len(self.joints), 3, 3))
         turned = np.concatenate([np.zeros((n, 1)), place[:, :, 2]], axis=1)
         number = np.append(one.part, 0)
-        points = [self._carried(place, pair[0], one.point[h]) for h, pair in enumerate(one.joined)]
+        points = [carried(one, place, pair[0], one.point[h]) for h, pair in enumerate(one.joined)]
         for row, j in enumerate(one.joint):
             mean = 0.5 * (turned[:, one.joined[row, 0]] + turned[:, one.joined[row, 1]])
             share = float((one.point[row] - a.p[j]) @ a.tangent[j]) / a.length[j]
@@ -96,7 +97,7 @@ class JointForces:
             out[:, row, :, 1] = (hinge[:, :, row] * _turned(a.tangent[j], mean)[:, None]).sum(axis=-1)
             out[:, row, :, 2] = share * out[:, row, :, 0]
         for row, (j, inside) in enumerate(self._cuts, start=len(one.joint)):
-            end = self._carried(place, number[a.a[j]], a.p[j])
+            end = carried(one, place, number[a.a[j]], a.p[j])
             lever = at[:, inside, :2] - end[:, None]
             load = needed[:, :, inside]
             force = load[..., :2].sum(axis=2)
@@ -135,7 +136,7 @@ class JointForces:
         for h, pair in enumerate(one.joined):
             for k, sign in zip(pair, (1.0, -1.0), strict=True):
                 if k:
-                    arm = self._carried(place, k, one.point[h]) - place[:, k - 1, :2]
+                    arm = carried(one, place, k, one.point[h]) - place[:, k - 1, :2]
                     matrix[:, k - 1, 0, h, 0] += sign
                     matrix[:, k - 1, 1, h, 1] += sign
                     matrix[:, k - 1, 2, h] += sign * np.column_stack([-arm[:, 1], arm[:, 0]])
@@ -143,12 +144,6 @@ class JointForces:
         matrix = (matrix * unit[:, None, None]).reshape(n, 3 * count, -1)
         force = np.linalg.pinv(matrix) @ np.moveaxis((right * unit).reshape(n, 3, -1), 1, 2)
         return np.moveaxis(force, 1, 2).reshape(n, 3, -1, 2)
-
-    def _carried(self, place: np.ndarray, part: int, point: np.ndarray) -> np.ndarray:
-        """Where a point [m] of a part (0: the ground) lies at each rotation (rotations, 2)."""
-        if part == 0:
-            return np.broadcast_to(point, (len(place), 2))
-        return place[:, part - 1, :2] + _turned(point - self.linkage.centroid[part - 1], place[:, part - 1, 2])
 
 
 def _turned(vector: np.ndarray, angle: np.ndarray) -> np.ndarray:
