@@ -3,6 +3,7 @@
 import numpy as np
 
 from extrados.core import motion as core
+from extrados.schema.constants import GRAVITY
 
 BASELINES = {"none": None, "mean": 0, "linear": 1, "quadratic": 2, "cubic": 3}
 _ORDER = 4  # of the Butterworth filter; run forth and back it acts as twice that
@@ -29,6 +30,19 @@ def baseline(acceleration: np.ndarray, step: float, kind: str) -> np.ndarray:
         fit = np.linalg.lstsq(basis, velocity, rcond=None)[0]
         out[k] = row - (t[:, None] ** (powers - 1) * powers) @ fit / span
     return out.reshape(acceleration.shape)
+
+
+def drift(acceleration: np.ndarray, step: float) -> str:
+    """What a motion (points) [m/s^2] leaves its ground with, where that is much of the greatest: a velocity, a
+    displacement, and their mean acceleration; "" where the ground comes to rest."""
+    velocity, displacement = core.kinematics(acceleration, step)
+    v, d = float(velocity[-1]), float(displacement[-1])
+    if abs(v) <= 0.1 * np.abs(velocity).max() and abs(d) <= 0.5 * np.abs(displacement).max(initial=1e-300):
+        return ""
+    v = v if abs(v) > 1e-9 * np.abs(velocity).max() else 0.0
+    d = d if abs(d) > 1e-9 * np.abs(displacement).max() else 0.0
+    mean = v / (step * (len(acceleration) - 1)) / GRAVITY
+    return f"the ground ends at {v:.3g} m/s and {d:.3g} m, by a mean acceleration of {mean:.2g} g"
 
 
 def at_rest(acceleration: np.ndarray, step: float) -> np.ndarray:

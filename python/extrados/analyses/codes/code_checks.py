@@ -92,7 +92,6 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
     beside: dict[str, Any] = {"peak_ground_acceleration_g": pga, "peak_ground_velocity_m_s": pgv}
     if context.deck.motion is not None:
         motion = context.motion
-        context.warnings += motion.notes
         start = rocker.start_rotation
         dynamic = core_rocking.history(
             model.body, motion.ground, motion.end + 30.0 / float(model.frequency.min()), 0.01,
