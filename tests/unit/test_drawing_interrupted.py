@@ -38,10 +38,23 @@ def group(leader: int) -> list[int]:
     return found
 
 
-def drawing(folder: Path, written: str, *arguments: str) -> tuple[subprocess.Popen, list[int]]:
+#: The command, whose figures of `rocking` take longer than anyone waits
+ENDLESS = """
+import sys, time
+import extrados.plots.arch
+from extrados.__main__ import main
+extrados.plots.arch.draw_rocking = lambda *_: time.sleep(600)
+sys.argv[0] = "extrados"
+main()
+"""
+
+
+def drawing(
+    folder: Path, written: str, *arguments: str, command: tuple[str, ...] = ("-m", "extrados")
+) -> tuple[subprocess.Popen, list[int]]:
     """The command in a group of its own, once `written` is there and it draws, and the processes that draw."""
     process = subprocess.Popen(
-        [sys.executable, "-m", "extrados", *arguments, "--quiet"], cwd=folder, start_new_session=True,
+        [sys.executable, *command, *arguments, "--quiet"], cwd=folder, start_new_session=True,
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
     )  # fmt: skip
     end = time.monotonic() + 120.0
@@ -98,6 +111,18 @@ def test_a_signal_while_a_folder_is_drawn(tmp_path, number, everyone) -> None:
     assert process.returncode == 128 + number, text
     assert "Traceback" not in text
     assert (tmp_path / "out" / "a" / "summary.json").exists()
+
+
+@needs_cores
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_while_one_long_task_is_left(tmp_path, number) -> None:
+    """A process without work waited with a lock in hand, killed it left the lock closed."""
+    (tmp_path / "deck.toml").write_text(f'{DECK}[[analysis]]\nkind = "tilt"\n[[analysis]]\nkind = "rocking"\n')
+    process, _ = drawing(tmp_path, "out/summary.json", "run", "deck.toml", "--out", "out", command=("-c", ENDLESS))
+    time.sleep(5.0)  # by now the other task is done
+    os.killpg(process.pid, number)
+    text = gone(process)
+    assert process.returncode == 128 + number and "interrupted while drawing" in text, text
 
 
 @needs_cores
