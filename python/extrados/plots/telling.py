@@ -12,7 +12,9 @@ from extrados.results.store import STORE, SUMMARY, Stored
 
 Figures = list[tuple[str, str]]
 #: Outcomes of verdicts in words
-OUTCOMES = {"stands": "stands", "falls": "falls", "open": "open", "none": "no demand"}
+OUTCOMES = {
+    "stands": "stands", "collapses": "collapses", "cannot-stand": "cannot stand", "open": "open", "not-applicable": "no verdict",
+}  # fmt: skip
 #: Values of a list that are shown, and rows of a list of tables
 MOST_SHOWN, MOST_ROWS = 12, 4
 

@@ -62,7 +62,7 @@ class Checked(KindResults):
             return judge(
                 f"{worst.code} governs and {worst.verdict}, by {name}: {worst.demand:.3g} against "
                 f"{worst.capacity:.3g}{unit}.{left}",
-                worst.demand, worst.capacity, worst.unit, "falls" if worst.verdict == "fails" else "stands",
+                worst.demand, worst.capacity, worst.unit, "collapses" if worst.verdict == "fails" else "stands",
             )  # fmt: skip
         strengths = {name: c for name, c in self.checks.items() if c.unit == "N"}
         if not strengths:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from extrados.analyses.assess.asking import ENDING
 from extrados.analyses.assess.hazard import above, passages
 from extrados.building.building import Building
 from extrados.building.templates.plan import Plan
@@ -15,7 +16,7 @@ from extrados.results.dem import DemRun
 from extrados.results.limit import Tilt
 from extrados.results.model import Result
 from extrados.results.rocking import Assessment, Rocking
-from extrados.results.verdict import KindResults
+from extrados.results.verdict import KindResults, SelfWeight
 
 #: Strategies that push for ever, and those that follow the motion or a part of it
 STATIC, DYNAMIC = ("tilt", "sla", "push-x", "push-y"), ("rocking", "assessment", "probability", "dem")
@@ -48,9 +49,11 @@ class Facts:
     bare: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
     def of(self, name: str) -> KindResults | None:
-        """The typed results of a strategy that has any."""
+        """The typed results of a strategy that has any of its kind."""
         found = self.results.get(name)
-        return found.results if found is not None and found.status == "ok" else None
+        if found is None or found.status != "ok" or isinstance(found.results, SelfWeight):
+            return None
+        return found.results
 
     def outcome(self, name: str) -> str:
         """The outcome of a strategy by its name."""
@@ -58,11 +61,13 @@ class Facts:
 
     def judged(self) -> list[str]:
         """The strategies with a verdict."""
-        return [n for n, r in self.rows.items() if r.status == "ok" and r.outcome in ("stands", "falls", "open")]
+        return [n for n, r in self.rows.items() if r.status == "ok" and r.outcome != "not-applicable"]
 
     def relation(self, a: str, b: str) -> str:
         """agree, apart, disagree or open (results.assess)."""
         one, two = self.rows[a], self.rows[b]
+        if {one.outcome, two.outcome} == {"collapses", "cannot-stand"}:
+            return "agree"
         if "open" in (one.outcome, two.outcome):
             return "agree" if one.outcome == two.outcome else "open"
         if one.outcome != two.outcome:
@@ -87,7 +92,7 @@ class Facts:
     def split(self, pair: Pair) -> tuple[str, str]:
         """The pair with that first which says less is borne."""
         a, b = pair
-        order = {"falls": 0, "open": 1, "stands": 2}
+        order = {"cannot-stand": 0, "collapses": 1, "open": 2, "stands": 3}
         key_a, key_b = ((order[self.outcome(n)], self.interval(n)) for n in (a, b))
         return (a, b) if key_a <= key_b else (b, a)
 
@@ -585,12 +590,23 @@ RULES: tuple[Rule, ...] = (
 )  # fmt: skip
 
 
-def explained(facts: Facts) -> tuple[list[Reason], list[Pair]]:
-    """The reasons that the rules find for the pairs that do not agree, and the pairs for which there is none."""
+def explained(facts: Facts, failed: Callable[[str, Exception], None] | None = None) -> tuple[list[Reason], list[Pair]]:
+    """The reasons that the rules find for the pairs that do not agree, and the pairs for which there is none.
+
+    failed: takes the name of a rule that raised, and its error, and the other rules still count; None: the error is raised.
+    """
     pairs = facts.pairs()
     said: list[Reason] = []
     for rule in RULES:
-        given = rule(facts, pairs)
+        try:
+            given = rule(facts, pairs)
+        except ENDING:
+            raise
+        except Exception as error:
+            if failed is None:
+                raise
+            failed(rule.__name__.replace("_", "-"), error)
+            continue
         said += given if isinstance(given, list) else [] if given is None else [given]
     found = [one for one in said if one.explains]
     told = {tuple(p) for one in found for p in one.explains}
