@@ -32,17 +32,24 @@ def baseline(acceleration: np.ndarray, step: float, kind: str) -> np.ndarray:
     return out.reshape(acceleration.shape)
 
 
-def drift(acceleration: np.ndarray, step: float) -> str:
-    """What a motion (points) [m/s^2] leaves its ground with, where that is much of the greatest: a velocity, a
-    displacement, and their mean acceleration; "" where the ground comes to rest."""
+def drift(acceleration: np.ndarray, step: float) -> tuple[str, str]:
+    """How the ground of a motion (points) [m/s^2] ends where it does not come to rest at its start, and what that means; two
+    empty texts where it does."""
     velocity, displacement = core.kinematics(acceleration, step)
     v, d = float(velocity[-1]), float(displacement[-1])
-    if abs(v) <= 0.1 * np.abs(velocity).max() and abs(d) <= 0.5 * np.abs(displacement).max(initial=1e-300):
-        return ""
-    v = v if abs(v) > 1e-9 * np.abs(velocity).max() else 0.0
     d = d if abs(d) > 1e-9 * np.abs(displacement).max() else 0.0
-    mean = v / (step * (len(acceleration) - 1)) / GRAVITY
-    return f"the ground ends at {v:.3g} m/s and {d:.3g} m, by a mean acceleration of {mean:.2g} g"
+    if abs(v) > 0.1 * np.abs(velocity).max():
+        mean = v / (step * (len(acceleration) - 1)) / GRAVITY
+        return (
+            f"the ground ends at {v:.3g} m/s and {d:.3g} m, by a mean acceleration of {mean:.2g} g",
+            'A structure feels this mean as a sustained load. Remove it by baseline = "quadratic" or low_cut.',
+        )
+    if abs(d) > 0.5 * np.abs(displacement).max(initial=1e-300):
+        return (
+            f"the ground ends {d:.3g} m from its start",
+            "This is a permanent displacement, or an error of the baseline that hardly acts on a structure.",
+        )
+    return "", ""
 
 
 def at_rest(acceleration: np.ndarray, step: float) -> np.ndarray:

@@ -184,11 +184,9 @@ def record_motion(
         else [("first component: ", horizontal[0]), ("second component: ", horizontal[1])]
     )
     for which, row in [*parts, *(("vertical component: ", row) for row in rows[1:])]:
-        if found := processing.drift(row, step):
-            notes.append(
-                f"{record.name}: {which}{found}. A structure feels this mean as a sustained load. "
-                'Remove it by baseline = "quadratic" or low_cut.'
-            )
+        found, meaning = processing.drift(row, step)
+        if found:
+            notes.append(f"{record.name}: {which}{found}. {meaning}")
     return Motion(
         record.name,
         Ground(samples=rows, step=step),

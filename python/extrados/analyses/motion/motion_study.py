@@ -111,7 +111,7 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
     frequency, amplitude = fourier_spectrum(a, step)
     result = Result("motion")
     r = _study(motion, options)
-    if not isinstance(context.deck.motion, models.Record | models.Suite) and (found := drift(a, step)):
+    if not isinstance(context.deck.motion, models.Record | models.Suite) and (found := drift(a, step)[0]):
         result.warnings.append(f"The motion is prescribed so that {found}.")  # of records their notes say it
     husid = np.concatenate([[0.0], np.cumsum(0.5 * step * (a[1:] ** 2 + a[:-1] ** 2))])
     time = step * np.arange(len(a))
