@@ -86,7 +86,8 @@ LIMITS: dict[str, tuple[str, str]] = {
     "local-mechanism": (
         "A part of the building rotates as rigid bodies about hinges: the linear and nonlinear kinematic analysis of codes.",
         "The result holds for the stated mechanism; another mechanism may be weaker. The connection to walls across and floors is "
-        "that of the deck. Clauses marked `verify clause` were not read in the standard.",
+        "that of the deck. A rule outside its scope does not apply, and its row states that. Clauses marked `verify clause` were not "
+        "read in the standard.",
     ),
     "motion": (
         "The acceleration is integrated from rest, and linear oscillators without interaction with the ground respond to it.",
