@@ -105,7 +105,8 @@ def test_a_signal_while_a_folder_is_drawn(tmp_path, number, everyone) -> None:
     (tmp_path / "decks").mkdir()
     for name in ("a", "b"):
         (tmp_path / "decks" / f"{name}.toml").write_text(f'{DECK}[analysis]\nkind = "assess"\nbudget = 5.0\n')
-    process, _ = drawing(tmp_path, "out/a/summary.json", "assess", "decks", "--out", "out")
+    process, _ = drawing(tmp_path, "out/a/summary.json", "assess", "decks", "--out", "out", command=("-c", ENDLESS))
+    time.sleep(5.0)  # by now the other tasks are done
     (os.killpg if everyone else os.kill)(process.pid, number)
     text = gone(process)
     assert process.returncode == 128 + number, text
