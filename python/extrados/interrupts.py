@@ -43,6 +43,19 @@ def insist() -> None:
     sys.unraisablehook = unheard
 
 
+def end_with(parent: int) -> None:
+    """End this process once the process `parent`, which started it, has ended, however that ended."""
+    import threading  # no instruction of the command goes before its answer to signals
+    import time
+
+    def watch() -> None:
+        while os.getppid() == parent:
+            time.sleep(0.5)
+        os._exit(1)
+
+    threading.Thread(target=watch, daemon=True).start()
+
+
 def exit_code() -> int:
     """The exit code after a signal: 130 after Ctrl-C, 143 after SIGTERM."""
     return 128 + (asked[-1] if asked else signal.SIGINT)

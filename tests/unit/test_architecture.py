@@ -33,10 +33,10 @@ MAY_IMPORT = {
         "kinds", "tables", "decks", "building", "geometry", "errors", "rockers", "motions", "limit", "core", "results",
         "schema", "interrupts", "room",
     },
-    "plots": {"kinds", "results", "schema"},
-    "running": {"objects", "kinds", "analyses", "tables", "building", "geometry", "errors", "decks", "motions", "results", "plots", "schema", "_build_info"},
+    "plots": {"interrupts", "kinds", "results", "schema"},
+    "running": {"interrupts", "objects", "kinds", "analyses", "tables", "building", "geometry", "errors", "decks", "motions", "results", "plots", "schema", "_build_info"},
     "explore": {
-        "kinds", "analyses", "tables", "building", "geometry", "errors", "limit", "decks", "motions", "core", "results", "plots",
+        "interrupts", "kinds", "analyses", "tables", "building", "geometry", "errors", "limit", "decks", "motions", "core", "results", "plots",
         "running", "schema", "_build_info",
     },
     "objects": {"kinds", "decks", "schema"},

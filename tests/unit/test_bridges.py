@@ -598,3 +598,59 @@ def test_pushes_go_with_sliding_that_does_not_dilate() -> None:
         held = ends != GROUND
         np.add.at(force, ends[held], sign * wrench[held])
     assert np.abs(force).max() < 1e-6 * loads.scale
+
+
+# What a verdict on a train supposes
+
+RING: dict[str, Any] = {
+    "kind": "arch",
+    "radius": 10.0,
+    "thickness": 1.5,
+    "embrace": 157.5,
+    "voussoirs": 21,
+    "depth": 3.0,
+}
+
+
+def ring(**analysis: Any) -> Result:
+    """A moving load on a bare arch."""
+    deck = make_deck({"structure": RING, "joints": {"friction": 0.7}, "analysis": moving(**analysis)})
+    return run_analyses(Context(deck, threads=1))[0]
+
+
+@pytest.mark.parametrize("train", ["LM1", "LM71", "SW/0"])
+def test_a_bare_ring_is_no_model_of_a_bridge(train: str) -> None:
+    """Its ratio is above 1, and the verdict is open all the same, with what is missing and what to do."""
+    found = ring(train=train)
+    assert found.verdict.ratio > 1.0 and found.verdict.outcome == "open"
+    (violated,) = found.verdict.violated
+    assert f"{train} acts on the blocks of the arch themselves" in violated and violated in found.verdict.statement
+    assert any(violated in w and 'kind = "bridge" with fill and backing' in w for w in found.warnings)
+
+
+def test_a_bridge_without_fill_is_a_bare_ring_and_with_it_is_not() -> None:
+    bare, filled = run(moving(train="LM1"), depth=4.0), run(moving(train="LM1"), depth=4.0, fill={"cover": 0.4})
+    assert bare.verdict.violated and bare.verdict.outcome != "stands"
+    assert not filled.verdict.violated and not any("no model of a bridge" in w for w in filled.warnings)
+
+
+def test_forces_of_a_deck_on_a_ring_are_its_own() -> None:
+    one, axles = ring(force="10 kN"), ring(axle_loads=["10 kN", "10 kN"], axles=[0.0, 1.2])
+    assert one.verdict.outcome == axles.verdict.outcome == "stands"
+    assert not any("no fill" in w for w in one.warnings)
+    assert sum("no fill spreads them" in w for w in axles.warnings) == 1
+
+
+@pytest.mark.parametrize("factors", [{}, {"live": 1.35}, {"masonry": 0.95}, {"strength": 2.0}, {"friction": 1.1}])
+def test_a_verdict_without_partial_factors_says_so(factors: dict[str, float]) -> None:
+    words = "All partial factors are 1.0: characteristic loads and strengths, no code margin."
+    for found in (
+        run(moving(train="LM1", factors=factors), depth=4.0, fill={"cover": 0.4}),
+        ring(force="10 kN", factors=factors),
+    ):
+        assert (words in found.verdict.statement) == (words in found.answer) == (not factors)
+
+
+def test_no_remark_where_there_is_no_verdict() -> None:
+    found = ring()
+    assert found.verdict.outcome == "not-applicable" and "partial factors" not in found.verdict.statement + found.answer

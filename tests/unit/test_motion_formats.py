@@ -38,7 +38,7 @@ FILES = {
     "columns.csv": ("time (s),acc (g)\n" + "".join(f"{k * 0.005:.3f},{v}\n" for k, v in enumerate(G)), "columns", 0.005, "g", G),
     "tabs.txt": ("".join(f"{k * 0.005:.3f}\t{v}\n" for k, v in enumerate(G)), "columns", 0.005, None, G),
     "one.acc": ("# a comment in cm/s/s\n" + "".join(f"{v}\n" for v in A), "columns", None, "cm/s^2", A),
-    "path.dat": ("\n".join(files.fixed(G, 8, "10.6f")) + "\n", "columns", None, None, G),
+    "path.dat": ("# format (8F10.6)\n" + "\n".join(files.fixed(G, 8, "10.6f")) + "\n", "columns", None, None, G),
 }  # fmt: skip
 
 

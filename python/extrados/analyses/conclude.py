@@ -60,6 +60,8 @@ def concluded(result: Result, options: Analysis, context: Context, building: Bui
         assumptions = assumptions_of(options, context.deck.building, building)
     except Exception as error:  # the other analyses of the deck still count
         return replace(faulty(result.kind, error), seconds=result.seconds)
+    # also of a motion that the verdict alone has taken
+    result = replace(result, warnings=[*result.warnings, *(w for w in context.warnings if w not in result.warnings)])
     if verdict is None:
         return replace(result, assumptions=assumptions)
     answer = f"{result.answer} {spoken(assumptions)}".strip()

@@ -58,9 +58,16 @@ class Context:
 
         return None if self.out is None else Checkpoint(self.out, self.deck.identity, self.resume)
 
-    @cached_property
+    @property
     def motion(self) -> "Motion":
-        """The motion of the deck; Refused where its file is wrong."""
+        """The motion of the deck; its notes join the warnings of whoever takes it. Refused where its file is wrong."""
+        made = self.given_motion
+        self.warnings += [note for note in made.notes if note not in self.warnings]
+        return made
+
+    @cached_property
+    def given_motion(self) -> "Motion":
+        """The motion of the deck, made once."""
         from extrados.motions.from_deck import make_motion
         from extrados.motions.records import RecordError
 

@@ -19,6 +19,12 @@ from extrados.motions.records import RecordError
 MOST_NOTES = 10  # of a suite, shown with the result
 
 
+def shortened(notes: list[str]) -> list[str]:
+    """The first MOST_NOTES, and how many more there are."""
+    more = len(notes) - MOST_NOTES
+    return notes[:MOST_NOTES] + ([f"{more} more notes on records of the suite are not shown."] if more > 0 else [])
+
+
 class Source(Protocol):
     """Motions 0 .. of a deck."""
 
@@ -104,11 +110,9 @@ def source_of(context: Context, seed: int | None, duration: float | None = None)
                 raise Refused(
                     f"none of the {len(grounds)} records of the suite can be read; the first: {grounds[0]}", ("motion",)
                 )
-            context.warnings += notes[:MOST_NOTES]
+            context.warnings += shortened(notes)
             return ListSource(grounds, [member_name(m) for m in members]), len(grounds)
-        motion = make_motion(model, folder)
-        context.warnings += motion.notes
-        return ListSource([motion.ground], ["motion"]), 1
+        return ListSource([context.motion.ground], ["motion"]), 1
     except RecordError as error:
         raise Refused(str(error), ("motion",)) from None
 

@@ -4,6 +4,7 @@ Each is `python -m extrados.analyses.workers`, told its job and its batches thro
 of the caller's program, so a script needs no guard around its main part.
 """
 
+import contextlib
 import os
 import queue
 import signal
@@ -16,6 +17,13 @@ from multiprocessing.connection import Connection, Pipe
 from typing import Any
 
 import numpy as np
+
+from extrados import interrupts
+from extrados.core.calls import cancel_requested
+from extrados.core.errors import Cancelled, status_code
+
+LOOK = 0.05  # s between two looks whether the user has asked for the end
+ENDS = 5.0  # s: a process that has closed its pipe ends by then
 
 
 @dataclass(frozen=True)
@@ -37,10 +45,15 @@ class Elsewhere:
         worker = self.free.get()
         try:
             worker.pipe.send((first, count, threads))
+            while not worker.pipe.poll(LOOK):
+                if cancel_requested():  # who leaves the block ends the process
+                    raise Cancelled(status_code("cancelled"), "interrupted")
             rows, error = worker.pipe.recv()
         except (OSError, EOFError):
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                worker.process.wait(ENDS)
             raise RuntimeError(
-                f"a process that computed members {first} to {first + count - 1} ended with code {worker.process.wait()}; "
+                f"a process that computed members {first} to {first + count - 1} ended with code {worker.process.returncode}; "
                 "a negative one is a signal, -9 often for want of memory"
             ) from None
         finally:
@@ -81,6 +94,7 @@ def processes(job: Any, count: int) -> Iterator[Elsewhere]:
 def main() -> None:
     """Answer batches until the pipe ends; Ctrl-C is left to the process that asked."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    interrupts.end_with(os.getppid())
     pipe = Connection(int(sys.argv[1]))
     job = pipe.recv()
     while True:

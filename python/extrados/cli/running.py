@@ -69,6 +69,9 @@ def motion(
     channel: Annotated[
         str | None, typer.Option(help="channel of a file with several: number or part of its name")
     ] = None,
+    columns: Annotated[
+        str | None, typer.Option(help="several columns without time: series or components (then give --channel)")
+    ] = None,
     baseline: Annotated[str, typer.Option(help="none, mean, linear, quadratic or cubic")] = "none",
     figures: Annotated[bool, typer.Option(help="draw figures and the report")] = True,
     as_json: Annotated[bool, typer.Option("--json", help="print summary.json instead of words")] = False,
@@ -83,7 +86,7 @@ def motion(
         "file": file if file.startswith("extrados:") else str(Path(file).absolute()),
         "baseline": baseline,
     }
-    record |= {k: v for k, v in {"time_step": time_step, "unit": unit}.items() if v is not None}
+    record |= {k: v for k, v in {"time_step": time_step, "unit": unit, "columns": columns}.items() if v is not None}
     if channel is not None:
         record["channel"] = int(channel) if channel.isascii() and channel.isdigit() and len(channel) < 10 else channel
     with errors(as_json):

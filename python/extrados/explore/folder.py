@@ -23,6 +23,7 @@ from extrados.schema.places import CASES
 DEEP, MOST, MOST_FOLDERS = 4, 500, 2000
 #: Bytes of a run that a page is shown
 LARGEST_RUN = 400_000_000
+WAITS = 10.0  # s: a run ends so long after its last line
 SKIPPED = {"node_modules", "__pycache__", "build", "dist"}
 PLACE = re.compile(r"(?:[\w][\w .+-]{0,100}/){0,6}[\w][\w .+-]{0,100}")
 
@@ -188,7 +189,10 @@ class Folder:
                 if line is None:
                     break
                 yield line, False
-            code = child.wait()
+            try:
+                code = child.wait(WAITS)
+            except subprocess.TimeoutExpired:
+                code = "none: its output ended and it did not"
             yield "" if code in (0, 3) else f"it ended with code {code}", True
         finally:
             if child.poll() is None:
@@ -198,6 +202,7 @@ class Folder:
                     time.sleep(0.05)
                 if child.poll() is None:
                     child.kill()
+                    child.wait()
 
 
 _presets: list[dict[str, str]] | None = None

@@ -12,8 +12,6 @@ import logging
 import os
 import secrets
 import socket
-import threading
-import time
 from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
@@ -25,6 +23,7 @@ from starlette.responses import PlainTextResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from extrados import interrupts
 from extrados.explore.film import BadFilm, film
 from extrados.explore.frames import Reply
 from extrados.explore.guard import (
@@ -305,15 +304,7 @@ def serve(sock: socket.socket, token: str, folder: Path, deck: str | None = None
 def main() -> None:
     """The process that serves, started by `supervisor` with the socket and what else it needs in its environment."""
     given = json.loads(os.environ.pop("EXTRADOS_EXPLORE"))
-    parent = os.getppid()
-
-    def watch() -> None:
-        """End with the process that watches this one, however that ended."""
-        while os.getppid() == parent:
-            time.sleep(1.0)
-        os._exit(0)
-
-    threading.Thread(target=watch, daemon=True).start()
+    interrupts.end_with(os.getppid())
     with socket.socket(fileno=given["socket"]) as sock:
         serve(sock, given["token"], Path(given["folder"]), given["deck"])
 

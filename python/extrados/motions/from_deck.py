@@ -180,10 +180,10 @@ def _record(model: models.Components, treatment: records.Treatment, folder: Path
         if place in seen:
             raise RecordError(f"{place[0]}: is named for two components of one record")
         seen.add(place)
-        return records.read_record(records.read_file(file, folder), channel)
+        return records.read_record(records.read_file(file, folder), channel, treatment.columns)
 
     return records.record_motion(
-        records.read_record(records.read_file(model.file, folder), model.channel),
+        records.read_record(records.read_file(model.file, folder), model.channel, treatment.columns),
         treatment,
         second=component(model.second, model.second_channel),
         angle=model.angle or 0.0,

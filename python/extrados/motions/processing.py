@@ -3,6 +3,7 @@
 import numpy as np
 
 from extrados.core import motion as core
+from extrados.schema.constants import GRAVITY
 
 BASELINES = {"none": None, "mean": 0, "linear": 1, "quadratic": 2, "cubic": 3}
 _ORDER = 4  # of the Butterworth filter; run forth and back it acts as twice that
@@ -29,6 +30,26 @@ def baseline(acceleration: np.ndarray, step: float, kind: str) -> np.ndarray:
         fit = np.linalg.lstsq(basis, velocity, rcond=None)[0]
         out[k] = row - (t[:, None] ** (powers - 1) * powers) @ fit / span
     return out.reshape(acceleration.shape)
+
+
+def drift(acceleration: np.ndarray, step: float) -> tuple[str, str]:
+    """How the ground of a motion (points) [m/s^2] ends where it does not come to rest at its start, and what that means; two
+    empty texts where it does."""
+    velocity, displacement = core.kinematics(acceleration, step)
+    v, d = float(velocity[-1]), float(displacement[-1])
+    d = d if abs(d) > 1e-9 * np.abs(displacement).max() else 0.0
+    if abs(v) > 0.1 * np.abs(velocity).max():
+        mean = v / (step * (len(acceleration) - 1)) / GRAVITY
+        return (
+            f"the ground ends at {v:.3g} m/s and {d:.3g} m, by a mean acceleration of {mean:.2g} g",
+            'A structure feels this mean as a sustained load. Remove it by baseline = "quadratic" or low_cut.',
+        )
+    if abs(d) > 0.5 * np.abs(displacement).max(initial=1e-300):
+        return (
+            f"the ground ends {d:.3g} m from its start",
+            "This is a permanent displacement, or an error of the baseline that hardly acts on a structure.",
+        )
+    return "", ""
 
 
 def at_rest(acceleration: np.ndarray, step: float) -> np.ndarray:

@@ -8,6 +8,7 @@ import numpy as np
 from extrados.core.ground import Ground
 from extrados.motions import processing
 from extrados.motions.directions import rotated
+from extrados.motions.formats.columns import Columns
 from extrados.motions.formats.recognise import read_record as read_record
 from extrados.motions.formats.record import ACCELERATION, QUANTITIES, Record, RecordError
 from extrados.motions.formats.record import read_file as read_file
@@ -15,7 +16,7 @@ from extrados.motions.motion import Motion
 from extrados.schema import files
 from extrados.schema.constants import GRAVITY
 
-STRONGEST = 5.0 * GRAVITY
+STRONGEST, WEAKEST = 5.0 * GRAVITY, 1e-4 * GRAVITY  # peaks of records
 #: Suffixes that a folder of records may hold beside others
 SUFFIXES = {".at2", ".vt2", ".dt2", ".v1", ".v2", ".v1c", ".v2c", ".smc", ".asc", ".ns", ".ew", ".ud", ".ns1", ".ns2",
             ".ew1", ".ew2", ".ud1", ".ud2", ".acc", ".dat", ".csv", ".txt", ".th", ".mseed", ".sac"}  # fmt: skip
@@ -28,11 +29,12 @@ LONGEST = 10_800.0  # s: spectra take work by a motion's length over their short
 class Treatment:
     """What is done to a record, in this order: time scale, filter, baseline, resampling, scaling to a measure, scale.
 
-    time_step and unit stand in where the file has none. SI; see processing for the rest.
+    time_step, unit and columns stand in where the file does not say it. SI; see processing for the rest.
     """
 
     time_step: float | None = None
     unit: str | None = None
+    columns: Columns | None = None
     time_scale: float = 1.0
     low_cut: float | None = None
     high_cut: float | None = None
@@ -116,7 +118,7 @@ def acceleration_of(record: Record, treatment: Treatment, source: str = "") -> t
         raise RecordError(f"{name}: the file says '{record.unit}', the deck '{unit}'; drop unit")
     known = record.unit or unit
     if known is None:
-        raise RecordError(f'{name}: the file has no unit; give unit = "g", "m/s^2", "cm/s^2" ...')
+        raise RecordError(f'{name}: the file names no unit, or several; give unit = "g", "m/s^2", "cm/s^2" ...')
     if known not in units:
         raise RecordError(f"{name}: '{known}' is no unit of {record.quantity}; expected one of {', '.join(units)}")
     values = record.values * units[known]
@@ -126,10 +128,12 @@ def acceleration_of(record: Record, treatment: Treatment, source: str = "") -> t
         values = np.gradient(values, step)
     if record.quantity != "acceleration":
         notes.append(f"{record.name}: differentiated from {record.quantity}")
-    peak = np.abs(values).max()
-    if peak > STRONGEST:
+    if not WEAKEST <= (peak := np.abs(values).max()) <= STRONGEST:
+        side = "above 5 g" if peak > STRONGEST else "below 0.0001 g"
+        fits = [u for u, size in ACCELERATION.items() if 0.02 <= peak / units[known] * size / GRAVITY <= 2.0]
+        hint = f"; in {' or '.join(fits)} it would be plausible" if fits and record.quantity == "acceleration" else ""
         raise RecordError(
-            f"{name}: the peak is {peak / GRAVITY:.3g} g in '{known}': above 5 g, the unit is probably wrong"
+            f"{name}: the peak is {peak / GRAVITY:.3g} g in '{known}': {side}, the unit is probably wrong{hint}"
         )
     return values, step, notes
 
@@ -172,11 +176,22 @@ def record_motion(
         raise RecordError(f"{name}: {error}") from None
     if rows.shape[1] < 3:
         raise RecordError(f"{name}: only {rows.shape[1]} samples are left after resampling")
+    rows = rows * factor
+    horizontal = None if horizontal is None else horizontal * factor
+    parts = (
+        [("", rows[0])]
+        if horizontal is None
+        else [("first component: ", horizontal[0]), ("second component: ", horizontal[1])]
+    )
+    for which, row in [*parts, *(("vertical component: ", row) for row in rows[1:])]:
+        found, meaning = processing.drift(row, step)
+        if found:
+            notes.append(f"{record.name}: {which}{found}. {meaning}")
     return Motion(
         record.name,
-        Ground(samples=rows * factor, step=step),
+        Ground(samples=rows, step=step),
         notes,
-        None if horizontal is None else horizontal * factor,
+        horizontal,
         angle,
         title=record.title,
         station=" ".join(part for part in (record.station, record.component) if part),

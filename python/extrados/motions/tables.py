@@ -83,6 +83,10 @@ class Treated(Motion):
     unit: Literal["g", "m/s^2", "cm/s^2", "mm/s^2", "gal", "mg", "in/s^2"] | None = key(
         None, "unit where the file has none"
     )
+    columns: Literal["series", "components"] | None = key(
+        None,
+        "a file of several columns without time: its rows are one series, or each column is a component; `channel` says which",
+    )
     scale: float = key(1.0, "factor on the acceleration, last of all")
     time_scale: float = key(1.0, "factor on the time axis; accelerations keep their size", gt=0)
     low_cut: Frequency | None = key(None, "lower corner of a zero-phase Butterworth filter", gt=0)

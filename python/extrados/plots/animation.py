@@ -1,5 +1,6 @@
 """Films of what moves, 1280 x 720: rocking, tilt, supports that move, cracks, discrete elements; from stored results."""
 
+import contextlib
 import io
 import subprocess
 import tempfile
@@ -24,6 +25,7 @@ from extrados.schema.programs import ffmpeg
 RATES, MOST = {"gif": 15, "mp4": 30}, 600
 #: Seconds that a film lasts at speed 1 where nothing has a time of its own
 LASTS = 8.0
+LONGEST_END = 300.0  # s: ffmpeg ends so long after its last picture, or hangs
 PIXELS, DPI = (1280, 720), 100
 #: Greatest displacement in the drawing of a cracked wall, of its size
 SHOWN = 0.06
@@ -116,15 +118,15 @@ def _mp4(path: Path, drawn: Iterator[np.ndarray], rate: int) -> None:
         )  # fmt: skip
         assert process.stdin is not None
         try:
-            for picture in drawn:
-                process.stdin.write(picture.tobytes())
-            process.stdin.close()
-        except BrokenPipeError:
-            pass  # it says why
-        except BaseException:
-            process.kill()
-            raise
+            with contextlib.suppress(BrokenPipeError):  # it says why
+                for picture in drawn:
+                    process.stdin.write(picture.tobytes())
+                process.stdin.close()
+            process.wait(LONGEST_END)
+        except subprocess.TimeoutExpired:
+            raise OSError(f"ffmpeg did not finish {path.name} within {LONGEST_END:g} s") from None
         finally:
+            process.kill()
             process.wait()
         if process.returncode:
             told.seek(0)

@@ -1,20 +1,19 @@
 """Figures and the report of a stored run: one self-contained HTML page, and on A4 paper as PDF."""
 
-import multiprocessing
 import os
-import signal
 import sys
 import tempfile
 import threading
-import warnings
 from collections.abc import Callable
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
 from extrados import kinds
 from extrados.plots import html, typeset
 from extrados.plots.building import draw_building
 from extrados.plots.drawn import figures_of
+from extrados.plots.forked import Lost, side_by_side
 from extrados.plots.telling import told
 from extrados.results import written
 from extrados.results.store import REPORT, SUMMARY, Stored, StoreError, read, reason
@@ -53,33 +52,10 @@ def _drawn(tasks: list[tuple]) -> list[Figures]:
     workers = min(len(os.sched_getaffinity(0)) if sys.platform == "linux" else 1, len(tasks))
     if workers < 2 or threading.active_count() > 1:
         return [_draw_one(*task) for task in tasks]
-    with warnings.catch_warnings():
-        # Python warns of the idle threads of the numerical libraries, which drawing does not use
-        warnings.filterwarnings("ignore", ".*multi-threaded.*fork", DeprecationWarning)
-        # signals wait until each process has said how it answers them
-        held = signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
-        try:
-            pool = multiprocessing.get_context("fork").Pool(workers, _begin, (tasks,))
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, held)
-        with pool:
-            return pool.map(_draw_numbered, range(len(tasks)), chunksize=1)
-
-
-_SIGNALS = (signal.SIGINT, signal.SIGTERM)
-#: What a forked process is to draw; a run is handed over by the fork, not copied through a pipe
-_tasks: list[tuple] = []
-
-
-def _begin(tasks: list[tuple]) -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is answered by the parent, which ends the pool
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, _SIGNALS)
-    _tasks[:] = tasks
-
-
-def _draw_numbered(i: int) -> Figures:
-    return _draw_one(*_tasks[i])
+    try:
+        return side_by_side([partial(_draw_one, *task) for task in tasks], workers)
+    except Lost as error:
+        raise StoreError(f"{tasks[0][0].folder}: figures could not be drawn: {error}; the results are kept") from None
 
 
 def write_report(folder: Path, printed: bool | None = None) -> tuple[Path, dict[str, Figures]]:

@@ -208,7 +208,7 @@ def _analysis(run: Stored, a: dict[str, Any], figures: Figures) -> list[Block]:
     if how:
         found.append(Words(f"How it was asked: {how}."))
     if assumes:
-        found.append(Words(f"It takes for granted: {assumes[:1].lower()}{assumes[1:]}"))
+        found.append(Words(f"Assumptions: {assumes}"))
     if a["status"] != "ok":
         found.append(Words(f"{a['status']}: {a['reason']}", "bad"))
     if a["answer"] and a["kind"] != "assess":
@@ -267,9 +267,7 @@ def _own_tables(run: Stored) -> list[tuple[str, str, Table]]:
 def _limits(run: Stored) -> list[Block]:
     seen = dict.fromkeys(a["kind"] for a in run.analyses if a["kind"] in LIMITS)
     rows = [(kind, LIMITS[kind][1]) for kind in seen]
-    return (
-        [Heading("Limits of validity"), Table(("analysis", "where its answer ends"), rows, (1.2, 5.0))] if rows else []
-    )
+    return [Heading("Limits of validity"), Table(("analysis", "limits of validity"), rows, (1.2, 5.0))] if rows else []
 
 
 def _numbers(run: Stored, hidden: set[str]) -> list[Block]:

@@ -195,6 +195,10 @@ class Thrust(KindResults):
         )  # fmt: skip
 
 
+#: Beside a verdict on a load whose partial factors are all 1
+CHARACTERISTIC = "All partial factors are 1.0: characteristic loads and strengths, no code margin."
+
+
 class MovingLoad(KindResults):
     """moving-load: the load or train that brings an arch or a bridge down, at every place along it."""
 
@@ -216,19 +220,26 @@ class MovingLoad(KindResults):
     adequacy_factor: float = maybe("multiple of the factored train, or load, that brings it down")
     live_load_factor: float = maybe("partial factor times dynamic factor by which the train is multiplied before")
 
+    characteristic: bool = maybe("whether all partial factors are 1.0: loads and strengths are characteristic")
+    violated: list[str] = maybe("assumptions of a load on a bridge that the structure does not meet")
+
     def judged(self, demand: Demand) -> Verdict:
-        """The deck's load against the least collapse load [N]."""
-        text = f"It bears {self.collapse_load_N / 1e3:.4g} kN at the most dangerous place"
+        """The adequacy factor of the train against 1, or the load of the deck against the least collapse load [N]."""
+        text, margin = f"Collapse load {self.collapse_load_N / 1e3:.4g} kN at the most dangerous place", ""
+        if self.characteristic:
+            margin = f" {CHARACTERISTIC}"
+        violated = self.violated or ()
         if self.load_N is None and self.adequacy_factor is not None:
+            factored = "" if self.characteristic else "factored "
             return judge(
-                f"It bears {self.adequacy_factor:.3g} times the factored train at the most dangerous place.",
-                1.0, self.adequacy_factor,
+                f"Adequacy factor {self.adequacy_factor:.3g} on the {factored}train at the most dangerous place.{margin}",
+                1.0, self.adequacy_factor, violated=violated,
             )  # fmt: skip
         if self.load_N is None:
             return judge(f"{text}; the deck gives no load to compare with.", None, self.collapse_load_N, "N")
         return judge(
-            f"{text}, {self.safety_factor:.3g} times the load of {self.load_N / 1e3:.4g} kN.",
-            self.load_N, self.collapse_load_N, "N",
+            f"{text}, {self.safety_factor:.3g} times the load of {self.load_N / 1e3:.4g} kN.{margin}",
+            self.load_N, self.collapse_load_N, "N", violated=violated,
         )  # fmt: skip
 
 

@@ -1,59 +1,132 @@
-"""What each analysis takes for granted, and where its answer ends: said beside every result of its kind."""
+"""Assumptions and limits of validity of each kind of analysis, printed beside every result of the kind."""
 
-#: Kind -> (what it takes for granted, where it ends)
+#: Kind -> (assumptions, limits of validity)
 LIMITS: dict[str, tuple[str, str]] = {
     "tilt": (
-        "A constant acceleration pushes for ever; stones are rigid, joints bear no tension and slide by friction.",
-        "It asks how hard, never how long. Stones that crack or crush, and supports that give way, are beyond it unless the deck "
-        "says so.",
+        "Blocks are rigid; joints carry no tension and slide by Coulomb friction. The horizontal acceleration is sustained.",
+        "Duration, impacts and recovery of an earthquake are not considered. Fracture and crushing of blocks and movements of "
+        "supports are considered only where the deck states them. With associated friction and sliding the capacity is an upper bound.",
     ),
     "thrust": (
-        "Equilibrium of rigid stones whose joints bear no tension, at a given constant acceleration.",
-        "Any admissible line shows that it stands; which of them the building has nobody can tell.",
+        "Rigid blocks whose joints carry no tension are in equilibrium under a given constant acceleration.",
+        "One admissible thrust line proves that the structure stands. The actual thrust line is indeterminate: it depends on "
+        "settlements and on the history of construction.",
+    ),
+    "sweep": (
+        "Limit analysis gives the capacity at each value of one key; all other keys keep their values.",
+        "Between two computed values the capacity is not known. The limits of tilt apply to each value.",
+    ),
+    "survey": (
+        "Limit analysis gives the capacity of each section of the table by itself.",
+        "Sections do not support one another: arching along the building and walls across it are not considered. The limits of tilt "
+        "apply to each section.",
+    ),
+    "imperfections": (
+        "Limit analysis gives the capacity of random geometries, each point within the stated deviation of the survey.",
+        "The band covers the deviation of the survey alone. Errors that all points share, hidden voids and the scatter of materials "
+        "are not in it. The limits of tilt apply to each geometry.",
+    ),
+    "supports": (
+        "Supports move slowly, blocks are rigid, and joints open or slide where equilibrium requires it.",
+        "Elastic deformation, creep and inertia are not considered, so that the smallest movement opens joints. The movement at "
+        "collapse is an upper bound where blocks crush at their hinges.",
+    ),
+    "moving-load": (
+        "Rigid blocks whose joints carry no tension resist a load that stands still, in the plane of the section. Fill acts by its "
+        "weight, its spreading of loads and its passive pressure, as the deck states them.",
+        "Collapse alone is considered: fatigue, permanent damage in service, braking forces and dynamic effects beyond the stated "
+        "factor are not. Skew, spandrel walls and spreading across the bridge are not modelled. A ring without fill and backing is no "
+        "model of a bridge.",
     ),
     "rocking": (
-        "The building moves as one mechanism, that of limit analysis, without sliding; impacts lose energy by the rule of "
+        "The structure moves as one rigid-body mechanism, that of limit analysis, without sliding. Impacts lose energy by the rule of "
         "[joints] restitution.",
-        "Hinges do not move along the building, blocks do not slide, bounce or crush: sliding and other hinges are checked along the "
-        "motion. Where impact rules disagree, or the run is chaotic, use fragility.",
+        "Hinges stay at their joints; blocks do not slide, bounce or crush. Sliding and hinges elsewhere are checked along the motion. "
+        "Where the rules of impact differ, or the response is chaotic, one run is one sample: use fragility.",
     ),
     "failure-domain": (
-        "Single pulses on a mechanism at rest.",
-        "The curve is the lowest failing amplitude; safe pockets above it are not to be relied on.",
+        "A single pulse acts on the rigid-body mechanism at rest.",
+        "The curve is the lowest amplitude that causes collapse. Safe regions above the curve are not reliable. Earthquakes with "
+        "several pulses may cause collapse below it. The curves depend on the rule of impact.",
+    ),
+    "failure-curves": (
+        "Single sines, or trains of sines, act on the rigid-body mechanisms at rest. Each motion is replaced by its primary impulse.",
+        "The parts of a motion before and after its primary impulse are not considered. Safe regions above a curve are not reliable, "
+        "and the curves depend on the rule of impact.",
     ),
     "assessment": (
-        "The motion is its strongest single sines, each against the curve of sines that bring the mechanism down from rest.",
-        "A criterion of first order for an intact structure on rigid supports: what comes before and after a sine is left out.",
+        "The motion is replaced by its strongest single sines, each compared with the curve of sines that cause collapse from rest.",
+        "This is a criterion of first order for an intact structure on rigid supports. The parts of a motion before and after a sine "
+        "are not considered.",
     ),
     "fragility": (
-        "Rocking of many buildings or motions that differ as nobody can know; the model is that of rocking.",
-        "A share of runs, with the interval of its count: it holds for the scatter and the motions that were given.",
+        "Many motions, or many buildings with random properties, run by the model of rocking.",
+        "The result is a share of runs with the confidence interval of its count. The share holds for the given scatter and motions "
+        "and inherits the limits of rocking.",
+    ),
+    "resonance": (
+        "The ground acceleration stays below a cap and switches its sign so that each half cycle feeds most energy to the mechanism.",
+        "No earthquake follows the rotation of a structure: the result is an extreme and has no probability. The limits of rocking "
+        "apply.",
+    ),
+    "rocking-spectrum": (
+        "Rigid blocks, or arches of one shape in all sizes, rock from rest without sliding under one motion.",
+        "The spectrum holds for this motion and this rule of impact alone. It cannot be derived from an elastic response spectrum.",
+    ),
+    "harmonic-map": (
+        "A harmonic motion of constant amplitude acts for a fixed number of cycles on a mechanism at rest that does not slide.",
+        "Neighbouring points of the map may have different outcomes, because the response is chaotic near overturning. An earthquake "
+        "has fewer cycles of one frequency.",
     ),
     "code-checks": (
-        "Rules of codes with their own reductions of demand and capacity.",
-        "Clauses marked `verify clause` were not read in the standard: compare them with its text before use.",
+        "Simplified rules of codes with their own reductions of demand and capacity.",
+        "Each rule holds within the scope of its clause. Clauses marked `verify clause` were not read in the standard: compare them "
+        "with its text before use.",
     ),
     "local-mechanism": (
-        "A part of the building turns as rigid bodies about hinges, by the kinematic analysis of codes.",
-        "The result holds for this mechanism; others may be weaker. A rule outside its scope does not apply, which its row says. Clauses "
-        "marked `verify clause` were not read in the standard.",
+        "A part of the building rotates as rigid bodies about hinges: the linear and nonlinear kinematic analysis of codes.",
+        "The result holds for the stated mechanism; another mechanism may be weaker. The connection to walls across and floors is "
+        "that of the deck. A rule outside its scope does not apply, and its row states that. Clauses marked `verify clause` were not "
+        "read in the standard.",
+    ),
+    "motion": (
+        "The acceleration is integrated from rest, and linear oscillators without interaction with the ground respond to it.",
+        "Measures describe the motion at its station, not the demand on a building. Displacements and long periods depend on "
+        "baseline and filter. The pulse classification is statistical and may fail for single records.",
+    ),
+    "shake-table": (
+        "A table with limits of stroke, flow or velocity, and force moves a rigid mass.",
+        "Errors of control, resonance of the oil column and the reaction of a specimen that rocks are not considered.",
     ),
     "sla": (
-        "Elastic stones or walls whose joints or elements crack one after the other under a growing load, in the plane.",
-        "Static: it asks how hard, not how long. What it bears depends on the strengths that the deck gives.",
+        "Elastic masonry, whose joints or elements crack one event after the other, carries a load that grows in proportion, in the "
+        "plane.",
+        "The analysis is static: duration and inertia are not considered. The capacity depends on the strengths, the fracture energies "
+        "and the mesh. Small displacements are assumed: collapse by a mechanism needs limit analysis.",
     ),
     "pushover": (
-        "Flat shells that crack event by event under horizontal forces that grow in one proportion; corners and floors hold as the "
-        "deck says.",
-        "Static: it asks how hard, not how long. A wall that is not bonded to those across it, or not anchored to the floors, may "
-        "fall out of its plane first: check local mechanisms too.",
+        "Flat shells crack event by event under horizontal forces in one fixed pattern. Corners and floors connect the walls as the deck "
+        "states.",
+        "The analysis is static: duration, cycles and inertia are not considered. Walls that are not bonded to the walls across, or not "
+        "anchored to the floors, may overturn out of their plane first: check local mechanisms too.",
     ),
     "dem": (
-        "Every stone moves by itself on springs that open, slide and damp; no mechanism is chosen before.",
-        "The stiffness and damping of joints stand for what is not known; vary them before relying on one run.",
+        "Each block moves by itself. Contacts open, slide and lose energy by stiffness and damping, or by rigid impacts.",
+        "Stiffness, damping and rebound of joints are uncertain parameters: vary them. Blocks do not crack. Where the response is "
+        "chaotic, one run is one sample.",
+    ),
+    "dem-domain": (
+        "A single pulse acts on blocks that move each by itself, as in dem; durations are tried upwards at each amplitude.",
+        "The curve is the shortest tried duration that causes collapse. Safe regions beyond it are not reliable, and a shorter "
+        "duration between two tried ones may cause collapse. The limits of dem apply.",
+    ),
+    "dem-parameters": (
+        "Rules of thumb give joint stiffness, impact frequency and damping; no run is made.",
+        "The values are starting values for dem and no property of the building: vary them, and compare the outcomes.",
     ),
     "assess": (
-        "Each strategy by its own analysis, with parameters by stated rules.",
-        "Reasons tell what differs between models, not which of them is right. A result is no better than the geometry it was given.",
+        "Each strategy answers by its own analysis, with parameters chosen by stated rules.",
+        "The reasons state how the models differ, not which model is right. No strategy is better than the geometry and the "
+        "properties of the deck.",
     ),
 }  # fmt: skip

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import tomlkit
 
-from extrados.analyses.batches import stacked, sweep
+from extrados.analyses.batches import stacked, stop_if_asked, sweep
 from extrados.analyses.context import Context
 from extrados.building.building import Building
 from extrados.decks.reader import LARGEST, Deck, DeckError, make_deck
@@ -74,7 +74,7 @@ class SurveyJob:
         try:
             deck = make_deck(loads(self.texts[k]), Path(self.folder))
             run = compute(Context(deck, threads))
-            row["folder"] = str(run.write(Path(self.out) / name, self.figures))  # beside it, where others wrote there
+            row["folder"] = str(run.write(Path(self.out) / name, figures=False))  # beside it, where others wrote there
             result = next(r for r in run.results if r.kind == "assess")
             row |= {"status": result.status, "statement": result.reason}
             if result.results.keys():
@@ -84,7 +84,24 @@ class SurveyJob:
                 margin = np.nan if r.least_margin is None else r.least_margin
         except (DeckError, StoreError) as error:
             row["statement"] = str(error)
+        else:
+            row["statement"] += self._drawn(row["folder"])
         return {"margin": np.array(margin), **{key: np.array(value, dtype="U2000") for key, value in row.items()}}
+
+    def _drawn(self, folder: str) -> str:
+        """Draw the figures of a building whose results are written; what went wrong, as words after its statement."""
+        if not self.figures:
+            return ""
+        from extrados.plots.report import write_report
+
+        try:
+            write_report(Path(folder))
+        except StoreError as error:  # the verdict does not depend on it
+            return f" {error}"
+        except KeyboardInterrupt:
+            stop_if_asked()
+            raise
+        return ""
 
 
 def decks_of(folder: Path) -> dict[str, str]:

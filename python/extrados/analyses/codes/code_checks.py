@@ -100,7 +100,6 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
         beside["violated"] = violated
     if context.deck.motion is not None:
         motion = context.motion
-        context.warnings += motion.notes
         start = rocker.start_rotation
         dynamic = core_rocking.history(
             rocker.body, motion.ground, motion.end + 30.0 / float(model.frequency.min()), 0.01,

@@ -39,6 +39,11 @@ from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
 PATTERNS = 20  # even loads and mechanism are fitted to each other at most so often
+#: What makes the model of a bridge whole
+MODEL = (
+    'The ring alone is no model of a bridge. Use structure kind = "bridge" with fill and backing, or give the forces on the ring by '
+    "axle_loads."
+)
 FINE = 0.02  # of the way: pieces of the top on which even loads stand or do not
 
 
@@ -271,9 +276,17 @@ def run(context: Context, options: MovingLoad) -> Result:
         greatest_compression_N=float(np.nanmax(state.normal)),
         **tie_rows(building, dead, state),
         duality_gap=gap,
+        characteristic=factors == PartialFactors(),
+        violated=_violated(options, assembly, structure),
         **asked,
     )
     result.results = r
+    result.warnings += [f"{one} {MODEL}" for one in r.violated]
+    if (options.axle_loads or options.uniform) and assembly.earth is None:
+        result.warnings.append(
+            f"The loads act on the blocks of the {structure.word} themselves: no fill spreads them. For a bridge use structure "
+            'kind = "bridge" with fill and backing.'
+        )
     finite = np.where(np.isinf(capacity), np.nan, capacity)
     result.arrays = {
         **geometry_arrays(assembly),
@@ -362,16 +375,29 @@ def _words(options: MovingLoad, r: out.MovingLoad, structure: Structure) -> str:
         heading = f", heading to {r.worst_way}" if options.both_ways else ""
         factors = "" if r.live_load_factor == 1.0 else f" with its load factor of {r.live_load_factor:.4g}"
         text = (
-            f"The {what} bears {r.adequacy_factor:.3g} times {'the train' if r.train == 'train' else r.train}{factors} at "
+            f"The {what} carries {r.adequacy_factor:.3g} times {'the train' if r.train == 'train' else r.train}{factors} at "
             f"the most dangerous place, with its first axle at {place}{heading}: {r.collapse_load_N / 1e3:.4g} kN then stand on it."
         )
     else:
         text = (
-            f"The load that brings the {what} down is least, {r.collapse_load_kN_per_m:.4g} kN per metre of depth, when its "
-            f"first axle stands at {place}."
+            f"The least collapse load of the {what} is {r.collapse_load_kN_per_m:.4g} kN per metre of depth, with its first axle "
+            f"at {place}."
         )
     if options.force is not None:
         text += f" The given load of {options.force / 1e3:.4g} kN has a safety factor of {r.safety_factor:.2f}."
         if r.adequacy_factor is not None and abs(r.adequacy_factor / r.safety_factor - 1.0) > 1e-9:
             text += f" With its partial factors the adequacy factor is {r.adequacy_factor:.3g}."
+    if r.characteristic and (r.load_N is not None or r.adequacy_factor is not None):
+        text += f" {out.CHARACTERISTIC}"
     return text + spoken_ties(r.ties)
+
+
+def _violated(options: MovingLoad, assembly: Assembly, structure: Structure) -> list[str]:
+    """What a load model of road or rail supposes of a bridge and the structure has not: earth that spreads axles."""
+    if options.train is None or assembly.earth is not None:
+        return []
+    weight = "" if assembly.fill is None else "; its fill acts by weight alone"
+    return [
+        f"{options.train} acts on the blocks of the {structure.word} themselves{weight}: no fill spreads its axles, and no "
+        "passive pressure or backing restrains the ring."
+    ]

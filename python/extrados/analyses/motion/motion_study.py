@@ -18,6 +18,7 @@ from extrados.analyses.motion.members import (
     series,
 )  # fmt: skip
 from extrados.analyses.motion.tables import MotionStudy
+from extrados.analyses.motion_source import shortened
 from extrados.core import motion as core
 from extrados.core.calls import interruptible
 from extrados.motions import directions, export
@@ -27,6 +28,7 @@ from extrados.motions.from_deck import compatible_motion, compatible_set, genera
 from extrados.motions.impulse import Impulse, primary_impulses
 from extrados.motions.measures import BANDWIDTH, HOUSNER_BAND, fourier_spectrum, konno_ohmachi, spectral_measures
 from extrados.motions.motion import Motion
+from extrados.motions.processing import drift
 from extrados.motions.wavelet_pulse import classify
 from extrados.results import motion as out
 from extrados.results.model import Array, Result, TableData
@@ -107,16 +109,10 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
     periods = _periods(options, step)
     spectra = core.response_spectra(a, step, periods, options.dampings, threads=context.threads)
     frequency, amplitude = fourier_spectrum(a, step)
-    result = Result("motion", warnings=list(motion.notes))
+    result = Result("motion")
     r = _study(motion, options)
-    if abs(velocity[-1]) > 0.1 * np.abs(velocity).max() or abs(displacement[-1]) > 0.5 * np.abs(displacement).max(
-        initial=1e-300
-    ):
-        speed, way = (float(v[-1]) if abs(v[-1]) > 1e-9 * np.abs(v).max() else 0.0 for v in (velocity, displacement))
-        result.warnings.append(
-            f"the motion drifts: it ends with {speed:.3g} m/s and {way:.3g} m; "
-            'a baseline correction (baseline = "quadratic") or low_cut takes that out'
-        )
+    if not isinstance(context.deck.motion, models.Record | models.Suite) and (found := drift(a, step)[0]):
+        result.warnings.append(f"The motion is prescribed so that {found}.")  # of records their notes say it
     husid = np.concatenate([[0.0], np.cumsum(0.5 * step * (a[1:] ** 2 + a[:-1] ** 2))])
     time = step * np.arange(len(a))
     result.arrays = {
@@ -234,6 +230,7 @@ def _readable(context: Context, model: models.Suite, warnings: list[str]) -> lis
     """The motions of a suite; a record that cannot be read becomes a warning, and a refusal if it is the only one."""
     found: list[Motion] = []
     wrong: list[str] = []
+    notes: list[str] = []
     for motion in suite_motions(model, context.deck.folder):
         stop_if_asked()
         if isinstance(motion, RecordError):
@@ -241,7 +238,8 @@ def _readable(context: Context, model: models.Suite, warnings: list[str]) -> lis
             warnings += wrong[-1:] if len(wrong) <= 10 else []
         else:
             found.append(motion)
-            warnings += motion.notes[:1] if len(warnings) < 10 else []
+            notes += motion.notes
+    warnings += shortened(notes)
     if len(wrong) > 10:
         warnings.append(f"and {len(wrong) - 10} more records that cannot be read")
     if not found:

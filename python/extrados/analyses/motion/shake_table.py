@@ -101,7 +101,6 @@ def _play(context: Context, options: ShakeTable, table: Table, result: Result) -
         "played_acceleration_g": float(np.abs(played.acceleration).max()) / GRAVITY,
         "rest_error_m": float(max(abs(played.displacement[0]), abs(played.displacement[-1]))),
     }
-    result.warnings += motion.notes
     result.arrays |= {
         "drive_time": Array(played.time, ("drive_time",), "s", "of the scaled motion, its start at zero"),
         "drive_displacement": Array(played.displacement, ("drive_time",), "m"),

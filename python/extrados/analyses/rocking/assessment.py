@@ -28,7 +28,6 @@ def run(context: Context, options: Assessment) -> Result:
     """Verdict and margin by Eq. 5.8, from the regenerated Table 5.3 and from the arch's own failure curve."""
     rocker = rocker_of(context, options)
     arch = rocker.model.arch if isinstance(rocker.model, ArchModel) else None
-    context.warnings += context.motion.notes
     if context.motion.ground.channels > 1:
         context.warnings.append("the criterion knows the horizontal motion only: the vertical component is left out")
     gamma, scale = rocker.uplift, rocker.scale

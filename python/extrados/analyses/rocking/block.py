@@ -19,7 +19,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     """History, impacts, energies, and the friction that keeps the toe from sliding."""
     structure = context.deck.structure
     model = rocker.model
-    context.warnings += [*rocker.warnings, *context.motion.notes]
+    context.warnings += rocker.warnings
     if structure.kind == "column":
         context.warnings.append(
             "the column is taken as one rigid body; joints that open are left to the analysis `dem`"

@@ -63,5 +63,5 @@ def with_moving_supports(context: Context) -> Context:
     if not order:
         return context
     made = replace(context)
-    vars(made)["motion"] = with_shifts(context.motion, order)
+    vars(made)["given_motion"] = with_shifts(context.motion, order)
     return made

@@ -54,7 +54,7 @@ def _with_friction(context: Context, result: Result) -> Result:
 
 def _arch(context: Context, options: Rocking, rocker: Rocker) -> Result:
     model = rocker.model
-    context.warnings += model.warnings + context.motion.notes
+    context.warnings += model.warnings
     gamma = model.collapse[0].gamma
     end_time = options.end_time or context.motion.end + rest_time(rocker)
     joints = model.arch.voussoirs + 1

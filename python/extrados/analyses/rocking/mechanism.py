@@ -18,7 +18,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     """History, impacts, energies, and the friction needed at the hinges where statics tells it."""
     model = rocker.model
     assert isinstance(model, MechanismModel)
-    context.warnings += [*rocker.warnings, *context.motion.notes]
+    context.warnings += rocker.warnings
     end_time = options.end_time or context.motion.end + rest_time(rocker)
     joints = len(model.assembly.a)
     response = run_history(context, options, rocker.body, end_time, 8 + joints, rocker.start_rotation)

@@ -25,7 +25,6 @@ def run(context: Context, options: Rocking) -> Result:
     """History, edges that lift and land, energies, pressures, and what it would do on a rigid base."""
     building = context.building
     model = soft_base_model(building, options.form == "linear")
-    context.warnings += context.motion.notes
     if building.structure is not None and building.structure.kind == "column":
         context.warnings.append(
             "the column is taken as one rigid body; joints that open are left to the analysis `dem`"

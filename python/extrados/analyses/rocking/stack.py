@@ -24,7 +24,6 @@ def run(context: Context, options: Rocking) -> Result:
     """History, impacts, modes, energies, and the friction needed at both joints."""
     building = context.building
     model = StackModel(building.blocks())
-    context.warnings += context.motion.notes
     alpha, unit = model.whole
     end_time = options.end_time or context.motion.end + SETTLE * max(unit, model.alone[1])
     if end_time / options.output_step * 20 > LARGEST:

@@ -33,7 +33,6 @@ def block_of(period: float, alpha: float, building: Building, linear: bool) -> R
 def run(context: Context, options: RockingSpectrum) -> Result:
     """Rotation spectra; what overturns has no rotation, its place is marked."""
     motion = context.motion
-    context.warnings += motion.notes
     periods = np.array(options.periods) if options.periods else np.linspace(0.2, 8.0, 60)
     structure = context.deck.structure
     if structure is not None and structure.kind == "arch":

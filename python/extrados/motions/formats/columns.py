@@ -1,69 +1,216 @@
-"""Plain columns: acceleration alone; time and acceleration; time and several components.
+"""Plain columns: acceleration alone; time and acceleration; time and several components; components; rows of a series.
 
-Blanks, tabs, commas or semicolons between, any header, comments after '#'. Rows of several numbers without a time
-column are one series, as OpenSees reads a path file.
+Blanks, tabs, commas or semicolons between, any header of words, comments after '#'. A layout that the file does not
+make plain is refused, with what was seen: numbers of a header, several columns without time, a time that jumps.
 """
 
 import re
+from typing import Literal
 
 import numpy as np
 
-from extrados.motions.formats.record import TIME, Lines, Record, tidy, time_unit_in, unit_in
+from extrados.motions.formats.record import (
+    LONGEST_STEP,
+    SHORTEST_STEP,
+    TIME,
+    Lines,
+    Record,
+    fortran_columns,
+    quantities_in,
+    tidy,
+    time_unit_in,
+    unit_in,
+)
 
+#: What several columns without time are: rows of one series, or a component each
+Columns = Literal["series", "components"]
 MOST_HEADER = 60
-LONGEST_STEP = 0.5  # s: longer steps of a column that names no unit are milliseconds, or no record
 ROUNDED = 3.0  # units of the last decimal in a step, at least, for uneven steps to be rounding
+HEAD = 16  # rows in which numbers of a header are looked for
+FEWEST = 10  # samples by which a column that ascends is known as a time
 
 
-def read(text: Lines) -> list[Record]:
-    """The one record of a text in columns: acceleration, or time [s] and acceleration."""
+def read(text: Lines, columns: Columns | None = None) -> list[Record]:
+    """Every acceleration, velocity or displacement of a text in columns; `columns` where the file does not make it plain."""
     header, rows = _split(text)
     if not rows:
         raise text.error(0, "holds no numbers; expected acceleration, or time and acceleration, in columns")
     _refuse_decimal_commas(text, [at for at, _ in rows])
     width = len(rows[0][1])
-    odd = next((at for at, row in rows[:-1] if len(row) != width), None)
-    if odd is not None:
-        raise text.error(odd, f"{len(text[odd].split())} columns where {width} stood before")
-    short = len(rows[-1][1]) != width  # the last row of a path file may be
+    if odd := next((row for row in rows[:-1] if len(row[1]) != width), None):
+        raise text.error(odd[0], f"{len(odd[1])} columns where {width} stood before{_header_hint(odd[0])}")
+    short = len(rows[-1][1]) != width  # the last row of a series may be
     table = text.numbers(rows[:-1] if short else rows).reshape(-1, width)
-    said = " \n".join(map(tidy, header))
-    title = next((line.strip() for line in header if _is_title(line)), "")
-    unit = unit_in(said)
-    rounded = _resolution(rows) if width > 1 else 0.0
-    if width > 1 and (width == 2 or _is_time(table[:, 0], rounded)):
-        if short:
-            raise text.error(rows[-1][0], f"{len(rows[-1][1])} columns where {width} stood before: the file is cut off")
-        names = _names(header, width)
-        given = time_unit_in(names[0])
+    said = "\n".join(tidy(line).strip() for line in header)
+    _refuse_factor(text, said)
+    (names, sure), rounded = _names(header, width), _resolution(rows) if width > 1 else 0.0
+    timed = width > 1 and (_called_time(names[:1]) or _ascends(table[:, 0], 3) or _is_time(table[:, 0], rounded))
+    names = names if sure or not timed else []  # words of a sentence
+    counted = _counted(said)
+    if (
+        columns == "series"
+        or width == 1
+        or (not timed and columns is None and _said_series(said, width, counted, rows))
+    ):
+        values = np.append(table.ravel(), text.numbers(rows[-1:])) if short else table.ravel()
+        step, rounded, notes, data, names = _stated_step(text, said), 0.0, [], values[:, None], []
+        for stride in range(1, max(4, width) + 1):
+            if _ascends(values[::stride]):
+                what = (
+                    "the values ascend as a time does"
+                    if stride == 1
+                    else f"every value {stride} further on ascends as a time does"
+                )
+                raise text.error(rows[0][0], f"{what}; give time and acceleration in two columns")
+    elif short:
+        raise text.error(
+            rows[-1][0],
+            f"{len(rows[-1][1])} columns where {width} stood before: the file is cut off{_or_series(timed)}",
+        )
+    elif timed:
+        given = time_unit_in(names[0]) if names else None
         per = TIME[given or "s"]
         step, uneven = _step(text, rows, table[:, 0], rounded, given)
+        stated = _stated_step(text, said)
+        if stated is not None and abs(stated - step) > 0.02 * step:
+            raise text.error(
+                rows[0][0], f"the header says a step of {stated:g} s, the times {step:g} s; delete the wrong one"
+            )
         notes = [f"times of {text.path.name} are in {given}"] if given not in (None, "s") else []
         if uneven:
             notes.append(
                 f"times of {text.path.name} are rounded to {1e3 * per * rounded:g} ms; their mean step is taken"
             )
-        return [
+        data, names, rounded = table[:, 1:], names[1:] or [f"column {k + 2}" for k in range(width - 1)], per * rounded
+    elif columns == "components" or names:
+        step, rounded, notes, data = _stated_step(text, said), 0.0, [], table
+        names = names or [f"column {k + 1}" for k in range(width)]
+    else:
+        raise text.error(
+            rows[0][0],
+            f"the row holds {width} columns, and the first is no time of equal steps. Give channel = 1 to {width} where each "
+            'column is a component, or columns = "series" where the numbers of a row follow one another',
+        )
+    if not timed or columns == "series":
+        _refuse_header_numbers(text, rows, data)
+    if counted is not None and counted not in (len(table), data.size):
+        raise text.error(
+            len(text) - 1,
+            f"{data.size} values follow where the header says {counted}: the file is cut off or its header is wrong",
+        )
+    title = next((line.strip() for line in header if _is_title(line)), "")
+    found = []
+    for k in range(data.shape[1]):
+        name = names[k] if k < len(names) else ""
+        if _called_time([name]) or (width > 1 and _ascends(data[:, k])):
+            raise text.error(rows[0][0], f"column {k + 1 + timed} is a time, and the first is none: put the time first")
+        quantity = _quantity(text, name if sure else "", said)
+        found.append(
             Record(
-                text.path.stem,
-                table[:, k].copy(),
-                step,
-                unit_in(names[k]) or unit,
-                component=names[k] if width > 2 else "",
-                notes=list(notes),
-                title=title,
-                rounded=per * rounded,
+                text.path.stem, data[:, k].copy(), step, (unit_in(name, quantity) if sure else None) or unit_in(said, quantity), quantity,
+                component=name if data.shape[1] > 1 else "", notes=list(notes), title=title, rounded=rounded,
             )
-            for k in range(1, width)
-        ]
-    values = np.append(table.ravel(), text.numbers(rows[-1:])) if short else table.ravel()
-    steps = re.search(
-        r"(?:\bdt|time\s*step|(?:equal\s+)?spacing|sampling\s+(?:interval|step))\s*(?:of|=|:|is)?\s*(\d+\.?\d*|\.\d+)\s*s",
+        )  # fmt: skip
+    return found
+
+
+def _quantity(text: Lines, name: str, said: str) -> str:
+    """What a column holds, by its name or else by the header; acceleration where neither says so."""
+    found = quantities_in(name) or quantities_in(said) or ["acceleration"]
+    if len(found) > 1:
+        raise text.error(0, f"the header names {' and '.join(found)}; leave the one that the numbers are")
+    return found[0]
+
+
+def _header_hint(at: int) -> str:
+    return "; put # before the lines of a header" if at < HEAD else ""
+
+
+def _or_series(timed: bool) -> str:
+    return "" if timed else ', or its rows are one series: columns = "series"'
+
+
+def _called_time(names: list[str]) -> bool:
+    """Whether the (first) name is that of a time."""
+    return bool(names) and re.match(r"\s*(?:time|t)\b|\s*(?:time|t)_m?s(?:ec)?\b", names[0], re.I) is not None
+
+
+def _ascends(column: np.ndarray, fewest: int = FEWEST) -> bool:
+    """True for values that grow nearly always, as times do and accelerations do not."""
+    if len(column) < fewest or column[-1] <= column[0]:
+        return False
+    steps = np.diff(column)
+    return bool((steps >= 0.0).all() or (np.mean(steps >= 0.0) >= 0.9 and np.mean(steps > 0.0) >= 0.5))
+
+
+def _stated_step(text: Lines, said: str) -> float | None:
+    """The step that the words of a header state [s]."""
+    found = re.search(
+        r"(?:\bdt|time\s*step|(?:equal\s+)?spacing|sampling\s+(?:interval|step))\s*(?:of|=|:|is)?\s*(\d+\.?\d*|\.\d+)\s*(ms|s)",
         said,
         re.I,
     )
-    step = text.step(steps[1], 0) if steps else None
-    return [Record(text.path.stem, values, step, unit, title=title)]
+    return text.step(repr(float(found[1]) * TIME[found[2].lower()]), 0) if found else None
+
+
+def _counted(said: str) -> int | None:
+    """The number of samples that the words of a header state."""
+    found = re.search(r"\b(\d{2,9})\s+(?:data\s+)?(?:points|samples|values)\b", said, re.I)
+    return int(found[1]) if found else None
+
+
+def _said_series(said: str, width: int, counted: int | None, rows: list[tuple[int, list[str]]]) -> bool:
+    """Whether a header makes it plain that rows of several numbers are one series: by its format, or by their count."""
+    form = fortran_columns(f"({found[0]})") if (found := re.search(r"\b\d{1,2}[FEG]\d{1,2}\.\d+", said, re.I)) else None
+    form = form or fortran_columns(said)
+    return (form is not None and form[0] == width) or counted == sum(len(row) for _, row in rows)
+
+
+def _refuse_factor(text: Lines, said: str) -> None:
+    """A factor that the header states and that the numbers are without."""
+    found = re.search(
+        r"\b(?:scal\w*|conversion|multipl\w*)\s*(?:factor|by)?\s*(?:=|:|of|is|by)?\s*(\d+\.?\d*(?:e[+-]?\d+)?|\.\d+)",
+        said,
+        re.I,
+    )
+    if found and float(found[1]) != 1.0:
+        raise text.error(
+            0,
+            f"the header says '{found[0].strip()}', and no factor of a header is applied: multiply the values, and delete the words",
+        )
+
+
+def _refuse_header_numbers(text: Lines, rows: list[tuple[int, list[str]]], data: np.ndarray) -> None:
+    """Numbers of a header that stand before the samples as if they were some: counts, dates, codes."""
+    hint = "put # before the lines of the header, or write the values with decimals where they are samples"
+    whole = [all(re.fullmatch(r"[+-]?\d+", token) for token in row) for _, row in rows]
+    first = whole.index(False) if False in whole else len(whole)
+    digits = [any(token.strip("+-0") for token in row) for _, row in rows[:first]]
+    if 0 < first < len(rows) and any(digits) and np.mean(whole[first:]) < 0.1:
+        at = rows[digits.index(True)][0]
+        raise text.error(
+            at,
+            f"'{text[at].strip()[:40]}' holds whole numbers and the samples decimals, as if a header stood here; {hint}",
+        )
+    left = sum(len(row) for _, row in rows)
+    for k, (at, row) in enumerate(rows[:HEAD]):
+        left -= len(row)
+        if any(
+            re.fullmatch(r"\d{2,9}", token) and int(token) in (left, left + len(row) - 1, len(rows) - k - 1)
+            for token in row
+        ):
+            raise text.error(
+                at, f"'{text[at].strip()[:40]}' holds the number of the values behind it, as a header does; {hint}"
+            )
+    per = max(1, data.size // max(len(rows), 1)) if data.shape[1] == 1 else 1
+    if len(data) >= 6 * HEAD * per:
+        peaks = np.abs(data[: HEAD * per]).max(axis=1), np.abs(data[HEAD * per :]).max()
+        if peaks[0].max() > 2.0 * peaks[1] and peaks[1] > 0.0:
+            at = rows[int(peaks[0].argmax()) // per][0]
+            raise text.error(
+                at,
+                f"'{text[at].strip()[:40]}' exceeds twice all values below the first {HEAD} rows, as numbers of a header do; {hint}",
+            )
 
 
 def _split(text: Lines) -> tuple[list[str], list[tuple[int, list[str]]]]:
@@ -97,9 +244,17 @@ def _refuse_decimal_commas(text: Lines, lines: list[int]) -> None:
         words = line.replace(";", " ").split()
         if len(words) > 1 and any(re.fullmatch(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?", w) for w in words):
             raise text.error(at, f"'{text[at].strip()[:40]}' holds decimal commas; the decimal sign is a point")
-    alone = r"\s*[+-]?\d+,\d+(?:[eE][+-]?\d+)?\s*"
-    if len(bare) == len(lines) and all(re.fullmatch(alone, line) for line in bare.values()):
+    parts = [line.replace(" ", "").split(",") for line in bare.values()]
+    if len(bare) == len(lines) and all(
+        len(row) % 2 == 0 and all(re.fullmatch(r"[+-]?\d+", w) for w in row[::2]) and all(map(_fraction, row[1::2]))
+        for row in parts
+    ):
         raise text.error(lines[0], f"'{bare[lines[0]].strip()[:40]}' holds decimal commas; the decimal sign is a point")
+
+
+def _fraction(word: str) -> bool:
+    """Whether a word may be what follows a decimal sign."""
+    return re.fullmatch(r"\d+(?:[eE][+-]?\d+)?", word) is not None
 
 
 def _is_title(line: str) -> bool:
@@ -158,20 +313,20 @@ def _step(
             rows[k + 1][0], f"the time step is {steps[k]:g} s here and {step:g} s elsewhere; resample to equal steps"
         )
     step = TIME[given or "s"] * (time[-1] - time[0]) / (len(time) - 1)
-    if given is None and step >= LONGEST_STEP:
+    if not SHORTEST_STEP <= step < LONGEST_STEP:
         raise text.error(
             rows[0][0],
-            f"the time step is {step:g} s, which is no accelerogram's; if the times are milliseconds, call their column time_ms",
+            f"the time step is {step:g} s, which is no accelerogram's; if the times are milliseconds, call their column time_ms; "
+            "delete a column of sample numbers",
         )
     return float(np.round(step, 9)), uneven
 
 
-def _names(header: list[str], width: int) -> list[str]:
-    """Column names from the last header line that has as many words as columns."""
-    for line in reversed(header):
-        words = [w.strip() for w in re.split(r"[,;\t]", line)]
-        if len(words) == width:
-            return words
-        if len(line.split()) == width:
-            return line.split()
-    return [f"column {k + 1}" for k in range(width)]
+def _names(header: list[str], width: int) -> tuple[list[str], bool]:
+    """Column names, where the last line of words has as many as there are columns, and whether these words are surely names:
+    separated by more than blanks, or the first is that of a time."""
+    last = next((line for line in reversed(header) if line.strip()), "")
+    for words in ([w.strip() for w in re.split(r"[,;\t]", last)], last.split()):
+        if len(words) == width and not any(re.fullmatch(r"[+-]?\d*\.?\d*", w) for w in words):
+            return words, words != last.split() or _called_time(words[:1])
+    return [], False

@@ -2,8 +2,10 @@
 
 import re
 
-from extrados.motions.formats.record import Lines, Record, unit_in
+from extrados.motions.formats.record import Lines, Record, quantities_in, unit_in
 
+#: What a suffix of PEER stands for
+SUFFIXES = {".at2": "acceleration", ".vt2": "velocity", ".dt2": "displacement"}
 HEADER = 12  # NPTS stands in the first lines, below any free text
 
 
@@ -27,8 +29,19 @@ def read(text: Lines) -> list[Record]:
         break
     else:
         raise text.error(0, "a PEER file without its line 'NPTS= 4000, DT= .0100 SEC'")
-    header = " ".join(text.words(k) for k in range(at + 1)).upper()
-    quantity = next((q for q in ("velocity", "displacement") if f"{q.upper()} TIME" in header), "acceleration")
+    header = "\n".join(text.words(k).strip() for k in range(at + 1)).upper()
+    quantity = next((q for q in ("velocity", "displacement") if f"{q.upper()} TIME" in header), None)
+    if quantity is None:
+        said = quantities_in(header) or ["acceleration"]
+        if len(said) > 1:
+            raise text.error(
+                0, f"the header names {' and '.join(said)}; expected 'ACCELERATION TIME SERIES' or one other"
+            )
+        quantity = said[0]
+    if (other := SUFFIXES.get(text.path.suffix.lower(), quantity)) != quantity:
+        raise text.error(
+            0, f"the header names {quantity}, the suffix {text.path.suffix} stands for {other}; rename the file"
+        )
     rows, have = [], 0
     for line, row in text.blanks(at + 1):
         if have >= count and not re.match(r"[+-]?\.?\d", row[0]):

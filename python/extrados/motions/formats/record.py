@@ -13,6 +13,7 @@ LARGEST = 50_000_000  # bytes: three hours at 200 samples a second, ten times wh
 
 LONGEST_WORDS = 2000  # characters of a header line that are looked at
 LONGEST_NUMBER = 60  # characters
+SHORTEST_STEP, LONGEST_STEP = 1e-4, 0.5  # s: sampling steps that a file of a strong motion may have
 
 #: Units a file or a deck may name, in SI. gal is cm/s^2.
 ACCELERATION = {"g": 9.80665, "m/s^2": 1.0, "cm/s^2": 0.01, "gal": 0.01, "mm/s^2": 0.001, "in/s^2": 0.0254,
@@ -98,8 +99,10 @@ class Lines:
     def step(self, token: str, at: int) -> float:
         """A token as a time step [s]."""
         value = self.number(token, at)
-        if not 1e-6 <= value <= 10.0:
-            raise self.error(at, f"the time step is {value:g} s, expected 0.000001 to 10 s")
+        if not SHORTEST_STEP <= value < LONGEST_STEP:
+            raise self.error(
+                at, f"the time step is {value:g} s, expected {SHORTEST_STEP:g} s to less than {LONGEST_STEP:g} s"
+            )
         return value
 
     def numbers(self, rows: list[tuple[int, list[str]]]) -> np.ndarray:
@@ -223,23 +226,56 @@ def time_unit_in(name: str) -> str | None:
     return None
 
 
-def unit_in(text: str, quantity: str = "acceleration") -> str | None:
-    """The unit that a header text names, or None."""
-    low = tidy(text).lower()
-    second = r"\s*/\s*(?:s(?:ec)?\s*(?:\^|\*\*)?\s*2|s(?:ec)?\s*[/*.]\s*s(?:ec)?|s²|sec\^?2)"
+_SECOND = r" ?/ ?(?:s(?:ec)?(?: ?(?:\^|\*\*) ?)?2(?!\d)|s(?:ec)? ?[/*.] ?s(?:ec)?|s²|sec\^?2)"
+_BEFORE = r"\bunits?\b(?:\s+(?:are|is|of|in)\b)*\s*[:=]?\s*|\bin\s+|[\(\[_]\s*"
+
+_VALUE = rf"\d\s*(?:(?:mm|cm|m)(?:{_SECOND}|\s*/\s*s(?:ec)?)?|in(?:{_SECOND}|\s*/\s*s(?:ec)?)|gals?|m?g)(?![a-z])"
+
+
+def _gravities(low: str, unit: str) -> bool:
+    """Whether a text names g, or mg, as a unit and not as a letter of a name."""
+    pattern = rf"(?:{_BEFORE})[\(\[\"]?{unit}(?:'?s)?\"?(?![a-z0-9/*])|[,;]\s*{unit}\s*(?=[,;\n]|$)"
+    return re.search(pattern, low) is not None
+
+
+def units_in(text: str, quantity: str = "acceleration") -> list[str]:
+    """All units of a quantity that a header text names; a value with its unit, such as a peak, names none."""
+    low = re.sub(_VALUE, " ", tidy(text).lower())
     if quantity == "acceleration":
-        for length in ("cm", "mm", "in", "m"):
-            if re.search(rf"(?<![a-z]){length}{second}", low):
-                return f"{length}/s^2"
-        if re.search(r"(?<![a-z])gals?(?![a-z])", low):
-            return "gal"
-        if re.search(r"(?:\bunits?\b.{0,24}?|\bin\s+|[\(\[,;_]\s*)\(?\"?g\"?(?![a-z])", low):
-            return "g"
-        return None
-    units = QUANTITIES[quantity]
-    for unit in sorted(units, key=len, reverse=True):
+        found = [
+            f"{length}/s^2" for length in ("cm", "mm", "in", "m") if re.search(rf"(?<![a-z]){length}{_SECOND}", low)
+        ]
+        found += ["gal"] if re.search(r"(?<![a-z])gals?(?![a-z])", low) else []
+        return found + [unit for unit in ("mg", "g") if _gravities(low, unit)]
+    found = []
+    for unit in QUANTITIES[quantity]:
         length, _, per = unit.partition("/")
-        pattern = rf"(?<![a-z]){length}\s*/\s*s(?:ec)?" if per else rf"(?<![a-z]){length}(?![a-z/])"
-        if re.search(pattern, low):
-            return unit
-    return None
+        rate = rf"(?!{_SECOND})\s*/\s*s(?:ec)?(?![a-z])" if per else r"(?![a-z/])"
+        inch = r"(?<![a-z])inch|[\(\[]\s*in\.?\s*[\)\]]"  # "in" is a word too
+        found += [unit] if re.search(inch if unit == "in" else rf"(?<![a-z]){length}{rate}", low) else []
+    return found
+
+
+def unit_in(text: str, quantity: str = "acceleration") -> str | None:
+    """The one unit that a header text names; None where it names none, or several of different size."""
+    found = units_in(text, quantity)
+    return found[0] if len({QUANTITIES[quantity][unit] for unit in found}) == 1 else None
+
+
+_WORDS = {
+    "acceleration": r"(?<![a-z])acc(?![io])", "velocity": r"(?<![a-z])vel(?:oc\w*)?(?![a-z])",
+    "displacement": r"(?<![a-z])displ?(?:acem\w*)?(?![a-z])",
+}  # fmt: skip
+_WAVES = r"(?:shear|s|p|secondary|primary)[\s-]+(?:wave\s+)?velocity|velocity\s+(?:model|structure)|vs_?30"
+
+
+def quantities_in(text: str) -> list[str]:
+    """What a header says that its numbers are, by its words and units: none, one, or several of QUANTITIES."""
+    low = re.sub(_WAVES, "", tidy(text).lower())
+    found = [
+        name
+        for name, word in _WORDS.items()
+        if re.search(word, low) or (name != "displacement" and units_in(low, name))
+    ]
+    sure = [name for name in found if units_in(low, name)]
+    return sure if len(sure) == 1 else found
