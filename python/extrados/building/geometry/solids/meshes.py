@@ -13,13 +13,14 @@ from extrados.building.errors import BadGeometry
 from extrados.building.geometry.compas import FARTHEST, mesh_of, nodes_of
 from extrados.building.geometry.drawing import UNITS
 from extrados.building.geometry.solids.assembly import MOST_SOLIDS, MOST_TOLD, Stone
-from extrados.building.geometry.solids.polyhedra import ManyFaces, Polyhedron, hull, moments
+from extrados.building.geometry.solids.polyhedra import ManyFaces, Polyhedron, fitted, hull, moments
 
 MOST_VERTICES = 2_000_000
 MOST_CORNERS = 2_000  # of a convex body: bodies that overlap are compared edge by edge
 MOST_POINTS = 10_000  # of its mesh: Qhull takes the square of those on a circle, and hears no signal meanwhile
 CONVEX = 1e-4  # of its volume: what the hull of a convex body may have more
 PLANE = 1e-5  # how far facets of one face of a mesh may turn
+SAME_PLANE = 1e-12  # of facets that Qhull has in one plane
 MERGED = 1e-6  # of the size of a file: corners of STL triangles nearer than this are one
 
 
@@ -111,8 +112,11 @@ def read_solids(value: Any, name: str) -> list[Mesh]:
     return found
 
 
-def stones_of(meshes: Sequence[Mesh], density: float, unit: str | None, name: str) -> list[Stone]:
-    """Stones of meshes in a unit (metres unless one is given), of a density [kg/m^3].
+def stones_of(
+    meshes: Sequence[Mesh], density: float, unit: str | None, name: str, tolerance: float = 0.0
+) -> list[Stone]:
+    """Stones of meshes in a unit (metres unless one is given), of a density [kg/m^3]; tolerance [m]: of contacts, half of
+    which corners may lie off the plane of their face, and of a convex body.
 
     BadGeometry names the meshes that are open, flat or not convex.
     """
@@ -124,7 +128,7 @@ def stones_of(meshes: Sequence[Mesh], density: float, unit: str | None, name: st
     wrong: list[str] = []
     for mesh in meshes:
         try:
-            stones.setdefault(mesh.stone, []).append(convex_body(scale * mesh.points, mesh.faces))
+            stones.setdefault(mesh.stone, []).append(convex_body(scale * mesh.points, mesh.faces, 0.5 * tolerance))
             grounds[mesh.stone] = mesh.ground
         except ValueError as error:
             wrong.append(f"{mesh.name} {error}")
@@ -134,8 +138,9 @@ def stones_of(meshes: Sequence[Mesh], density: float, unit: str | None, name: st
     return [Stone(title, parts, density, grounds[title]) for title, parts in stones.items()]
 
 
-def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]]) -> Polyhedron:
-    """The convex body within a closed mesh; ValueError says in words why there is none."""
+def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]], within: float = 0.0) -> Polyhedron:
+    """The convex body around a closed mesh that lies within a distance [m] of it, faces with corners so far off a plane made
+    one; ValueError says in words why there is none."""
     if len(points) > MOST_POINTS:
         raise ValueError(f"is a mesh of {len(points)} points, at most {MOST_POINTS} are looked at: draw it coarser")
     around_edge: dict[tuple[int, int], list[int]] = {}
@@ -152,7 +157,8 @@ def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]]) -> Polyhedro
     volume = abs(moments(points, triangles)[0])
     fine = f"is of more than {MOST_CORNERS} corners, the most that are looked at: draw it coarser"
     try:
-        whole = hull(points, PLANE, 2 * MOST_CORNERS)  # more faces have more corners, by Euler
+        # more faces have more corners, by Euler; faces are made one by the fit of all of their corners where that is known
+        whole = hull(points, SAME_PLANE if within > 0.0 else PLANE, 2 * MOST_CORNERS)
     except ManyFaces:
         raise ValueError(fine) from None
     except ValueError:
@@ -160,12 +166,23 @@ def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]]) -> Polyhedro
     if len(whole.vertices) > MOST_CORNERS:
         raise ValueError(fine)
     around = moments(whole.vertices, whole.triangles)[0]
-    if volume < (1.0 - CONVEX) * around:
+    if volume < (1.0 - CONVEX) * around and _dent(whole, points, triangles) > within:
         raise ValueError(
             f"is not convex: its hull has {100.0 * (around / volume - 1.0):.3g} % more volume; cut it into convex parts, in an OBJ "
             "as groups `g` of one object `o`"
         )
-    return whole
+    return fitted(whole, within)
+
+
+def _dent(whole: Polyhedron, points: np.ndarray, triangles: np.ndarray) -> float:
+    """How deep a mesh lies below the hull around it [m], at its corners and in the middle of its edges: along an edge from hull
+    to hull the depth is at most twice as much."""
+    middles = 0.5 * (points[triangles] + points[np.roll(triangles, -1, axis=1)]).reshape(-1, 3)
+    places = np.concatenate([points[np.unique(triangles)], middles])
+    depth = np.full(len(places), np.inf)
+    for normal, offset in zip(whole.normals, whole.offsets, strict=True):
+        depth = np.minimum(depth, offset - places @ normal)
+    return float(depth.max())
 
 
 def _edges(face: Sequence[int]) -> list[tuple[int, int]]:
