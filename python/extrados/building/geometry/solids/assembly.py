@@ -10,8 +10,10 @@ import numpy as np
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.solids.contacts import GROUND, Touching, slant, touching
 from extrados.building.geometry.solids.polyhedra import Polyhedron, inertia_of, moments
+from extrados.building.geometry.solids.snapping import snapped
 
 MOST_SOLIDS = 20000
+ROUNDING = 1e-9  # of the size: corners that would move by less stay
 EXACT = 1e-6  # of the size of a structure made by rule: faces nearer than this touch
 #: Gaps wider than so many tolerances, and than 10 mm and two tolerances, are no slips of drawing
 NEARLY, WIDE = 20.0, 0.01
@@ -146,22 +148,38 @@ def assemble(
     ends = np.concatenate([p.vertices for p in parts])
     size = float(np.ptp(ends, axis=0).max())
     close = EXACT * size if tolerance is None else tolerance
-    found = touching(parts, owner, close, min(NEARLY * close, max(WIDE, 2.0 * close)))
-    mass, centroid, inertia = zip(*(mass_properties(s.parts, s.density) for s in blocks), strict=True)
+    near = min(NEARLY * close, max(WIDE, 2.0 * close))
+    drawn = found = touching(parts, owner, close, near)
+    free = len(blocks) == len(stones) and not seats
+    levels = ground if ground is not None else ([_lowest(parts, owner < len(blocks), close)] if free else [])
+    notes: tuple[str, ...] = ()
+    if tolerance is not None and not found.overlaps:
+        order = np.argsort(found.apart, kind="stable").tolist()
+        on_ground = _soles(parts, owner, len(blocks), levels, close, found)
+        fitting, moved = snapped(parts, [found.faces[j] for j in order], on_ground, close)
+        if moved > ROUNDING * size:
+            parts, found = fitting, touching(fitting, owner, close, near)
+            notes = (
+                f"Corners were moved by up to {1e3 * moved:.3g} mm (contact_tolerance {1e3 * close:.3g} mm) onto the planes of their faces",
+            )
+    last = np.cumsum([len(s.parts) for s in blocks])
+    mass, centroid, inertia = zip(
+        *(mass_properties(parts[e - len(s.parts) : e], s.density) for s, e in zip(blocks, last, strict=True)),
+        strict=True,
+    )
     polygon, normal = list(found.polygon), list(found.normal)
     a, b = np.array(found.a, dtype=int), np.array(found.b, dtype=int)
     b[b == len(blocks)] = GROUND  # the ground is the last owner: never block a
-    free = len(blocks) == len(stones) and not seats
-    levels = ground if ground is not None else ([float(ends[:, 2].min())] if free else [])
     for block, points in seats:
         polygon.append(points)
         across = np.cross(points[1] - points[0], points[2] - points[1])
         normal.append(across / np.linalg.norm(across))
         a = np.append(a, block)
-    for block, points, up in _soles(parts, owner, len(blocks), levels, close, found, b):
+    for (i, k), level in _soles(parts, owner, len(blocks), levels, close, found).items():
+        points, up = _on_ground(parts[i], k, level)
         polygon.append(points)
         normal.append(up)
-        a = np.append(a, block)
+        a = np.append(a, owner[i])
     b = np.append(b, [GROUND] * (len(a) - len(b))).astype(int)
     names = [s.name for s in blocks]
     _refuse(names, found, a, b, close, what, exact=tolerance is None)
@@ -169,7 +187,7 @@ def assemble(
         parts=parts[: int((owner < len(blocks)).sum())], owner=owner[owner < len(blocks)], mass=np.array(mass),
         centroid=np.array(centroid), inertia=np.array(inertia), polygon=polygon, normal=np.array(normal).reshape(-1, 3),
         a=a, b=b, block_names=names, joint_names=joint_names(names, a, b, np.array(normal)),
-        remarks=(*_nearly(names, found.gaps), *_narrow(names, found.slivers, close), *_rough(blocks, found)),
+        remarks=(*_nearly(names, found.gaps), *_narrow(names, found.slivers, close), *_rough(blocks, drawn)), notes=notes,
     )  # fmt: skip
     return made
 
@@ -192,33 +210,51 @@ def joint_names(names: Sequence[str], a: np.ndarray, b: np.ndarray, normal: np.n
     return told
 
 
+def _level_faces(part: Polyhedron, close: float) -> list[int]:
+    """Faces that look down and are as level as a tolerance leaves them."""
+    turned = slant(np.hypot(part.normals[:, 0], part.normals[:, 1]), part.widths)
+    return np.flatnonzero((part.normals[:, 2] < -LEVEL) & (turned <= close)).tolist()
+
+
+def _lowest(parts: Sequence[Polyhedron], mobile: np.ndarray, close: float) -> float:
+    """Height of the lowest soles [m], the mean of them by area; of the lowest corner where no sole is level."""
+    low = min(float(part.vertices[:, 2].min()) for part in parts)
+    soles = [
+        (part.middles[k, 2] - low, part.areas[k])
+        for part, on in zip(parts, mobile.tolist(), strict=True) if on
+        for k in _level_faces(part, close) if part.middles[k, 2] - low <= close
+    ]  # fmt: skip
+    return low + float(np.average([h for h, _ in soles], weights=[area for _, area in soles])) if soles else low
+
+
 def _soles(
-    parts: Sequence[Polyhedron], owner: np.ndarray, count: int, levels: Sequence[float], close: float, met: Touching,
-    b: np.ndarray,
-) -> list[tuple[int, np.ndarray, np.ndarray]]:  # fmt: skip
-    """Level faces at the heights of the ground that look down: block, corners, and the normal midway between the face and the
-    ground; not those that a stone bears."""
-    found = []
+    parts: Sequence[Polyhedron], owner: np.ndarray, count: int, levels: Sequence[float], close: float, met: Touching
+) -> dict[tuple[int, int], float]:
+    """Level faces that stand on the ground, as part and face, with its height [m]; not those that a stone bears."""
+    found = {}
     borne: dict[int, list[np.ndarray]] = {}
-    for points, one, two in zip(met.polygon, met.a, b.tolist(), strict=True):
-        for block in (one, two):
+    for points, *blocks in zip(met.polygon, met.a, met.b, strict=True):
+        for block in blocks:
             borne.setdefault(block, []).append(points[:, 2])
-    for part, block in zip(parts, owner.tolist(), strict=True):
-        if block >= count:
+    for i, (part, block) in enumerate(zip(parts, owner.tolist(), strict=True)):
+        if block >= count or not len(levels):
             continue
-        turned = slant(np.hypot(part.normals[:, 0], part.normals[:, 1]), part.widths)
-        for k in np.flatnonzero((part.normals[:, 2] < -LEVEL) & (turned <= close)).tolist():
-            points, height = part.vertices[list(part.faces[k])][::-1], float(part.middles[k, 2])
-            level = min(levels, key=lambda z: abs(height - z), default=np.inf)
-            if abs(height - level) > close:
+        for k in _level_faces(part, close):
+            level = min(levels, key=lambda z: abs(part.middles[k, 2] - z))
+            if abs(part.middles[k, 2] - level) > close:
                 continue
-            if any(np.abs(heights - level).max() <= close for heights in borne.get(block, [])):
-                continue  # it stands on a stone there
-            up = np.array([0.0, 0.0, 1.0]) - part.normals[k]
-            up /= np.linalg.norm(up)
-            middle = np.array([*part.middles[k, :2], 0.5 * (height + level)])
-            found.append((block, points - ((points - middle) @ up)[:, None] * up, up))
+            if not any(np.abs(heights - level).max() <= close for heights in borne.get(block, [])):
+                found[i, k] = float(level)
     return found
+
+
+def _on_ground(part: Polyhedron, face: int, level: float) -> tuple[np.ndarray, np.ndarray]:
+    """Corners of a sole (k, 3) in the plane midway between it and the ground, and the normal of that, which points up."""
+    up = np.array([0.0, 0.0, 1.0]) - part.normals[face]
+    up /= np.linalg.norm(up)
+    points = part.vertices[list(part.faces[face])][::-1]
+    middle = np.array([*part.middles[face, :2], 0.5 * (part.middles[face, 2] + level)])
+    return points - ((points - middle) @ up)[:, None] * up, up
 
 
 def _refuse(

@@ -19,7 +19,7 @@ SAME = 1e-9  # of the size of a face: what two faces share and is narrower is an
 @dataclass
 class Touching:
     """polygon: corners (k, 3) [m] of each contact, counter-clockwise about normal (nj, 3), which points into block a;
-    apart: the least tolerance with which it is one [m]. overlaps: (block, block, depth [m]); gaps: the same of faces
+    apart: the least tolerance with which it is one [m]; faces: both as part and number of the face. overlaps: (block, block, depth [m]); gaps: the same of faces
     that nearly touch; slivers: (block, block, width [m]) of contacts narrower than the tolerance, which carry nothing."""
 
     polygon: list[np.ndarray] = field(default_factory=list)
@@ -27,6 +27,7 @@ class Touching:
     a: list[int] = field(default_factory=list)
     b: list[int] = field(default_factory=list)
     apart: list[float] = field(default_factory=list)
+    faces: list[tuple[tuple[int, int], tuple[int, int]]] = field(default_factory=list)
     overlaps: list[tuple[int, int, float]] = field(default_factory=list)
     gaps: list[tuple[int, int, float]] = field(default_factory=list)
     slivers: list[tuple[int, int, float]] = field(default_factory=list)
@@ -64,7 +65,7 @@ def touching(parts: Sequence[Polyhedron], owner: np.ndarray, tolerance: float, n
     found = Touching()
     low, high = (np.array([getattr(part, end) for part in parts]) for end in ("low", "high"))
     for i, j in near_pairs(low, high, owner, near).tolist():
-        _meet(found, parts[i], parts[j], int(owner[i]), int(owner[j]), tolerance, near)
+        _meet(found, parts, (i, j), (int(owner[i]), int(owner[j])), tolerance, near)
     return found
 
 
@@ -74,8 +75,17 @@ def slant(sine: np.ndarray, width: np.ndarray) -> np.ndarray:
     return sine * width / 2.0**0.5
 
 
-def _meet(found: Touching, one: Polyhedron, two: Polyhedron, a: int, b: int, tolerance: float, near: float) -> None:
+def _meet(
+    found: Touching,
+    parts: Sequence[Polyhedron],
+    pair: tuple[int, int],
+    owners: tuple[int, int],
+    tolerance: float,
+    near: float,
+) -> None:
     """Contacts, slivers, overlap or gap of two parts."""
+    (i, j), (a, b) = pair, owners
+    one, two = parts[i], parts[j]
     opposed = one.normals @ two.normals.T
     sine = np.sqrt(np.clip(1.0 - opposed * opposed, 0.0, None))
     turned = slant(sine, np.minimum(one.widths[:, None], two.widths[None]))
@@ -103,6 +113,7 @@ def _meet(found: Touching, one: Polyhedron, two: Polyhedron, a: int, b: int, tol
             found.a.append(a)
             found.b.append(b)
             found.apart.append(needed)
+            found.faces.append(((i, f), (j, g)))
     if not touched:
         depth = overlap_depth(one, two)
         if depth > tolerance:

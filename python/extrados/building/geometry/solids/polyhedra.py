@@ -160,7 +160,7 @@ def hull(points: np.ndarray, flat: float = FLAT, most: float = np.inf) -> Polyhe
 
 def fitted(body: Polyhedron, within: float) -> Polyhedron:
     """The body with adjacent faces made one where all of their corners lie within a distance [m] of the plane fitted to them:
-    the triangles of a measured face. No corner moves.
+    the triangles of a measured face. No corner moves; those within a face are dropped.
 
     The least bent edges come first. Newell's vector of two faces together is the sum of theirs.
     """
@@ -185,8 +185,10 @@ def fitted(body: Polyhedron, within: float) -> Polyhedron:
         members[a] += members[b]
         for k in members.pop(b):
             group[k] = a
-    loops = [_loop(body, faces) if len(faces) > 1 else body.faces[faces[0]] for faces in members.values()]
-    return Polyhedron(body.vertices, tuple(loop for loop in loops if loop is not None))
+    loops = [loop for f in members.values() if (loop := _loop(body, f) if len(f) > 1 else body.faces[f[0]]) is not None]
+    used = sorted({corner for loop in loops for corner in loop})  # a corner within a face is none any more
+    number = {corner: k for k, corner in enumerate(used)}
+    return Polyhedron(body.vertices[used], tuple(tuple(number[corner] for corner in loop) for loop in loops))
 
 
 def _loop(body: Polyhedron, faces: list[int]) -> tuple[int, ...] | None:
