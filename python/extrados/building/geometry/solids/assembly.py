@@ -44,7 +44,7 @@ class SolidAssembly:
     centroids [kg m^2]. Contact j has the corners polygon[j] (k, 3) [m], counter-clockwise about normal[j], the unit
     vector into block a[j]; b[j] is the block behind, GROUND for the ground. A pair of blocks may share several.
     keys: dowels across contacts. fill (nf, 5): block, mass [kg] and place x, y, z [m] of what rests on blocks and sways
-    with them. groups: name -> contacts that [[joints.types]] may call by one name. measures: derived lengths worth
+    with them. deviation: how far corners of measured blocks were moved at most [m]; gaps of that size may be left. groups: name -> contacts that [[joints.types]] may call by one name. measures: derived lengths worth
     telling. remarks must be told beside every answer, notes once.
     """
 
@@ -61,6 +61,7 @@ class SolidAssembly:
     joint_names: list[str]
     keys: Keys | None = field(default=None, kw_only=True)
     fill: np.ndarray = field(default_factory=lambda: np.empty((0, 5)), kw_only=True)
+    deviation: float = field(default=0.0, kw_only=True)
     groups: dict[str, list[int]] = field(default_factory=dict, kw_only=True)
     measures: dict[str, float] = field(default_factory=dict, kw_only=True)
     remarks: tuple[str, ...] = field(default=(), kw_only=True)
@@ -153,6 +154,7 @@ def assemble(
     free = len(blocks) == len(stones) and not seats
     levels = ground if ground is not None else ([_lowest(parts, owner < len(blocks), close)] if free else [])
     notes: tuple[str, ...] = ()
+    moved = 0.0
     if tolerance is not None and not found.overlaps:
         order = np.argsort(found.apart, kind="stable").tolist()
         on_ground = _soles(parts, owner, len(blocks), levels, close, found)
@@ -188,6 +190,7 @@ def assemble(
         centroid=np.array(centroid), inertia=np.array(inertia), polygon=polygon, normal=np.array(normal).reshape(-1, 3),
         a=a, b=b, block_names=names, joint_names=joint_names(names, a, b, np.array(normal)),
         remarks=(*_nearly(names, found.gaps), *_narrow(names, found.slivers, close), *_rough(blocks, drawn)), notes=notes,
+        deviation=moved,
     )  # fmt: skip
     return made
 

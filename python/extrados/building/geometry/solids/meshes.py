@@ -13,7 +13,8 @@ from extrados.building.errors import BadGeometry
 from extrados.building.geometry.compas import FARTHEST, mesh_of, nodes_of
 from extrados.building.geometry.drawing import UNITS
 from extrados.building.geometry.solids.assembly import MOST_SOLIDS, MOST_TOLD, Stone
-from extrados.building.geometry.solids.polyhedra import ManyFaces, Polyhedron, fitted, hull, moments
+from extrados.building.geometry.solids.contacts import near_pairs
+from extrados.building.geometry.solids.polyhedra import ManyFaces, Polyhedron, fitted, hull, moments, overlap_depth
 
 MOST_VERTICES = 2_000_000
 MOST_CORNERS = 2_000  # of a convex body: bodies that overlap are compared edge by edge
@@ -132,10 +133,22 @@ def stones_of(
             grounds[mesh.stone] = mesh.ground
         except ValueError as error:
             wrong.append(f"{mesh.name} {error}")
+    wrong += [fault for title, parts in stones.items() if (fault := _within_itself(title, parts, tolerance))]
     if wrong:
         more = f"; and {len(wrong) - MOST_TOLD} more" if len(wrong) > MOST_TOLD else ""
         raise BadGeometry(f"{name}: " + "; ".join(wrong[:MOST_TOLD]) + more)
     return [Stone(title, parts, density, grounds[title]) for title, parts in stones.items()]
+
+
+def _within_itself(title: str, parts: Sequence[Polyhedron], tolerance: float) -> str:
+    """The fault of a stone whose parts overlap by more than a tolerance [m] and so would weigh twice; else nothing."""
+    if len(parts) < 2:
+        return ""
+    low, high = (np.array([getattr(part, end) for part in parts]) for end in ("low", "high"))
+    pairs = near_pairs(low, high, np.arange(len(parts)), 0.0)
+    depth = max((overlap_depth(parts[i], parts[j]) for i, j in pairs.tolist()), default=0.0)
+    least = max(tolerance, MERGED * float(np.ptp([low.min(axis=0), high.max(axis=0)], axis=0).max()))
+    return f"{title}: two of its parts overlap by {1e3 * depth:.3g} mm" if depth > least else ""
 
 
 def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]], within: float = 0.0) -> Polyhedron:
