@@ -71,10 +71,8 @@ def read_obj(text: str, name: str) -> list[Mesh]:
     found: list[Mesh] = []
     for (stone, part), faces in rows.items():
         for piece in _pieces(faces):
-            used = sorted({k for f in piece for k in f})
-            number_of = {k: i for i, k in enumerate(used)}
             title = stone or part or f"block {len(found) + 1}"
-            found.append(Mesh(part or title, xyz[used], [[number_of[k] for k in f] for f in piece], stone or part))
+            found.append(Mesh(part or title, *_alone(xyz, piece), stone or part))
     if all(not m.stone for m in found):
         for k, mesh in enumerate(found, start=1):
             mesh.name = mesh.stone = f"block {k}"
@@ -96,21 +94,30 @@ def read_stl(content: bytes, name: str) -> list[Mesh]:
         faces = [f for f in inverse.reshape(-1, 3).tolist() if len(set(f)) == 3]
         pieces = _pieces(faces)
         for piece in pieces:
-            used = sorted({k for f in piece for k in f})
-            number_of = {k: i for i, k in enumerate(used)}
             own = title if title and len(pieces) == 1 else f"block {len(found) + 1}"
-            found.append(Mesh(own, corners[first[used]], [[number_of[k] for k in f] for f in piece], own))
+            found.append(Mesh(own, *_alone(corners[first], piece), own))
     return found
 
 
 def read_solids(value: Any, name: str) -> list[Mesh]:
-    """Meshes of the JSON of a COMPAS assembly, a stone for each node; supports are ground."""
+    """Meshes of the JSON of a COMPAS assembly, a stone for each node, of whose mesh what hangs together is a convex part; supports
+    are ground."""
     nodes = nodes_of(value, name)
     found = []
     for key, node in nodes.items():
         points, faces = mesh_of(node, f"{name}: block {key}")
-        found.append(Mesh(f"block {key}", points, faces, f"block {key}", bool(node.get("is_support"))))
+        title, pieces = f"block {key}", _pieces(faces)
+        for k, piece in enumerate(pieces, start=1):
+            own = title if len(pieces) == 1 else f"part {k} of {title}"
+            found.append(Mesh(own, *_alone(points, piece), title, bool(node.get("is_support"))))
     return found
+
+
+def _alone(points: np.ndarray, faces: Sequence[Sequence[int]]) -> tuple[np.ndarray, list[list[int]]]:
+    """The points that faces name, and the faces by their numbers among these."""
+    used = sorted({k for face in faces for k in face})
+    number_of = {k: i for i, k in enumerate(used)}
+    return points[used], [[number_of[k] for k in face] for face in faces]
 
 
 def stones_of(
