@@ -130,10 +130,7 @@ def shared_polygon(
     the faces in its middle [m], and its area over its diameter [m]; None where that is no more than an edge."""
     normal = one.normals[f] - two.normals[g]
     normal = normal / np.linalg.norm(normal)
-    axis = np.eye(3)[int(np.abs(normal).argmin())]
-    across = np.cross(axis, normal)
-    across /= np.linalg.norm(across)
-    plane = np.column_stack([across, np.cross(normal, across)])
+    plane = _frame(normal)
     first, second = one.vertices[list(one.faces[f])], two.vertices[list(two.faces[g])]
     origin = first[0]
     subject, clip = (first - origin) @ plane, (second - origin) @ plane
@@ -144,12 +141,11 @@ def shared_polygon(
     shared = clipped(one_ring, two_ring, same)
     if len(shared) < 3:
         return None
-    points = np.array(shared)
-    area = _area(shared)
+    points, area = np.array(shared), _area(shared)
     width = area / _diameter(points)
     if width < same:
         return None
-    middle = origin + plane @ _centre(points, area)
+    middle = origin + plane @ _centre(shared, area)
     # along the normal from the middle to either plane
     below = (one.offsets[f] - one.normals[f] @ middle) / (one.normals[f] @ normal)
     above = (two.offsets[g] - two.normals[g] @ middle) / (two.normals[g] @ normal)
@@ -195,9 +191,22 @@ def _diameter(points: np.ndarray) -> float:
     return float(np.sqrt((apart * apart).sum(axis=2).max()))
 
 
-def _centre(points: np.ndarray, area: float) -> np.ndarray:
-    """Centroid of the area of a polygon (k, 2)."""
-    arm = points - points[0]
-    after = np.roll(arm, -1, axis=0)
-    cross = arm[:, 0] * after[:, 1] - after[:, 0] * arm[:, 1]
-    return points[0] + ((arm + after) * cross[:, None]).sum(axis=0) / (6.0 * area)
+def _centre(polygon: list[Point], area: float) -> list[float]:
+    """Centroid of a polygon of a known area."""
+    ox, oy = polygon[0]
+    sx = sy = 0.0
+    for (x, y), (u, v) in zip(polygon, [*polygon[1:], polygon[0]], strict=True):
+        x, y, u, v = x - ox, y - oy, u - ox, v - oy
+        cross = x * v - u * y
+        sx += (x + u) * cross
+        sy += (y + v) * cross
+    return [ox + sx / (6.0 * area), oy + sy / (6.0 * area)]
+
+
+def _frame(normal: np.ndarray) -> np.ndarray:
+    """Two unit vectors (3, 2) that make a right-handed frame with a normal."""
+    x, y, z = normal.tolist()
+    u = [(0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)][int(np.abs(normal).argmin())]
+    length = (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) ** 0.5
+    a, b, c = (part / length for part in u)
+    return np.array([[a, y * c - z * b], [b, z * a - x * c], [c, x * b - y * a]])
