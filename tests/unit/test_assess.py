@@ -10,7 +10,7 @@ import pytest
 from test_every_strategy import quick_save
 
 import extrados
-from extrados.analyses.assess import driver, hazard, sensitivity, strategies
+from extrados.analyses.assess import driver, hazard, reasons, sensitivity, strategies
 from extrados.analyses.assess.reasons import Facts
 from extrados.analyses.assess.words import conclusion, table_of
 from extrados.analyses.context import Context
@@ -88,7 +88,7 @@ def test_written_and_drawn(whole: Run, tmp_path: Path, monkeypatch: pytest.Monke
     drawn = report.draw(Run.read(tmp_path / "out"), tmp_path)
     assert [name for name, _ in drawn["assess"]] == ["assess-margins", "assess-agreement", "assess-hazard"]
     told = json.loads((tmp_path / "out" / "summary.json").read_text())["analyses"][0]
-    assert told["verdict"]["outcome"] in ("stands", "falls", "open") and "limit analysis" in told["answer"]
+    assert told["verdict"]["outcome"] in ("stands", "collapses", "open") and "limit analysis" in told["answer"]
 
 
 def test_first_table_comes_before_the_costly_strategies(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -241,7 +241,7 @@ def test_a_suite_of_records_is_a_hazard(tmp_path: Path) -> None:
     )
     rows = {v.strategy: v for v in r.verdicts}
     assert rows["probability"].demand == 0.25, "one of four"
-    assert rows["tilt"].demand == pytest.approx(5.0 / GRAVITY, rel=0.01) and rows["rocking"].outcome == "falls"
+    assert rows["tilt"].demand == pytest.approx(5.0 / GRAVITY, rel=0.01) and rows["rocking"].outcome == "collapses"
     alone = extrados.run(
         make_deck({"structure": COLUMN, "motion": {**motion, "member": 3}, "analysis": {"kind": "rocking"}}, tmp_path)
     )
@@ -280,10 +280,12 @@ def test_codes_are_asked_with_the_spectrum_of_the_motion_and_with_what_holds_the
         and checks["NTC nonlinear"].demand is not None
     )
     (row,) = run["assess"].verdicts
-    assert row.outcome in ("stands", "falls") and "without" not in row.parameters and "motion itself" in row.parameters
+    assert (
+        row.outcome in ("stands", "collapses") and "without" not in row.parameters and "motion itself" in row.parameters
+    )
     free = extrados.run(deck(assess={"strategies": ["code-checks"]}))
     assert free["code-checks"].checks["Ishiyama velocity"].demand is not None
-    assert free["assess"].verdicts[0].outcome in ("stands", "falls")
+    assert free["assess"].verdicts[0].outcome in ("stands", "collapses")
 
 
 # ----- the table and the statement (the rules: test_reasons.py)
@@ -294,7 +296,8 @@ def verdict(
 ) -> StrategyVerdict:
     keys = {
         "label": strategy, "part": None, "status": "ok", "reason": "", "axis": "acceleration", "unit": "g", "margin": None,
-        "margin_at_least": None, "margin_below": None, "parameters": "", "assumes": "", "statement": "",
+        "margin_at_least": None, "margin_below": None, "parameters": "", "assumes": "", "statement": "", "bound": None,
+        "violated": [],
     }  # fmt: skip
     return StrategyVerdict(strategy=strategy, outcome=outcome, capacity=capacity, demand=demand, **(keys | more))
 
@@ -311,13 +314,64 @@ def test_relations_and_overall_statement() -> None:
     assert near.relation("tilt", "dem") == "agree"
     overall, words = conclusion(f, [], [("tilt", "dem")], "block", (1.25, "tilt"), far)
     assert overall == "stands under all" and "1.25" in words
-    split = facts([verdict("tilt", "falls"), verdict("dem", "stands")])
+    split = facts([verdict("tilt", "collapses"), verdict("dem", "stands")])
     overall, words = conclusion(split, [], [("tilt", "dem")], "block", (None, None), list(split.rows.values()))
-    assert overall == "depends" and "No rule finds a reason" in words
+    assert overall == "depends" and "Unexplained differences" in words
     assert far[1].margin_told() == "above 2" and "tilt" in table_of(far)
     close = verdict("rocking", "stands", margin_at_least=1.1071, margin_below=1.1124)
     assert close.margin_told() == "1.107 to 1.112", "two factors that differ are not told as one"
     assert verdict("dem", "stands").margin_told("") == ""
+
+
+def test_a_proof_of_collapse_overrules_all_else() -> None:
+    rows = [
+        verdict("tilt", "cannot-stand", 0.0, 0.4, margin=0.0, statement="Proof."),
+        verdict("sla", "stands", 0.5, 0.4, margin=1.25),
+    ]
+    found = facts(rows)
+    overall, words = conclusion(found, [], found.pairs(), "arch", (0.0, "tilt"), rows)
+    assert overall == "cannot stand" and "overrules the opposite result of sla" in words and "Proof." in words
+    assert found.relation("tilt", "sla") == "disagree"
+    assert facts([rows[0], verdict("dem", "collapses")]).relation("tilt", "dem") == "agree"
+
+
+@pytest.mark.parametrize(
+    "structure",
+    [
+        {"kind": "arch", "radius": 10.0, "thickness": 0.5, "embrace": 180, "voussoirs": 11},
+        {"kind": "blocks", "block": [{"points": [[0, 0], [1, 0], [4, 4], [3, 4]]}]},
+    ],
+)
+def test_what_cannot_stand_is_the_answer_of_an_assessment(structure: dict) -> None:
+    """A certificate of limit analysis is an answer, never "no strategy has a verdict"."""
+    run = extrados.run({"structure": structure, "motion": PULSE, "analysis": {"kind": "assess", "budget": 5}})
+    r = run["assess"]
+    assert r.overall == "cannot stand" and r.least_margin == 0.0
+    row = next(v for v in r.verdicts if v.strategy == "tilt")
+    assert (row.status, row.outcome, row.margin, row.capacity) == ("ok", "cannot-stand", 0.0, 0.0)
+    verdict = run.analyses[0]["verdict"]
+    assert (verdict["outcome"], verdict["ratio"]) == ("cannot-stand", 0.0)
+    assert not [v for v in r.verdicts if v.outcome == "stands"], [v.statement for v in r.verdicts]
+    assert not [v for v in r.verdicts if v.status == "failed"], [v.reason for v in r.verdicts]
+
+
+def test_a_strategy_that_fails_leaves_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever a strategy, a rule or a closer look raises, the table stays."""
+
+    def breaks(*_: object) -> None:
+        raise ZeroDivisionError("planted")
+
+    monkeypatch.setattr(
+        strategies, "ALL", tuple(replace(s, choose=breaks) if s.name == "sla" else s for s in strategies.ALL)
+    )
+    monkeypatch.setattr(driver._Work, "refine", breaks)
+    monkeypatch.setattr(reasons, "RULES", (breaks, *reasons.RULES))
+    run = extrados.run(deck(assess={"strategies": ["tilt", "rocking", "sla"]}))
+    r = run["assess"]
+    rows = {v.strategy: v for v in r.verdicts}
+    assert rows["sla"].status == "failed" and "planted" in rows["sla"].reason
+    assert rows["tilt"].status == rows["rocking"].status == "ok" and r.overall != "open"
+    assert sum("planted" in text for text in r.not_done) == 2
 
 
 # ----- sensitivity
@@ -407,7 +461,9 @@ def test_ctrl_c_keeps_what_was_asked_before(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setattr(driver._Work, "ask", stopped)
     (first, *parts) = extrados.run(deck(assess={"strategies": ["tilt", "dem"]})).analyses
     assert first["status"] == "interrupted" and [p["name"] for p in parts] == ["tilt"]
-    assert [v["strategy"] for v in first["results"]["verdicts"]] == ["tilt"] and first["verdict"]["outcome"] == "falls"
+    assert [v["strategy"] for v in first["results"]["verdicts"]] == ["tilt"] and first["verdict"][
+        "outcome"
+    ] == "collapses"
 
 
 def test_elements_that_a_millionth_turns_are_open(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -428,3 +484,25 @@ def test_elements_that_a_millionth_turns_are_open(monkeypatch: pytest.MonkeyPatc
     assert rows["dem"].outcome == "open" and "last digits" in rows["dem"].statement
     (one,) = [x for x in r.reasons if x.rule == "last-digits"]
     assert one.numbers["displacement_nudged_m"] == 9.0
+
+
+@pytest.mark.parametrize(
+    "structure",
+    [
+        {"kind": "stack", "lower_width": 1.0, "lower_height": 1.5, "upper_width": 0.6, "upper_height": 2.0},
+        {
+            "kind": "wall",
+            "unit_length": 0.4,
+            "unit_height": 0.2,
+            "thickness": 0.2,
+            "height": 0.8,
+            "legs": [{"length": 1.2}, {"length": 0.8}],
+        },
+    ],
+)
+def test_what_strategies_cannot_look_at_ends_no_assessment(structure: dict) -> None:
+    run = extrados.run({"structure": structure, "motion": PULSE, "analysis": [{"kind": "assess", "budget": 5}]})
+    r = run["assess"]
+    rows = {v.strategy: v for v in r.verdicts}
+    assert rows["tilt"].status == "ok" and r.overall != "open"
+    assert not [v.reason for v in r.verdicts if "internal" in v.reason] + [n for n in r.not_done if "internal" in n]

@@ -306,7 +306,6 @@ WHILE_RUNNING = {
     "a pier that is crushed": (
         "crushes the pier", PANEL + 'compressive_strength = "1 MPa"\n[[analysis]]\nkind = "code-checks"\naxial_load = "1 MN" # here\n',
     ),
-    "an arch too thin": ("cannot stand", ARCH.replace("thickness = 1.5", "thickness = 0.5 # here") + TILT),
 }  # fmt: skip
 
 

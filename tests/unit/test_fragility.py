@@ -91,7 +91,7 @@ def test_curve_and_resurrections() -> None:
     share = (outcome == 2).mean(axis=0)
     assert r["collapse_probability"] == pytest.approx(share) and table["collapse_probability"] == pytest.approx(share)
     assert len(r["mean_peak_rotation_ratio"]) == len(r["count"]) == 7 and "bin_count" not in result.arrays
-    assert result.verdict.outcome == "none" and result.verdict.capacity == r["median"]
+    assert result.verdict.outcome == "not-applicable" and result.verdict.capacity == r["median"]
     # Percentiles by sorting; collapse is beyond every rotation
     ratio = np.where(outcome == 2, np.inf, result.arrays["peak_ratio"].data.reshape(60, 7))
     for percent, rank in ((16, 9), (50, 29), (84, 50)):
@@ -375,7 +375,7 @@ def test_code_demands_are_those_of_the_code_whatever_the_motion() -> None:
     own = run({"kind": "code-checks", "peak_velocity": 0.3}, block, compatible)
     assert own.results["checks"] == checks
     without = run({"kind": "code-checks"}, block, {**random, "seed": 1})
-    assert without.verdict.outcome == "none" and "give spectrum" in without.answer
+    assert without.verdict.outcome == "not-applicable" and "give spectrum" in without.answer
     assert all(c["demand"] is None for c in without.results["checks"].values())
 
 
@@ -391,7 +391,7 @@ def test_one_verdict_of_all_code_checks() -> None:
     held = judged(0.25, 0.3)
     assert held.results["checks"]["uplift"]["verdict"] == "fails" and held.verdict.outcome == "stands"
     fallen = judged(0.25, 0.4)
-    assert fallen.verdict.outcome == "falls" and "Ishiyama governs" in fallen.verdict.statement
+    assert fallen.verdict.outcome == "collapses" and "Ishiyama governs" in fallen.verdict.statement
     assert fallen.verdict.demand == 0.25 or fallen.verdict.demand == 0.4
     # One check of Ishiyama fails and the other has no demand: not decided, and told
     assert "Ishiyama" in judged(0.25).verdict.statement

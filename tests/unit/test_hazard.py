@@ -104,11 +104,11 @@ def test_levels_with_a_hazard_give_the_annual_rate_with_a_band(tmp_path: Path) -
 def test_the_verdict_is_on_the_accepted_rate() -> None:
     levels = {"count": 60, "levels": [0.2, 0.3, 0.4, 0.6, 0.9], "bootstrap": 200}
     rate = run({**levels, "hazard": HAZARD}).results["annual_collapse_rate"]
-    for accepted, outcome in ((0.3 * rate, "falls"), (1.01 * rate, "open"), (3.0 * rate, "stands")):
+    for accepted, outcome in ((0.3 * rate, "collapses"), (1.01 * rate, "open"), (3.0 * rate, "stands")):
         verdict = run({**levels, "hazard": {**HAZARD, "acceptable_rate": accepted}}).verdict
         assert (verdict.outcome, verdict.unit) == (outcome, "1/year")
         assert (verdict.demand, verdict.capacity) == (rate, accepted)
-    assert run({**levels, "hazard": HAZARD}).verdict.outcome == "none"
+    assert run({**levels, "hazard": HAZARD}).verdict.outcome == "not-applicable"
 
 
 def test_a_hazard_curve_that_ends_too_early_is_told() -> None:

@@ -10,7 +10,9 @@ import pytest
 from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
 from extrados.decks.reader import DeckError, make_deck
+from extrados.explore.stored import shown
 from extrados.results.model import Result
+from extrados.running.run import Run, compute
 
 ARCH = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 150.0, "voussoirs": 20}
 VAULT = {"kind": "vault", "preset": "dejong-a"}
@@ -212,21 +214,43 @@ def test_load_at_rest() -> None:
     assert "stands beside the structure" in run(ARCH, kind="tilt", load=[{"x": 50.0, "force": 1.0}]).reason
 
 
-def test_refusals_say_why() -> None:
-    assert "least for 180 deg" in run({**ARCH, "thickness": 0.9, "embrace": 180.0}, kind="tilt").reason
-    assert (
-        "at least 0.3" in run(ARCH, kind="tilt", joints={"friction": 0.15}).reason
-        or "friction of at least" in run(ARCH, kind="tilt", joints={"friction": 0.15}).reason
+def test_what_cannot_stand_is_an_answer_with_its_proof() -> None:
+    """A certificate of collapse under self-weight is no refusal: safety factor 0, with where and why."""
+    leaning = {"kind": "blocks", "block": [{"points": [[0, 0], [1, 0], [4, 4], [3, 4]]}]}
+    for words, structure, keys in (
+        ("% thicker", {**ARCH, "thickness": 0.9, "embrace": 180.0}, {}),
+        ("friction of at least 0.", ARCH, {"joints": {"friction": 0.15}}),
+        ("strength", ARCH, {"material": {"compressive_strength": 2e5}}),
+        ("only when pushed sideways", leaning, {}),
+    ):
+        for kind in ("tilt", "thrust"):
+            found = run(structure, kind=kind, **keys)
+            assert (found.status, found.verdict.outcome, found.verdict.ratio) == ("ok", "cannot-stand", 0.0)
+            assert words in found.verdict.statement and "proof" in found.results.certificate
+            assert found.results.collapse_acceleration_g == 0.0
+    pulse = {"kind": "sine-pulse", "amplitude": "0.1 g", "period": 1.0}
+    deck = make_deck(
+        {"structure": {**ARCH, "thickness": 0.9, "embrace": 180.0}, "motion": pulse, "analysis": {"kind": "rocking"}}
     )
-    assert "strength" in run(ARCH, kind="tilt", material={"compressive_strength": 2e5}).reason
+    rocked = run_analyses(Context(deck, threads=1))[0]
+    assert "least for 180 deg" in rocked.verdict.statement and rocked.verdict.outcome == "cannot-stand"
+
+
+def test_strength_that_the_proof_neglects_leaves_it_open() -> None:
+    """Without tension the arch collapses; with mortar the proof does not hold, and the verdict says so."""
+    thin = {**ARCH, "thickness": 0.9, "embrace": 180.0}
+    found = run(thin, kind="tilt", joints={"tension": 1e5, "cohesion": 1e5})
+    assert found.verdict.outcome == "open" and len(found.verdict.violated) == 2
+    assert "tension of the joints, 0.1 MPa" in found.verdict.statement
+
+
+def test_refusals_say_why() -> None:
     blocks = {
         "kind": "blocks",
         "block": [{"name": "up", "points": [[0, 1], [1, 1], [1, 2], [0, 2]]}],
         "ground": [[0, 0, 1, 0]],
     }
     assert "no block touches the ground" in run(blocks, kind="tilt").reason
-    leaning = {"kind": "blocks", "block": [{"points": [[0, 0], [1, 0], [4, 4], [3, 4]]}]}
-    assert "only when pushed sideways" in run(leaning, kind="tilt").reason
 
 
 @pytest.mark.parametrize(
@@ -272,3 +296,16 @@ def test_a_wall_that_slides_as_a_whole_says_so() -> None:
     wall = {"kind": "brickwork", "units": 8, "courses": 2, "unit_length": 0.5, "unit_height": 0.25}
     answer = run(wall, kind="tilt", joints={"friction": 0.2}).answer
     assert "at its whole base (8 joints)" in answer and "more" not in answer
+
+
+def test_what_cannot_stand_moves_on_the_page(tmp_path: Path) -> None:
+    """A stored run of any kind that cannot stand shows the collapse motion, which goes down."""
+    leaning = {"kind": "blocks", "block": [{"points": [[0, 0], [1, 0], [4, 4], [3, 4]]}]}
+    pulse = {"kind": "sine-pulse", "amplitude": "0.1 g", "period": 1.0}
+    kinds = [{"kind": "tilt"}, {"kind": "rocking"}]
+    made = compute(Context(make_deck({"structure": leaning, "motion": pulse, "analysis": kinds}), threads=1))
+    made.write(tmp_path / "out", figures=False)
+    for name in ("tilt", "rocking"):
+        words, arrays = shown(Run.read(tmp_path / "out"), name)
+        assert words["body"]["sort"] == "stones"
+        assert arrays["body_pose"][-1, 0, 1] < arrays["body_pose"][0, 0, 1]

@@ -117,9 +117,19 @@ def test_keys_end_in_their_unit(kind: str) -> None:
 
 def test_verdict_by_comparison() -> None:
     assert judge("", 0.5, 1.0, "g") == Verdict(
-        demand=0.5, capacity=1.0, unit="g", ratio=2.0, outcome="stands", statement=""
+        demand=0.5, capacity=1.0, unit="g", ratio=2.0, outcome="stands", bound=None, violated=[], statement=""
     )
-    assert judge("", 1.0, 1.0).outcome == "falls" and judge("", None, 1.0).outcome == "none"
+    assert (
+        judge("", 0.5, 1.0, bound="upper").outcome == "open"
+        and judge("", 1.5, 1.0, bound="upper").outcome == "collapses"
+    )
+    assert (
+        judge("", 0.5, 1.0, bound="lower").outcome == "stands" and judge("", 1.5, 1.0, bound="lower").outcome == "open"
+    )
+    for demand, outcome in ((0.5, None), (1.5, None), (0.5, "stands"), (1.5, "collapses")):
+        doubted = judge("Said.", demand, 1.0, "g", outcome, violated=["Friction is too low."])
+        assert doubted.outcome == "open" and doubted.statement == "Said. Friction is too low."
+    assert judge("", 1.0, 1.0).outcome == "collapses" and judge("", None, 1.0).outcome == "not-applicable"
     assert judge("", 0.0, 1.0).ratio is None and judge("", 0.5, None, outcome="open").ratio is None
 
 
@@ -128,13 +138,13 @@ def test_verdicts_of_one_deck() -> None:
         {"structure": ARCH, "motion": PULSE, "analysis": [{"kind": "tilt"}, {"kind": "rocking"}, {"kind": "thrust"}]}
     )
     tilt, rocking, thrust = (run.analysis(name)["verdict"] for name in ("tilt", "rocking", "thrust"))
-    assert tilt["outcome"] == "falls" and tilt["demand"] == pytest.approx(0.5) and tilt["unit"] == "g"
+    assert tilt["outcome"] == "collapses" and tilt["demand"] == pytest.approx(0.5) and tilt["unit"] == "g"
     assert tilt["ratio"] == pytest.approx(run["tilt"].collapse_acceleration_g / 0.5)
     assert rocking["outcome"] == "stands" and rocking["demand"] == run["rocking"].peak_rotation_ratio
     assert thrust["ratio"] == pytest.approx(run["thrust"].geometric_safety_factor)
     assert all(v["statement"].endswith(".") for v in (tilt, rocking, thrust))
     calm = extrados.run({"structure": ARCH, "analysis": {"kind": "tilt"}}).analysis("tilt")["verdict"]
-    assert (calm["outcome"], calm["demand"], calm["ratio"]) == ("none", None, None) and calm["capacity"] > 0.0
+    assert (calm["outcome"], calm["demand"], calm["ratio"]) == ("not-applicable", None, None) and calm["capacity"] > 0.0
     short = extrados.run({"structure": ARCH, "motion": PULSE, "analysis": {"kind": "rocking", "end_time": 0.3}})
     assert short.analysis("rocking")["verdict"]["outcome"] == "open"
 
@@ -148,13 +158,13 @@ def test_a_pulse_against_failure_curves() -> None:
         restitution=0.9, natural_time_s=1.0, safe_pockets=0,
     )  # fmt: skip
     assert domain.judged(Asked(pulse="step", duration_s=0.3, amplitude_g=0.7)).outcome == "stands"
-    assert domain.judged(Asked(pulse="step", duration_s=0.3, amplitude_g=0.8)).outcome == "falls"
-    assert domain.judged(Asked(pulse="sine", duration_s=0.3, amplitude_g=0.8)).outcome == "none"
+    assert domain.judged(Asked(pulse="step", duration_s=0.3, amplitude_g=0.8)).outcome == "collapses"
+    assert domain.judged(Asked(pulse="sine", duration_s=0.3, amplitude_g=0.8)).outcome == "not-applicable"
     blocks = DemDomain(
         pulse="step", amplitudes_g=[0.5, 1.0], shortest_durations_s=[0.4, 0.2], curves=[], energy_residual_ratio=0.0, steps=1
     )  # fmt: skip
     assert blocks.judged(Asked(pulse="step", duration_s=0.25, amplitude_g=0.75)).outcome == "stands"
-    assert blocks.judged(Asked(pulse="step", duration_s=0.35, amplitude_g=0.75)).outcome == "falls"
+    assert blocks.judged(Asked(pulse="step", duration_s=0.35, amplitude_g=0.75)).outcome == "collapses"
 
 
 def test_assumptions_tell_who_set_them() -> None:

@@ -14,6 +14,7 @@ from extrados.analyses.table import Analysis
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry, Key, NoView
 from extrados.building.geometry.assembly import Assembly
+from extrados.limit.errors import CannotStand
 from extrados.schema.programs import ffmpeg
 
 if TYPE_CHECKING:
@@ -35,6 +36,8 @@ def complaints(context: Context, options: Analysis, building: Building) -> list[
             need()
         except (Refused, BadGeometry) as error:
             found.append(context.complaint(options, error))
+        except CannotStand:  # the answer of the analysis, no fault of the deck
+            continue
     return list(dict.fromkeys(found))
 
 

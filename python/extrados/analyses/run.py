@@ -13,7 +13,7 @@ from extrados.building.building import Building
 from extrados.building.errors import WHOLE, BadGeometry
 from extrados.core.errors import Cancelled, CoreError
 from extrados.decks.reader import Deck
-from extrados.limit.errors import Immovable, NoAnswer
+from extrados.limit.errors import CannotStand, Immovable, NoAnswer
 from extrados.results.model import Result
 from extrados.results.store import StoreError
 from extrados.results.typed import shapes
@@ -67,6 +67,10 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
         result = kinds.load(kinds.ANALYSES[options.kind].driver)(context, options)
         _check(result)
         result.warnings = [*context.warnings, *result.warnings]
+    except CannotStand as error:
+        from extrados.analyses.limit.self_weight import collapses_at_rest  # loaded with the solver that proved it
+
+        result = collapses_at_rest(options.kind, error, building)
     except (Refused, BadGeometry) as error:
         result = Result(options.kind, "refused", context.complaint(options, error))
     except Immovable as error:

@@ -9,11 +9,12 @@ from extrados.core.errors import CoreError
 from extrados.decks.reader import DeckError
 from extrados.explore.folder import NotThere
 from extrados.explore.stored import StoreError
+from extrados.limit.errors import CannotStand
 from extrados.limit.programme import NoAnswer, NoEquilibrium
 from extrados.schema import quantities
 
 #: What may go wrong with a building or a question that a hand asks for: told, not raised
-TOLD = (DeckError, BadGeometry, Refused, NoView, NoAnswer, NoEquilibrium, CoreError, NotThere, StoreError)
+TOLD = (DeckError, BadGeometry, CannotStand, Refused, NoView, NoAnswer, NoEquilibrium, CoreError, NotThere, StoreError)
 Message = dict[str, Any]
 
 

@@ -15,7 +15,8 @@ from extrados.building.building import Building
 from extrados.building.errors import NoView
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.chains import is_stack
-from extrados.limit.answer import CannotStand, assess
+from extrados.limit.answer import assess
+from extrados.limit.errors import CannotStand
 from extrados.limit.graphic import force_polygon, thrust_joint, thrust_of
 from extrados.limit.lines import thrust_paths
 from extrados.limit.motion import finite_motion

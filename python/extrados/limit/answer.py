@@ -10,6 +10,7 @@ import numpy as np
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.chains import inner_stones
 from extrados.limit.equilibrium import hanging_stones
+from extrados.limit.errors import CannotStand
 from extrados.limit.graphic import force_polygon, funicular
 from extrados.limit.lines import ThrustPath, thrust_paths
 from extrados.limit.loads import Loads
@@ -24,10 +25,6 @@ CENTRAL = 1e-6  # of the joints' length: a line this near to all middles runs th
 def safety_factor(part: float) -> float:
     """One over the least part of the joints that holds a thrust line; infinite where all their middles do."""
     return np.inf if part < CENTRAL else 1.0 / part
-
-
-class CannotStand(ValueError):
-    """No admissible thrust line exists upright; the text says where it fails and by how much."""
 
 
 @dataclass(frozen=True)
@@ -149,7 +146,7 @@ def assess(
     except Immovable:
         raise
     except NoEquilibrium:
-        raise CannotStand(f"{why_not(limit)}; {_proof(limit)}") from None
+        raise cannot_stand(limit) from None
     ends = {name: pair for name, pair in thrusts.items() if pair is not None}
     moving = sorted({j for j, _ in mechanism.hinges} | set(mechanism.sliding))
     drawn, central = state, None
@@ -170,8 +167,8 @@ def assess(
     )  # fmt: skip
 
 
-def _proof(limit: LimitAnalysis) -> str:
-    """What proves that nothing can stand upright: a motion by which the loads do work that no joint takes.
+def cannot_stand(limit: LimitAnalysis) -> CannotStand:
+    """The proof that no state is admissible upright: a motion by which the loads do work that no joint takes.
 
     NoAnswer where there is no such motion: that the solver found no state is then no statement about the structure.
     """
@@ -180,15 +177,24 @@ def _proof(limit: LimitAnalysis) -> str:
         try:
             upright = [limit.collapse(direction)[1].upper_bound for direction in (1, -1)]
         except NoEquilibrium:
-            return "proof: planes outside the curves of strength already leave no forces"
+            return CannotStand(
+                f"{why_not(limit)}; proof: planes outside the curves of strength already leave no forces"
+            )
         if upright[0] < 0.0 or upright[1] > 0.0:
-            return "proof: the work of loads and crushing in the mechanism that this load sets in motion"
+            return CannotStand(
+                f"{why_not(limit)}; proof: the work of loads and crushing in the mechanism that this load sets in motion"
+            )
     if motion is None:
         raise NoAnswer("no state was found upright, but no motion proves that there is none")
     assembly = limit.assembly
     x, y = (assembly.centroid / assembly.size).T
-    speed = np.hypot(motion[:, 0] - motion[:, 2] * y, motion[:, 1] + motion[:, 2] * x)
-    return f"proof: a motion, fastest at {assembly.block_names[int(speed.argmax())]}, by which the loads do work that no joint takes"
+    velocity = np.column_stack([motion[:, 0] - motion[:, 2] * y, motion[:, 1] + motion[:, 2] * x, motion[:, 2]])
+    velocity[:, :2] *= assembly.size
+    fastest = assembly.block_names[int(np.hypot(velocity[:, 0], velocity[:, 1]).argmax())]
+    return CannotStand(
+        f"{why_not(limit)}; proof: a motion, fastest at {fastest}, by which the loads do work that no joint takes",
+        velocity,
+    )
 
 
 def why_not(limit: LimitAnalysis) -> str:
@@ -224,7 +230,7 @@ def why_not(limit: LimitAnalysis) -> str:
     off = 2.0 * np.abs(state.position - 0.5)
     worst = [assembly.joint_names[j] for j in np.flatnonzero(off > part * (1.0 - 1e-6))]
     return (
-        f"no thrust line stays inside it: the joints would have to be {part:.4f} times as long about their middles, "
+        f"no thrust line stays inside the structure: the section would have to be {100.0 * (part - 1.0):.4g} % thicker, "
         f"the line leaves first at {', '.join(worst[:6])}"
     )
 

@@ -1,13 +1,29 @@
-"""What limit analysis cannot answer, apart from its solvers: they take a while to load."""
+"""Outcomes of limit analysis that are no capacity, apart from its solvers: these take a while to load."""
+
+import numpy as np
 
 
 class NoEquilibrium(ValueError):
-    """No admissible thrust line exists for the loads asked for."""
+    """No admissible thrust line exists for the given loads."""
 
 
 class Immovable(NoEquilibrium):
-    """No load of the kind asked for brings the structure down: its joints hold it from all sides."""
+    """No load of the given kind causes collapse: the joints hold the structure from all sides."""
 
 
 class NoAnswer(RuntimeError):
     """The solver gave up; never a statement about the structure."""
+
+
+class CannotStand(Exception):
+    """A certificate proves collapse under self-weight; the text says where equilibrium fails, and the proof.
+
+    motion: the collapse motion of the certificate, velocities (blocks, 3) of the centroids in x, y and rotation, of
+    arbitrary scale; None where another proof was found. neglects: joint properties that the proof sets to zero.
+    """
+
+    def __init__(
+        self, text: str, motion: np.ndarray | None = None, neglects: tuple[str, ...] = ("cohesion", "tension")
+    ):
+        super().__init__(text)
+        self.motion, self.neglects = motion, neglects

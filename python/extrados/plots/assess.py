@@ -9,10 +9,12 @@ from extrados.plots import style
 from extrados.results.assess import Assess, StrategyVerdict
 from extrados.results.store import Stored
 
-OUTCOMES = {"stands": style.SAFE, "falls": style.THRUST, "open": "#d98200", "none": "#9a9a9a"}
+OUTCOMES = {
+    "stands": style.SAFE, "collapses": style.THRUST, "cannot-stand": style.THRUST, "open": "#d98200", "not-applicable": "#9a9a9a",
+}  # fmt: skip
 RELATIONS = {
     "agree": ("#cfe3d6", "same verdict"), "apart": ("#f7e7a8", "same verdict, margins far apart"),
-    "open": ("#e4e4e4", "one of them open"), "disagree": ("#e9a79d", "stands against falls"),
+    "open": ("#e4e4e4", "one of them open"), "disagree": ("#e9a79d", "stands against collapses"),
 }  # fmt: skip
 #: Where arrows end that show a margin of unknown end
 REACH = 1.35
@@ -32,7 +34,7 @@ def draw_assess(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
 
 def _margins(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
     """A bar or a point for each strategy over the factor on the hazard."""
-    rows = [v for v in r.verdicts if v.status == "ok" and v.outcome != "none"]
+    rows = [v for v in r.verdicts if v.status == "ok" and v.outcome != "not-applicable"]
     ends = [_ends(v) for v in rows]
     known = [x for low, high in ends for x in (low, high) if x is not None and x > 0.0]
     if not known:
@@ -54,7 +56,13 @@ def _margins(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
                 ax.plot(1.0, k, "s", color=colour, markersize=6, markerfacecolor="white")
         for outcome, colour in OUTCOMES.items():
             if any(v.outcome == outcome for v in rows):
-                ax.plot([], [], "o", color=colour, label={"open": "open"}.get(outcome, f"{outcome} under the hazard"))
+                ax.plot(
+                    [],
+                    [],
+                    "o",
+                    color=colour,
+                    label={"open": "open", "cannot-stand": "cannot stand"}.get(outcome, f"{outcome} under the hazard"),
+                )
         if any(left is None and right is None for left, right in ends):
             ax.plot([], [], "s", color="#9a9a9a", markerfacecolor="white", label="margin not known")
         ax.axvline(1.0, color=style.EDGE, linewidth=1.0, linestyle="--")

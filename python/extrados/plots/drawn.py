@@ -4,7 +4,7 @@ import base64
 import html
 import io
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,7 +12,9 @@ from matplotlib.figure import Figure
 
 from extrados import kinds
 from extrados.plots import style
+from extrados.plots.limit.self_weight import draw_self_weight
 from extrados.results.store import Stored
+from extrados.results.verdict import SelfWeight
 
 
 @dataclass(frozen=True)
@@ -62,6 +64,13 @@ class Drawn:
         return self.html()
 
 
+def figures_of(run: Stored, name: str) -> Callable[[Stored, str, Path], list[tuple[str, str]]]:
+    """What draws an analysis of a run by its name: the figures of its kind, or those of collapse under self-weight."""
+    if isinstance(run[name], SelfWeight):
+        return draw_self_weight
+    return kinds.load(kinds.ANALYSES[run.analysis(name)["kind"]].figures)
+
+
 def draw(run: Stored, name: str) -> Drawn:
     """The figures of an analysis of a run by its name, none where it has no arrays; KeyError where there is no such analysis."""
     row = run.analysis(name)
@@ -69,5 +78,5 @@ def draw(run: Stored, name: str) -> Drawn:
         return Drawn({}, {})
     with tempfile.TemporaryDirectory(prefix="extrados-") as scratch, style.kept() as figures:
         (Path(scratch) / "figures").mkdir()
-        told = kinds.load(kinds.ANALYSES[row["kind"]].figures)(run, name, Path(scratch))
+        told = figures_of(run, name)(run, name, Path(scratch))
     return Drawn(figures, {figure: caption for figure, caption in told if figure in figures})

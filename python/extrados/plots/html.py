@@ -20,7 +20,7 @@ p.bad{background:#fbe9e7;border-left:4px solid #b3261e;padding:.7rem 1rem}
 p.warn{background:#fff7e0;border-left:4px solid #d9a400;padding:.5rem 1rem}
 figure{margin:1.2rem 0;break-inside:avoid}figure img{max-width:100%}figcaption{font-size:.85rem;color:#555}
 table{border-collapse:collapse;font:13px/1.4 sans-serif}td,th{border-bottom:1px solid #ddd;padding:.15rem .7rem .15rem 0;text-align:left;vertical-align:top;overflow-wrap:anywhere;min-width:3.5em}
-tr{break-inside:avoid}td.stands,td.holds{color:#3b7a57;font-weight:bold}td.falls,td.fails{color:#b3261e;font-weight:bold}td.open{color:#a86400;font-weight:bold}
+tr{break-inside:avoid}td.stands,td.holds{color:#3b7a57;font-weight:bold}td.collapses,td.cannot-stand,td.fails{color:#b3261e;font-weight:bold}td.open{color:#a86400;font-weight:bold}
 nav ol{columns:2}nav a{color:inherit}
 pre{background:#f7f7f7;padding:.7rem;overflow:auto;font-size:12px;white-space:pre-wrap}footer{margin-top:3rem;font-size:.8rem;color:#666}
 @media print{body{font-size:10.5pt;margin:0;max-width:none;padding:0}h2,h3{break-after:avoid}.fresh{break-before:page}table{font-size:8.5pt}}
@@ -32,14 +32,14 @@ pre{background:#f7f7f7;padding:.7rem;overflow:auto;font-size:12px;white-space:pr
 {% if kind == "Heading" %}<h{{ b.level + 1 }}{% if b.level == 1 %} id="part-{{ number }}"{% endif %}{% if b.fresh %} class="fresh"{% endif %}>{% if b.level == 1 %}{{ number }} {% endif %}{{ b.text }}</h{{ b.level + 1 }}>
 {% elif kind == "Words" %}<p{% if b.look %} class="{{ b.look }}"{% endif %}>{{ b.text }}</p>
 {% elif kind == "Table" %}<table>{% if b.head %}<tr>{% for cell in b.head %}<th>{{ cell }}</th>{% endfor %}</tr>{% endif %}
-{% for row in b.rows %}<tr>{% for cell in row %}{% if loop.first %}<th>{{ cell }}</th>{% else %}<td{% if cell in looks %} class="{{ cell }}"{% endif %}>{{ cell }}</td>{% endif %}{% endfor %}</tr>{% endfor %}</table>
+{% for row in b.rows %}<tr>{% for cell in row %}{% if loop.first %}<th>{{ cell }}</th>{% else %}<td{% if cell in looks %} class="{{ cell|replace(' ', '-') }}"{% endif %}>{{ cell }}</td>{% endif %}{% endfor %}</tr>{% endfor %}</table>
 {% elif kind == "Figure" %}<figure><img alt="{{ b.caption }}"{% if b.width < 1 %} style="max-width:{{ (100 * b.width)|round|int }}%"{% endif %} src="data:image/svg+xml;base64,{{ images[b.name] }}"><figcaption>Figure {{ number }}. {{ b.caption }}</figcaption></figure>
 {% else %}<pre>{{ b.text }}</pre>{% endif %}{% endfor %}
 <footer>{{ document.foot }}</footer>
 </body></html>
 """
 #: Words of verdicts that a table shows in their colour
-LOOKS = ("stands", "falls", "open", "holds", "fails")
+LOOKS = ("stands", "collapses", "cannot stand", "open", "holds", "fails")
 
 
 def page(document: Document, folder: Path) -> str:

@@ -14,6 +14,7 @@ from pathlib import Path
 from extrados import kinds
 from extrados.plots import html, typeset
 from extrados.plots.building import draw_building
+from extrados.plots.drawn import figures_of
 from extrados.plots.telling import told
 from extrados.results import written
 from extrados.results.store import REPORT, SUMMARY, Stored, StoreError, read, reason
@@ -30,7 +31,7 @@ def draw(run: Stored, folder: Path) -> dict[str, Figures]:
     """
     shown = [a for a in run.analyses if a["kind"] in kinds.ANALYSES and run.arrays.get(a["name"])]
     (folder / "figures").mkdir(exist_ok=True)
-    tasks = [(run, a["name"], kinds.load(kinds.ANALYSES[a["kind"]].figures), folder) for a in shown]
+    tasks = [(run, a["name"], figures_of(run, a["name"]), folder) for a in shown]
     return {a["name"]: figures for a, figures in zip(shown, _drawn(tasks), strict=True)}
 
 

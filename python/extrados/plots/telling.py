@@ -12,7 +12,9 @@ from extrados.results.store import STORE, SUMMARY, Stored
 
 Figures = list[tuple[str, str]]
 #: Outcomes of verdicts in words
-OUTCOMES = {"stands": "stands", "falls": "falls", "open": "open", "none": "no demand"}
+OUTCOMES = {
+    "stands": "stands", "collapses": "collapses", "cannot-stand": "cannot stand", "open": "open", "not-applicable": "no verdict",
+}  # fmt: skip
 #: Values of a list that are shown, and rows of a list of tables
 MOST_SHOWN, MOST_ROWS = 12, 4
 
@@ -237,10 +239,10 @@ def _own_tables(run: Stored) -> list[tuple[str, str, Table]]:
                 (
                     n,
                     cell(c.demand, ""),
-                    cell(c.capacity),
+                    cell(c.capacity, ""),
                     c.unit,
                     c.verdict,
-                    f"{c.source}{f'. {c.note}' if c.note else ''}",
+                    f"{f'Not applicable: {c.reason}. ' if c.reason else ''}{c.source}{f'. {c.note}' if c.note else ''}. For: {c.scope}",
                 )
                 for n, c in checks.items()
             ]

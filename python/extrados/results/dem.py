@@ -5,7 +5,7 @@ from typing import Literal
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.limit import NamedHinge
 from extrados.results.rocking import RockingOutcome, between
-from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, acceleration, judge
+from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judge, judge_acceleration
 
 #: What a joint does, in the stored array `hinge`: hinged at its first end (intrados) or its second (extrados)
 HINGED_FIRST, CLOSED, HINGED_SECOND, APART = -1, 0, 1, 2
@@ -121,7 +121,7 @@ class DemTilt(KindResults):
     def judged(self, demand: Demand) -> Verdict:
         """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
         least = min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g)
-        return acceleration(least, demand)
+        return judge_acceleration(least, demand)
 
 
 class SolidDemRun(KindResults):
@@ -199,15 +199,15 @@ class SolidDemTilt(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
-        return acceleration(min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g), demand)
+        return judge_acceleration(min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g), demand)
 
 
 def _judged_run(run: DemRun | SolidDemRun) -> Verdict:
     """The greatest displacement against the one that counts as collapse [m]; open where it still moves."""
-    outcome: Outcome = "falls" if run.outcome == "collapse" else "open" if run.still_moving else "stands"
+    outcome: Outcome = "collapses" if run.outcome == "collapse" else "open" if run.still_moving else "stands"
     most, limit = run.peak_displacement_m, run.collapse_displacement_m
     text = {
-        "falls": f"A block moves farther than the {limit:.3g} m that count as collapse",
+        "collapses": f"A block moves farther than the {limit:.3g} m that count as collapse",
         "stands": f"No block moves farther than {most:.3g} m; {limit:.3g} m count as collapse",
         "open": "The run ended while it still moved",
     }[outcome]

@@ -11,7 +11,7 @@ from extrados.results.assumptions import Assumption
 from extrados.results.fields import ResultModel
 from extrados.results.manual import Fact, ResultFacts, ShapeFacts
 from extrados.results.typed import shapes
-from extrados.results.verdict import Verdict
+from extrados.results.verdict import SelfWeight, Verdict
 
 
 def facts(model: type[ResultModel], before: str = "") -> Iterator[Fact]:
@@ -51,14 +51,14 @@ def everything() -> ResultFacts:
         return ShapeFacts(summary(model), list(facts(model)))
 
     return ResultFacts(
-        {"verdict": told(Verdict), "assumptions": told(Assumption)},
-        {kind: [told(model) for model in shapes(kind)] for kind in kinds.ANALYSES},
+        {"verdict": told(Verdict), "assumptions": told(Assumption), "self-weight": told(SelfWeight)},
+        {kind: [told(model) for model in shapes(kind) if model is not SelfWeight] for kind in kinds.ANALYSES},
     )
 
 
 def json_schema() -> dict[str, Any]:
     """JSON Schema of summary.json."""
-    models = {"verdict": Verdict, "assumption": Assumption}
+    models = {"verdict": Verdict, "assumption": Assumption, "self-weight": SelfWeight}
     models |= {f"results of {kind}": kinds.load(parts.results) for kind, parts in kinds.ANALYSES.items()}
     # all at once: models of one name in two rooms are told apart
     placed, shared = TypeAdapter.json_schemas(
@@ -68,7 +68,12 @@ def json_schema() -> dict[str, Any]:
     schemas = {name: schema for (name, _), schema in placed.items()}
     nothing = {"type": "object", "maxProperties": 0}
     branches = [
-        {"properties": {"kind": {"const": kind}, "results": {"anyOf": [schemas[f"results of {kind}"], nothing]}}}
+        {
+            "properties": {
+                "kind": {"const": kind},
+                "results": {"anyOf": [schemas[f"results of {kind}"], schemas["self-weight"], nothing]},
+            }
+        }
         for kind in kinds.ANALYSES
     ]
     text = {"type": "string"}

@@ -3,7 +3,7 @@
 from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
-from extrados.results.verdict import Demand, KindResults, Verdict, acceleration, judge
+from extrados.results.verdict import Demand, KindResults, Verdict, judge, judge_acceleration
 
 Side = Literal["intrados", "extrados"]
 
@@ -143,7 +143,7 @@ class Tilt(KindResults):
     def judged(self, demand: Demand) -> Verdict:
         """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
         least = min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g)
-        return acceleration(least, demand)
+        return judge_acceleration(least, demand)
 
 
 class ThrustLine(ResultModel):
@@ -381,4 +381,4 @@ class Imperfections(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The 5th percentile of the capacities against the peak ground acceleration of the motion [g]."""
-        return acceleration(self.low_collapse_acceleration_g, demand)
+        return judge_acceleration(self.low_collapse_acceleration_g, demand)

@@ -114,7 +114,11 @@ def manual(results: ResultFacts) -> str:
         "Beside its results each analysis gives these.",
         "",
     ]
-    heads = {"verdict": "verdict", "assumptions": "assumptions.KEY"}
+    heads = {
+        "verdict": "verdict",
+        "assumptions": "assumptions.KEY",
+        "self-weight": "results of a building that cannot stand",
+    }
     for name, shape in results.beside.items():
         lines += [f"### {heads[name]}", "", shape.summary, "", *_table(shape)]
     for kind, shapes in results.kinds.items():

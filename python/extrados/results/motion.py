@@ -141,4 +141,4 @@ class ShakeTable(KindResults):
             return judge("The deck holds no motion for the table to play.")
         most = max(max(u.stroke, u.flow, u.force) for u in self.use_of_limits)
         text = "fits the table" if self.fits else "does not fit the table as it is"
-        return judge(f"The motion {text}: it needs {most:.3g} of a limit.", most, 1.0, "", "none")
+        return judge(f"The motion {text}: it needs {most:.3g} of a limit.", most, 1.0, "", "not-applicable")

@@ -130,9 +130,9 @@ class Rocking(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The greatest rotation against the critical one; open where the run ended before it settled."""
-        outcome: Outcome = "falls" if self.outcome == "collapse" else "stands" if self.settled else "open"
+        outcome: Outcome = "collapses" if self.outcome == "collapse" else "stands" if self.settled else "open"
         text = {
-            "falls": "Under the motion it comes down",
+            "collapses": "Under the motion it comes down",
             "stands": f"Under the motion it turns by {100.0 * self.peak_rotation_ratio:.3g} % of the critical rotation "
             "and stays up",
             "open": "The run ended before it came to rest",

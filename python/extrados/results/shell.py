@@ -4,7 +4,7 @@ from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.sla import SlaCurve
-from extrados.results.verdict import Demand, KindResults, Verdict, acceleration, judge
+from extrados.results.verdict import Demand, KindResults, Verdict, judge, judge_acceleration
 
 
 class WallShare(ResultModel):
@@ -135,8 +135,8 @@ class Pushover(PushCurve, KindResults):
         if any(c.peak_load_N is None for c in curves):
             text = f"The base shear has reached {load} without a peak; what the building bears is not known"
             if reached is not None and demand.peak_g is not None and demand.peak_g < reached:
-                return acceleration(reached, demand)
+                return judge_acceleration(reached, demand)
             return judge(f"{text}.", demand.peak_g, None, "N" if reached is None else "g", "open")
         if reached is not None:
-            return acceleration(abs(reached), demand)
+            return judge_acceleration(abs(reached), demand)
         return judge(f"The building bears a base shear of {load}.", None, least.greatest_load_N, "N")

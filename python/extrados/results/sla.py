@@ -3,7 +3,7 @@
 from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
-from extrados.results.verdict import Demand, KindResults, Verdict, acceleration, judge
+from extrados.results.verdict import Demand, KindResults, Verdict, judge, judge_acceleration
 
 #: How the names of arrays begin that belong to the first sense of the load, and to the second
 PREFIXES = ("", "minus_")
@@ -159,11 +159,11 @@ class Sla(SlaCurve, KindResults):
             if reached is None or demand.peak_g is None:
                 return judge(f"{text}.", None, None, "N" if reached is None else "g")
             if demand.peak_g < reached:
-                return acceleration(reached, demand)
+                return judge_acceleration(reached, demand)
             return judge(
                 f"{text}; the motion asks for {demand.peak_g:.3g} g, {reached:.3g} g were reached.",
                 demand.peak_g, None, "g", "open",
             )  # fmt: skip
         if reached is not None:
-            return acceleration(abs(reached), demand)
+            return judge_acceleration(abs(reached), demand)
         return judge(f"The building bears {load} of the growing load.", None, least.greatest_load_N, "N")

@@ -2,7 +2,7 @@
 
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.limit import Tilt as SectionTilt
-from extrados.results.verdict import Demand, KindResults, Verdict, acceleration
+from extrados.results.verdict import Demand, KindResults, Verdict, judge_acceleration
 
 
 class OpenContact(ResultModel):
@@ -61,7 +61,7 @@ class SolidTilt(KindResults):
     def judged(self, demand: Demand) -> Verdict:
         """The least capacity of all directions sought against the peak ground acceleration of the motion [g]."""
         least = min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g, self.least_acceleration_g)
-        return acceleration(least, demand)
+        return judge_acceleration(least, demand)
 
 
 #: What `tilt` gives: of a plane section, or of solids

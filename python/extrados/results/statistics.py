@@ -44,9 +44,9 @@ class Annual(KindResults):
             return None
         text = f"The annual rate of collapse is {rate:.3g}"
         if accepted is None:
-            return judge(f"{text}; the deck accepts no rate to compare with.", rate, None, "1/year", "none")
+            return judge(f"{text}; the deck accepts no rate to compare with.", rate, None, "1/year", "not-applicable")
         low, high = self.annual_collapse_rate_interval
-        outcome: Outcome = "stands" if rate < accepted else "falls"
+        outcome: Outcome = "stands" if rate < accepted else "collapses"
         if low is not None and high is not None and low < accepted <= high:
             outcome = "open"
             text += f", between {low:.2g} and {high:.2g}"
@@ -115,7 +115,7 @@ class Ensemble(Annual):
             return judge("No motion could be run.", outcome="open")
         if (by_rate := self.judged_by_rate()) is not None:
             return by_rate
-        outcome: Outcome = "stands" if not self.collapsed else "falls" if self.collapsed == self.count else "open"
+        outcome: Outcome = "stands" if not self.collapsed else "collapses" if self.collapsed == self.count else "open"
         text = f"{100.0 * self.collapse_probability:.3g} % of {self.count} motions bring it down."
         return judge(text, self.collapse_probability, None, "probability", outcome)
 
@@ -205,11 +205,11 @@ class OverLevels(Annual):
             share = [p for p in self.collapse_probability if p is not None]
             return judge(
                 f"{100.0 * share[-1]:.3g} % of the motions bring it down at the highest level of {self.intensity}; no curve "
-                "could be fitted.", None, None, self.intensity_unit, "none",
+                "could be fitted.", None, None, self.intensity_unit, "not-applicable",
             )  # fmt: skip
         return judge(
             f"Half of the motions bring it down at {self.intensity} {self.median:.3g}{unit}.",
-            None, self.median, self.intensity_unit, "none",
+            None, self.median, self.intensity_unit, "not-applicable",
         )  # fmt: skip
 
 
@@ -238,7 +238,7 @@ class OverDurations(KindResults):
         if not known:
             return judge("No motion could be run.", outcome="open")
         (least, short), (most, long) = min(known), max(known)
-        outcome: Outcome = "stands" if most == 0.0 else "falls" if least == 1.0 else "open"
+        outcome: Outcome = "stands" if most == 0.0 else "collapses" if least == 1.0 else "open"
         text = f"{100.0 * least:.3g} % of the motions of {short:g} s"
         if len(known) > 1:
             text += f" and {100.0 * most:.3g} % of those of {long:g} s"
@@ -285,7 +285,7 @@ class Resonance(KindResults):
         least = self.least_cap_g
         outcome: Outcome
         if self.outcome == "collapse":
-            outcome = "falls"
+            outcome = "collapses"
             does = "brings it down"
         else:
             outcome = "stands" if least is not None and self.cap_g < least else "open"

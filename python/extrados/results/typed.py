@@ -5,13 +5,13 @@ from typing import Any, get_args
 from pydantic import TypeAdapter
 
 from extrados import kinds
-from extrados.results.verdict import KindResults
+from extrados.results.verdict import KindResults, SelfWeight
 
 
 def shapes(kind: str) -> tuple[type[KindResults], ...]:
-    """The models that the results of an analysis kind may have; KeyError where there is no such kind."""
+    """The models that the results of an analysis kind may have, SelfWeight for all; KeyError where there is no such kind."""
     model = kinds.load(kinds.ANALYSES[kind].results)
-    return get_args(model) or (model,)
+    return *(get_args(model) or (model,)), SelfWeight
 
 
 def typed(kind: str, values: dict[str, Any]) -> KindResults:
@@ -19,4 +19,8 @@ def typed(kind: str, values: dict[str, Any]) -> KindResults:
 
     pydantic's ValidationError says what is missing, unknown or of a wrong type.
     """
-    return TypeAdapter(kinds.load(kinds.ANALYSES[kind].results)).validate_python(values) if values else KindResults()
+    if not values:
+        return KindResults()
+    if values.keys() == SelfWeight.model_fields.keys():
+        return SelfWeight.model_validate(values)
+    return TypeAdapter(kinds.load(kinds.ANALYSES[kind].results)).validate_python(values)

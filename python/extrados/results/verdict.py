@@ -1,30 +1,40 @@
-"""The verdict of an analysis: one line by which different strategies on one building are compared."""
+"""The verdict of an analysis: one row by which strategies on one building are compared."""
 
+from collections.abc import Sequence
 from typing import ClassVar, Literal, Protocol
 
 from extrados.results.fields import ResultModel, fact
 
-Outcome = Literal["stands", "falls", "open", "none"]
+Outcome = Literal["stands", "collapses", "cannot-stand", "open", "not-applicable"]
+Bound = Literal["exact", "upper", "lower"]
+#: Outcomes by which a strategy decides
+DECIDED: tuple[Outcome, ...] = ("stands", "collapses", "cannot-stand")
 
 
 class Verdict(ResultModel):
-    """What an analysis concludes. `demand` and `capacity` are of one quantity in `unit`.
+    """Conclusion of an analysis. `demand` and `capacity` are of one quantity in `unit`.
 
-    outcome: "stands", the demand stays below the capacity; "falls", it reaches it; "open", the analysis could not
-    tell, or only with a probability; "none", the deck holds no demand against the capacity, or the analysis asks
-    no such question.
+    outcome: "stands", the demand stays below the capacity; "collapses", the demand reaches the capacity;
+    "cannot-stand", a certificate proves collapse under self-weight; "open", the analysis cannot decide;
+    "not-applicable", the deck holds no demand against the capacity, or the analysis asks no such question.
     """
 
-    demand: float | None = fact("what is asked of the building; null where the deck asks nothing")
-    capacity: float | None = fact("what it bears; null where the analysis knows no limit")
+    demand: float | None = fact("demand of the deck on the building; null where the deck has none")
+    capacity: float | None = fact("capacity of the building; null where the analysis gives none")
     unit: str = fact("unit of demand and capacity")
-    ratio: float | None = fact("capacity over demand: above 1 it stands; null without a demand or a capacity")
-    outcome: Outcome = fact("stands, falls, open or none")
-    statement: str = fact("the verdict in one sentence")
+    ratio: float | None = fact("safety factor: capacity / demand; null without a demand or a capacity")
+    outcome: Outcome = fact("stands, collapses, cannot-stand, open or not-applicable")
+    bound: Bound | None = fact(
+        "capacity as a bound: exact, upper (true capacity is at most this), lower (at least this); null: an estimate"
+    )
+    violated: list[str] = fact(
+        "assumptions of the analysis that were checked and do not hold; the outcome is then open"
+    )
+    statement: str = fact("the verdict in one or two sentences")
 
 
 class Demand(Protocol):
-    """What the deck's motion asks of a building, where it is one motion.
+    """Demand of the deck's motion, where it is one motion.
 
     peak_g: greatest horizontal acceleration [g], None without a single motion. pulse: the shape of a motion that is a
     single pulse, "" for any other; duration_s: its duration, or its period where the shape has one; amplitude_g.
@@ -43,12 +53,38 @@ class Demand(Protocol):
 class KindResults(ResultModel):
     """Base of the results of a kind; by itself, of an analysis that has none."""
 
-    #: What there is of an interrupted analysis is judged as it is: it consists of whole ones
+    #: Partial results of an interrupted analysis are complete in themselves and keep their verdict
     whole_in_parts: ClassVar[bool] = False
 
     def judged(self, demand: Demand) -> Verdict | None:
-        """What the results say of the building under the demand."""
+        """Verdict of the results under the demand."""
         return None
+
+
+class SelfWeight(KindResults):
+    """Results of any analysis of a building that collapses under its own weight, which a certificate proves."""
+
+    collapse_acceleration_g: float = fact("0: the building carries no horizontal acceleration", "g")
+    safety_factor: float = fact("0: the building collapses before the demand acts")
+    certificate: str = fact("where equilibrium fails, and the proof")
+    neglected: list[str] = fact("strengths of the deck that the proof neglects; with any the outcome is open")
+
+    def statement(self) -> str:
+        """The result in words."""
+        if not self.neglected:
+            return f"The structure cannot stand: it collapses under its own weight. {self.certificate}."
+        strengths = " and ".join(self.neglected)
+        return (
+            f"The structure stands only by {strengths}. Without: it collapses under its own weight. {self.certificate}."
+        )
+
+    def judged(self, demand: Demand) -> Verdict:
+        """cannot-stand; open where the deck gives strengths that the proof neglects."""
+        return Verdict(
+            demand=demand.peak_g, capacity=0.0, unit="g", ratio=0.0, outcome="open" if self.neglected else "cannot-stand",
+            bound="lower" if self.neglected else "exact", violated=[f"The analysis neglects {one}." for one in self.neglected],
+            statement=self.statement(),
+        )  # fmt: skip
 
 
 def judge(
@@ -57,26 +93,42 @@ def judge(
     capacity: float | None = None,
     unit: str = "",
     outcome: Outcome | None = None,
+    bound: Bound | None = None,
+    violated: Sequence[str] = (),
 ) -> Verdict:
-    """The verdict on a demand against a capacity; without an `outcome` of its own the comparison decides."""
+    """The verdict on a demand against a capacity; without an `outcome` of its own the comparison decides.
+
+    A demand below an upper bound, or above a lower bound, decides nothing, and no outcome is decided under a violated
+    assumption: both are open, and the statement says so.
+    """
     ratio = None
     if demand is None or capacity is None:
-        outcome = outcome or "none"
+        outcome = outcome or "not-applicable"
     else:
-        outcome = outcome or ("stands" if demand < capacity else "falls")
         ratio = capacity / demand if demand > 0.0 else None
+        if outcome is None:
+            outcome = "stands" if demand < capacity else "collapses"
+            if (bound, outcome) in (("upper", "stands"), ("lower", "collapses")):
+                outcome = "open"
+    if violated and outcome in ("stands", "collapses"):
+        outcome = "open"
+    if violated:
+        statement = f"{statement} {' '.join(violated)}"
     return Verdict(
-        demand=demand, capacity=capacity, unit=unit, ratio=ratio, outcome=outcome, statement=statement
+        demand=demand, capacity=capacity, unit=unit, ratio=ratio, outcome=outcome, bound=bound, violated=list(violated),
+        statement=statement,
     )  # fmt: skip
 
 
-def acceleration(capacity: float, demand: Demand) -> Verdict:
-    """A constant acceleration that is borne [g] against the peak of the motion, if there is one."""
+def judge_acceleration(
+    capacity: float, demand: Demand, bound: Bound | None = None, violated: Sequence[str] = ()
+) -> Verdict:  # fmt: skip
+    """A constant horizontal acceleration [g] that is carried, against the peak of the motion, if there is one."""
     peak = demand.peak_g
-    bears = f"It bears a constant horizontal acceleration of {capacity:.3g} g"
+    name = {"upper": "Upper bound of the collapse acceleration", "lower": "Lower bound of the collapse acceleration"}
+    carried = f"{name.get(bound or '', 'Collapse acceleration')} {capacity:.3g} g (horizontal, constant)"
     if peak is None:
-        return judge(f"{bears}; the deck holds no single motion to compare with.", None, capacity, "g")
+        return judge(f"{carried}; the deck holds no single motion to compare with.", None, capacity, "g", None, bound, violated)  # fmt: skip
     word = "below" if peak < capacity else "at or above"
-    return judge(
-        f"{bears}; the motion's peak of {peak:.3g} g, taken as constant, is {word} that.", peak, capacity, "g"
-    )  # fmt: skip
+    text = f"{carried}; the peak of the motion, {peak:.3g} g, applied as a sustained load, is {word} this value."
+    return judge(text, peak, capacity, "g", None, bound, violated)

@@ -13,9 +13,7 @@ from extrados.analyses.limit.tables import AppliedLoad, LimitAnalysisTable
 from extrados.building.building import Building
 from extrados.building.errors import WHOLE, BadGeometry
 from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.templates.arch import ArchAssembly
-from extrados.limit.answer import Answer, CannotStand, assess
+from extrados.limit.answer import Answer, assess
 from extrados.limit.equilibrium import Disconnected
 from extrados.limit.fill import passive_pressure, under_load
 from extrados.limit.fracture import Fracture, NoCrack, fractured_collapse
@@ -83,14 +81,10 @@ def limit_of(building: Building, options: LimitAnalysisTable, *, forces_only: bo
 
 
 def answer_of(building: Building, options: LimitAnalysisTable, limit: LimitAnalysis | None = None) -> Answer:
-    """The whole answer; Refused with the reason where the structure cannot stand."""
+    """The whole answer; CannotStand where a certificate proves that the structure collapses under its own weight."""
     assembly, limit = building.blocks(), limit or limit_of(building, options)
     try:
         answer = assess(assembly, limit=limit)
-    except CannotStand as error:
-        if isinstance(assembly, ArchAssembly) and limit.strength is None and not options.load:
-            _ = ArchModel(assembly).collapse  # refuses with the minimum thickness, if that is the reason
-        raise Refused(f"the structure cannot stand under its own weight: {error}", WHOLE) from None
     except NoEquilibrium as error:
         raise Refused(str(error), WHOLE) from None
     if limit.associated and answer.gap > closed(len(assembly.a), answer.gamma):

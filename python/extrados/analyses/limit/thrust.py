@@ -16,10 +16,9 @@ from extrados.analyses.limit.common import (
     tie_rows,
 )  # fmt: skip
 from extrados.analyses.limit.tables import Thrust
-from extrados.building.errors import WHOLE
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.chains import is_stack
-from extrados.limit.answer import Answer, CannotStand, assess, safety_factor
+from extrados.limit.answer import Answer, assess, safety_factor
 from extrados.limit.graphic import thrust_joint, thrust_of
 from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium, State
 from extrados.results import limit as out
@@ -31,10 +30,7 @@ def run(context: Context, options: Thrust) -> Result:
     assembly: Assembly = context.building.blocks()
     limit = limit_of(context.building, options, forces_only=True)
     chain = chain_of(assembly, options.chain)
-    try:
-        answer = assess(assembly, limit=limit)
-    except CannotStand as error:
-        raise Refused(f"the structure cannot stand under its own weight: {error}", WHOLE) from None
+    answer = assess(assembly, limit=limit)
     low, high = answer.back_state.gamma, answer.gamma
     ends: dict[str, State] = {}
     result = Result("thrust")

@@ -12,7 +12,8 @@ from extrados.analyses.limit.tables import LimitAnalysisTable
 from extrados.building.building import Building
 from extrados.building.geometry.assembly import GROUND, Assembly, part_of
 from extrados.building.geometry.builder import BadGeometry
-from extrados.limit.answer import CannotStand, why_not
+from extrados.limit.answer import why_not
+from extrados.limit.errors import CannotStand
 from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium
 from extrados.limit.solver import Immovable, NoAnswer
 

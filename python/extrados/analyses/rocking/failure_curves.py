@@ -17,6 +17,7 @@ from extrados.building.errors import BadGeometry
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.rocker import Rocker
 from extrados.core.rocking import FAILED, OUTCOMES, ensemble
+from extrados.limit.errors import CannotStand
 from extrados.motions.impulse import Impulse, primary_impulses
 from extrados.motions.motion import Motion
 from extrados.results import rocking as out
@@ -138,6 +139,10 @@ def _variants(context: Context, options: FailureCurves) -> list[Variant]:
         except BadGeometry as error:
             key = ("analysis", "variants", number) if options.variants else error.at
             raise Refused(f"variant {number + 1}: {error}" if options.variants else str(error), key) from None
+        except CannotStand as error:
+            if not options.variants:
+                raise
+            raise Refused(f"variant {number + 1} cannot stand: {error}", ("analysis", "variants", number)) from None
         parts = [_said(structure, name) for name in names]
         told = f"{', '.join(parts)}: " if parts else ""
         context.warnings += [told + warning for warning in rocker.warnings]

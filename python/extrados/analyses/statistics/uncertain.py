@@ -15,6 +15,7 @@ from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.deviation import resurveyed
 from extrados.building.rockers.rocker import Rocker, make_rocker
 from extrados.core.rocking import Body
+from extrados.limit.errors import CannotStand
 
 #: What is drawn stone by stone, by a generator that the point of the cube seeds
 BY_STONE = ("density", "imperfection")
@@ -56,6 +57,8 @@ class Sample:
             kind, values, start = rocker.body.kind, rocker.body.parameters, rocker.start_rotation
         except BadGeometry as error:
             reason = str(error)
+        except CannotStand as error:
+            reason = f"cannot stand: {error}"
         return {"kind": np.array(kind), "body": values, "start": np.array(start), "reason": np.array(reason)}
 
     def wide(self, base: Rocker) -> "Sample":
@@ -63,7 +66,7 @@ class Sample:
         for k in range(len(self.draws)):
             try:
                 return replace(self, width=len(self.rocker(k).body.parameters))
-            except BadGeometry:
+            except (BadGeometry, CannotStand):
                 continue
         return replace(self, width=len(base.body.parameters))
 

@@ -12,6 +12,8 @@ from extrados.building.templates.arch import ArchAssembly, make_arch
 from extrados.core import arch as core_arch
 from extrados.core import mechanism as core_mechanism
 from extrados.core.rocking import Body, arch_body
+from extrados.limit.answer import cannot_stand
+from extrados.limit.errors import CannotStand
 from extrados.limit.linkage import linkage
 from extrados.limit.programme import LimitAnalysis, Mechanism, State
 from extrados.limit.solver import Immovable, NoEquilibrium
@@ -102,7 +104,7 @@ class ArchModel:
 
     @cached_property
     def collapse(self) -> tuple[State, Mechanism]:
-        """State and mechanism under the greatest load to +x; NoView where the arch cannot stand."""
+        """State and mechanism under the greatest load to +x; CannotStand where the arch collapses under its own weight."""
         try:
             state, mechanism = self.limit.collapse(1)
         except Immovable:
@@ -114,19 +116,21 @@ class ArchModel:
         if state is None or state.gamma <= 0.0:
             a = self.arch
             least = minimum_thickness(float(np.degrees(a.embrace)), a.voussoirs)
-            raise NoView(
-                f"the arch cannot stand under its own weight: the effective thickness is {a.thickness:.4g} m "
-                f"(t/R {a.thickness / a.radius:.4f}), the least for {np.degrees(a.embrace):g} deg and "
-                f"{a.voussoirs} voussoirs is {least * a.radius:.4g} m (t/R {least:.5f})",
-                ("structure", "thickness"),
+            proof = cannot_stand(self.limit)
+            raise CannotStand(
+                f"the effective thickness is {a.thickness:.4g} m (t/R {a.thickness / a.radius:.4f}), the least for "
+                f"{np.degrees(a.embrace):g} deg and {a.voussoirs} voussoirs is {least * a.radius:.4g} m (t/R {least:.5f}); "
+                f"{proof}",
+                proof.motion,
             )
         return state, mechanism
 
     @cached_property
     def four_hinge(self) -> core_arch.FourHinge:
         """The mechanism that rocks to +x."""
+        _, mechanism = self.collapse
         try:
-            return four_hinge(self.arch, self.collapse[1])
+            return four_hinge(self.arch, mechanism)
         except ValueError as error:
             raise NoView(f"rocking needs a four-hinge mechanism, but {error}", WHOLE) from None
 

@@ -15,7 +15,7 @@ from extrados.core import mechanism as core_mechanism
 from extrados.core.errors import CoreError
 from extrados.core.mechanism import Coefficients, Table, table_body
 from extrados.core.rocking import Body
-from extrados.limit.answer import why_not
+from extrados.limit.answer import cannot_stand
 from extrados.limit.linkage import CannotRock, Linkage, laden, linkage
 from extrados.limit.loads import tilt_loads
 from extrados.limit.programme import LimitAnalysis, Mechanism, State
@@ -77,7 +77,7 @@ class MechanismModel:
         except Immovable as error:
             raise NoView(f"it does not rock: {error}", WHOLE) from None
         except NoEquilibrium:
-            raise NoView(f"it does not stand: {why_not(limit)}", WHOLE) from None
+            raise cannot_stand(limit) from None
         return found
 
     @cached_property

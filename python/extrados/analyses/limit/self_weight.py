@@ -1,0 +1,38 @@
+"""The answer of any analysis for a building that collapses under its own weight."""
+
+import numpy as np
+
+from extrados.analyses.limit.common import geometry_arrays
+from extrados.building.building import Building
+from extrados.building.errors import NoView
+from extrados.limit.errors import CannotStand
+from extrados.results.model import Array, Result
+from extrados.results.verdict import SelfWeight
+
+
+def collapses_at_rest(kind: str, proof: CannotStand, building: Building) -> Result:
+    """The result of an analysis of a kind whose building a certificate proves to collapse under its own weight, with the
+    collapse motion of the certificate where blocks of the plane have one."""
+    neglected = [text for name in proof.neglects if (text := _strength(building, name))]
+    text = str(proof)
+    found = SelfWeight(
+        collapse_acceleration_g=0.0, safety_factor=0.0, certificate=text[:1].upper() + text[1:], neglected=neglected
+    )
+    result = Result(kind, results=found, answer=found.statement())
+    if proof.motion is not None:
+        result.arrays = geometry_arrays(building.blocks()) | {
+            "collapse_velocity": Array(
+                proof.motion, ("block", "component"), "", "collapse motion of the certificate: x, y [m], rotation; its scale is arbitrary"
+            )
+        }  # fmt: skip
+    return result
+
+
+def _strength(building: Building, name: str) -> str:
+    """A strength of the joints that the proof neglects, in words with its greatest value; "" where all are zero."""
+    try:
+        values = building.joint_property(name)
+    except NoView:
+        values = building.joint_property(name, building.solids())
+    greatest = float(np.nanmax(values, initial=0.0))
+    return f"the {name} of the joints, {greatest / 1e6:.3g} MPa" if greatest > 0.0 else ""
