@@ -82,6 +82,19 @@ def test_compas_in_space_is_read_back_with_the_same_capacity(name: str, tmp_path
     assert here.collapse_acceleration_g == pytest.approx(there.collapse_acceleration_g, rel=1e-7)
 
 
+def test_concave_stones_of_a_section_are_read_back_in_space(tmp_path: Path) -> None:
+    """The mesh of such a stone is one concave prism; a pier leans on it and is pushed in the plane and across it."""
+    ell = {"points": [[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]]}
+    stones = {"kind": "blocks", "block": [ell, {"points": [[1, 1], [1.6, 1], [1.6, 3], [1, 3]]}], "depth": 0.8}
+    extrados.export(extrados.deck(stones, extrados.Tilt()), "compas", tmp_path / "ell.json")
+    for direction in (0.0, 90.0, 180.0):
+        there = extrados.run(extrados.deck(stones, extrados.Tilt(direction=direction)))["tilt"]
+        back = extrados.deck(extrados.Blocks(file="ell.json"), extrados.Tilt(direction=direction), folder=tmp_path)
+        here = extrados.run(back)["tilt"]
+        assert here.collapse_acceleration_g == pytest.approx(there.collapse_acceleration_g, rel=1e-7)
+        assert here.weight_N == pytest.approx(there.weight_N, rel=1e-9)
+
+
 def test_what_is_no_geometry_is_said_to_stay_behind(caplog: pytest.LogCaptureFixture) -> None:
     drums = {"kind": "column", "section": "round", "width": 1.0, "height": 3.0, "drums": 3, "dowels": 500.0}
     tied = extrados.deck(structure=ARCH, ties=[TIE], analysis=extrados.Tilt())

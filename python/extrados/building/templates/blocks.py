@@ -258,7 +258,16 @@ class Blocks(Structure):
         if "contact_tolerance" not in self.model_fields_set:
             points = np.concatenate([mesh.points for mesh in meshes])
             tolerance = min(tolerance, SMALL * UNITS[self.unit or "m"] * float(np.ptp(points, axis=0).max()))
-        stones = stones_of(meshes, building.material.density, self.unit, name, tolerance)
+        try:
+            stones = stones_of(meshes, building.material.density, self.unit, name, tolerance)
+        except BadGeometry as error:
+            try:  # prisms of one depth may be concave: their section is parted in convex pieces
+                whole = value is not None and read_compas(value, name, self.unit)[1] is not None
+            except NoView:
+                whole = False
+            if not whole:
+                raise error from None
+            return super().solids(building)
         return touch(stones, tolerance, self.foundation_levels, name)
 
     def inspection(self, folder: Path) -> Inspection | None:
