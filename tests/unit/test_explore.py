@@ -1,5 +1,6 @@
 """Sessions of the page without a browser: the numbers are a run's, the text its author's."""
 
+import base64
 import struct
 from collections.abc import Iterator
 from pathlib import Path
@@ -282,6 +283,21 @@ def test_what_is_wrong_changes_nothing(session: Session) -> None:
         assert session.document.text == before
     (reply,) = do(session, do="show", gamma=0.0)
     assert reply.words["scene"]["capacity"]["plus_g"] > 0.3
+
+
+def test_a_dropped_drawing_shows_what_it_shows_and_says_what_it_hides(session: Session, tmp_path: Path) -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    document = ezdxf.new("R2010", units=6)
+    document.layers.add("OLD").freeze()
+    for y, layer in ((0, "0"), (1, "0"), (2, "OLD")):
+        document.modelspace().add_lwpolyline(
+            [(0, y), (1, y), (1, y + 1), (0, y + 1)], close=True, dxfattribs={"layer": layer}
+        )
+    document.saveas(tmp_path / "pier.dxf")
+    data = base64.b64encode((tmp_path / "pier.dxf").read_bytes()).decode()
+    (reply,) = do(session, do="drop", name="pier.dxf", data=data)
+    assert len(session.live.deck.building.blocks().mass) == 2
+    assert [w for w in reply.words["scene"]["warnings"] if "1 of layer 'OLD' (frozen)" in w]
 
 
 def test_the_text_keeps_what_its_author_wrote() -> None:

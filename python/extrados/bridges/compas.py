@@ -18,7 +18,7 @@ THIN = 0.05  # of the size of the structure: thickness of the supports
 
 
 def written(deck: Deck) -> str:
-    """The JSON of an Assembly: whole stones of a plane section, drawn out to its depth; in space a block for each convex part."""
+    """The JSON of an Assembly: a block for each stone, in space the closed shells of its convex parts in one mesh."""
     solids = deck.building.solids()
     nodes: dict[str, Any] = {}
 
@@ -44,14 +44,17 @@ def written(deck: Deck) -> str:
 
 
 def bodies(deck: Deck) -> Iterator[tuple[str, np.ndarray, list[tuple[int, ...]]]]:
-    """Name, vertices (n, 3) [m] and faces, counter-clockwise from outside: whole stones of a plane section, drawn out to its
-    depth; in space the convex parts."""
+    """Name, vertices (n, 3) [m] and faces, counter-clockwise from outside, of each stone: of a plane section drawn out to its
+    depth; in space those of its convex parts, one closed shell after the other."""
     try:
         section = deck.building.blocks()
     except NoView:
         solids = deck.building.solids()
-        for part, owner in zip(solids.parts, solids.owner, strict=True):
-            yield solids.block_names[owner], part.vertices, list(part.faces)
+        for k, name in enumerate(solids.block_names):
+            parts = [solids.parts[i] for i in np.flatnonzero(solids.owner == k)]
+            first = np.cumsum([0, *(len(part.vertices) for part in parts)]).tolist()
+            faces = [tuple(i + n for i in face) for part, n in zip(parts, first, strict=False) for face in part.faces]
+            yield name, np.concatenate([part.vertices for part in parts]), faces
         return
     for name, outline in zip(section.block_names, section.outlines, strict=True):
         front, back = (np.insert(outline, 1, y, axis=1) for y in (-0.5 * section.depth, 0.5 * section.depth))

@@ -1,11 +1,16 @@
 """The formats that a deck's building is written in, by their names."""
 
+import logging
 from collections.abc import Callable
 from typing import Any
 
 from extrados.bridges import compas, itasca, opensees
-from extrados.building.errors import BadGeometry
+from extrados.building.errors import BadGeometry, NoView
+from extrados.building.geometry.assembly import Assembly
+from extrados.building.geometry.solids.assembly import SolidAssembly
 from extrados.decks.reader import Deck, DeckError
+
+log = logging.getLogger(__name__)
 
 #: Format -> what writes it, the ending of its files, and what it is
 FORMS: dict[str, tuple[Callable[[Deck], str], str, str]] = {
@@ -23,9 +28,28 @@ def exported(deck: Deck, form: str) -> str:
     if deck.structure is None:
         raise DeckError([f"{form} needs a [structure]"])
     try:
-        return FORMS[form][0](deck)
+        text = FORMS[form][0](deck)
+        if form != "opensees" and (left := _beyond_geometry(deck)):
+            log.warning("%s: the file holds the geometry of the blocks. Not exported: %s", form, ", ".join(left))
+        return text
     except BadGeometry as error:
         raise DeckError([deck.complaint(None, error.at, str(error))]) from None
+
+
+def _beyond_geometry(deck: Deck) -> list[str]:
+    """What of a building changes its capacity and is no geometry of blocks: ties, dowels, fill, and the like."""
+    found = list(deck.building.special_keys)
+    try:
+        stones: Assembly | SolidAssembly = deck.building.blocks()
+    except NoView:
+        stones = deck.building.solids()
+    if isinstance(stones, SolidAssembly):
+        found += ["dowels"] if stones.keys is not None else []
+        found += ["fill"] if len(stones.fill) else []
+    else:
+        found += ["fill"] if stones.fill is not None and (stones.fill[:, 0] > 0.0).any() else []
+        found += ["the soil of the fill"] if stones.earth is not None else []
+    return found
 
 
 def scene(deck: Deck) -> Any:

@@ -50,6 +50,7 @@ def of_solids(assembly: SolidAssembly) -> Drawn:
     words = {
         "sort": "space", "of": "solids", "blocks": len(assembly.mass), "joints": len(assembly.a), "measures": assembly.measures,
         "weight_N": GRAVITY * float(assembly.mass.sum() + assembly.fill[:, 1].sum()), "size_m": np.ptp(vertex, axis=0).tolist(),
+        "warnings": [*assembly.remarks, *assembly.notes],
     }  # fmt: skip
     return words, {
         "vertex": vertex, "face": found["solid_face"], "face_start": found["solid_face_start"],

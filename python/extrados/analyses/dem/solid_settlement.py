@@ -22,9 +22,11 @@ def corner_areas(polygon: np.ndarray) -> np.ndarray:
 
 def farthest_settlement(model: SolidModel, rigid: bool = False) -> float:
     """The displacement of a block beyond which it falls instead of settling [m]: a multiple of that under the own weight
-    with all contacts held closed, as in the plane (`settlement.py`). Rigid contacts give nothing."""
+    with all contacts held closed, as in the plane (`settlement.py`). Rigid contacts give nothing. Of measured blocks the gaps that
+    their noise may leave close as well."""
+    gaps = 2.0 * model.assembly.deviation
     if rigid:
-        return RIGID * model.size
+        return RIGID * model.size + gaps
     one, v = model.assembly, model.values
     joint, corner = one.corner_joint, one.corner
     area = np.concatenate([corner_areas(p) for p in one.polygon])
@@ -49,4 +51,4 @@ def farthest_settlement(model: SolidModel, rigid: bool = False) -> float:
     except RuntimeError:  # exactly singular
         return most
     far = float(np.linalg.norm(moved[:, :3], axis=1).max())
-    return min(TIMES * far, most) if np.isfinite(far) else most
+    return min(TIMES * far + gaps, most) if np.isfinite(far) else most

@@ -44,6 +44,7 @@ class _Read:
     marks: dict[str, list[np.ndarray]] = field(default_factory=dict)
     left_out: Counter[str] = field(default_factory=Counter)
     other_layers: Counter[str] = field(default_factory=Counter)
+    hidden: Counter[tuple[str, str]] = field(default_factory=Counter)  # layer, why
     vertices: int = 0
 
 
@@ -59,8 +60,9 @@ def read_dxf(
 
     layers: those to read as stones, all where it is None. meaning: layers that are something else than plain stones;
     GROUND is the ground. Ends of loose lines within `join_tolerance` [m] are one point; `sagitta` [m]: how far
-    chords may lie from curves. BadGeometry names layer and entity; a drawing without a unit is refused until `unit`
-    is given.
+    chords may lie from curves. What the drawing does not show is not read: invisible entities, and layers that are frozen or
+    off unless `layers` or `meaning` names them. BadGeometry names layer and entity; a drawing without a unit is refused
+    until `unit` is given.
     """
     name = file.path.name
     document = _document(file.content, name)
@@ -70,12 +72,16 @@ def read_dxf(
     _refuse_many(document, name)
     found = _Read()
     seen = set()
-    for count, (entity, layer) in enumerate(_entities(document, name)):
+    named = {one.upper() for one in (*(layers or []), *(meaning or {}))}
+    hides = _Hiding(document, named)
+    for count, (entity, layer) in enumerate(_entities(document, name, hides)):
         if count >= MOST_ENTITIES:
             raise BadGeometry(_too_many(name))
         seen.add(layer)
         means = known.get(layer.upper(), Layer())
-        if means.role == "left-out":
+        if why := hides(entity, layer):
+            found.hidden[hides.names.get(layer.upper(), layer), why] += 1
+        elif means.role == "left-out":
             found.other_layers[layer] += 1
         elif means.role != "stones" or layers is None or layer in layers or layer.upper() in known:
             _take(entity, layer, means, found, name, sagitta / scale)
@@ -84,6 +90,34 @@ def read_dxf(
     for missing in [one for one in (*(layers or []), *(meaning or {})) if one.upper() not in {s.upper() for s in seen}]:
         raise BadGeometry(f"{name}: no layer '{missing}'; there are {', '.join(sorted(seen)) or 'none'}")
     return _drawing(found, known, name, scale, join_tolerance)
+
+
+class _Hiding:
+    """Why a drawing itself does not show an entity: it is invisible, its layer is frozen or off, unless the deck names that, or
+    it refers to another drawing."""
+
+    def __init__(self, document: Any, named: set[str]):
+        self.elsewhere = {
+            block.name.lower() for block in document.blocks if block.block.is_xref or block.block.is_xref_overlay
+        }
+        self.names = {layer.dxf.name.upper(): layer.dxf.name for layer in document.layers}
+        self.layers = {
+            layer.dxf.name.upper(): "frozen" if layer.is_frozen() else "off"
+            for layer in document.layers
+            if (layer.is_frozen() or layer.is_off()) and layer.dxf.name.upper() not in named
+        }
+
+    def __call__(self, entity: Any, layer: str) -> str:
+        """A word, empty where the entity on the layer is shown. A layer that is off hides no reference to a block, only what of the
+        block lies on the layer itself."""
+        if entity.dxf.get("invisible", 0):
+            return "invisible"
+        why = self.layers.get(layer.upper(), "")
+        if entity.dxftype() != "INSERT":
+            return why
+        if entity.dxf.name.lower() in self.elsewhere:
+            return "reference to another drawing"
+        return "" if why == "off" else why
 
 
 def _document(data: bytes, name: str) -> Any:
@@ -135,12 +169,12 @@ def _too_many(name: str) -> str:
     return f"{name}: more than {MOST_ENTITIES:,} entities, those of its references to blocks counted in their places"
 
 
-def _entities(document: Any, name: str) -> Iterator[tuple[Any, str]]:
-    """All entities with their layers, those of block references in their places; within a block, what lies on layer 0
-    lies on the layer of the reference."""
+def _entities(document: Any, name: str, hides: _Hiding) -> Iterator[tuple[Any, str]]:
+    """All entities with their layers, those of block references in their places unless the reference itself is hidden; within
+    a block, what lies on layer 0 lies on the layer of the reference."""
 
     def within(entity: Any, layer: str, depth: int) -> Iterator[tuple[Any, str]]:
-        if entity.dxftype() != "INSERT":
+        if entity.dxftype() != "INSERT" or hides(entity, layer):
             yield entity, layer
             return
         if depth > DEEPEST:
@@ -320,9 +354,13 @@ def _drawing(found: _Read, known: Mapping[str, Layer], name: str, scale: float, 
             f"{len(outlines) - len(closed)} blocks joined from {len(lines)} loose lines and arcs, ends within "
             f"{1e3 * tolerance:g} mm (join_tolerance)"
         )
+    if found.hidden:
+        told = ", ".join(f"{n} of layer '{layer}' ({why})" for (layer, why), n in sorted(found.hidden.items()))
+        notes.append(f"not read, since the drawing does not show it: {told}")
     if not outlines:
         near = [gap for _, gap in loose if gap is not None]
         hint = f"; ends of lines are {1e3 * min(near):.3g} mm apart and more (see join_tolerance)" if near else ""
+        hint += f"; {notes[-1]}" if found.hidden else ""
         raise BadGeometry(f"{name}: no closed polyline and no lines that close an outline on the layers read{hint}")
     if len(outlines) > MOST_BLOCKS:
         raise BadGeometry(f"{name}: more than {MOST_BLOCKS} blocks")

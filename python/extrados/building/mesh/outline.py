@@ -12,13 +12,16 @@ from extrados.building.geometry.polygons import signed_area
 JITTER = 0.33  # of the spacing: Delaunay triangles stay well shaped and keep to straight edges
 
 
-def fill_outline(drawing: str, unit: str | None, folder: Path, size: float, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes (n, 2) [m] and triangles (m, 3) within the outline of a DXF file, about `size` [m] apart."""
+def fill_outline(
+    drawing: str, unit: str | None, folder: Path, size: float, seed: int
+) -> tuple[np.ndarray, np.ndarray, tuple[str, ...]]:
+    """Nodes (n, 2) [m] and triangles (m, 3) within the outline of a DXF file, about `size` [m] apart, and what is to be said of
+    the file."""
     from matplotlib.path import Path as Ring
     from scipy.spatial import Delaunay, cKDTree
 
-    blocks = read_dxf(read(drawing, LARGEST_FILE, folder, ("structure", "outline")), unit).blocks
-    rings = sorted((np.asarray(p.points) for p in blocks), key=lambda r: -abs(signed_area(r)))
+    drawn = read_dxf(read(drawing, LARGEST_FILE, folder, ("structure", "outline")), unit)
+    rings = sorted((np.asarray(p.points) for p in drawn.blocks), key=lambda r: -abs(signed_area(r)))
     if not rings:
         raise BadGeometry(f"{drawing}: no closed polyline in the drawing")
     outer, holes = Ring(rings[0]), [Ring(r) for r in rings[1:]]
@@ -53,7 +56,7 @@ def fill_outline(drawing: str, unit: str | None, folder: Path, size: float, seed
             f"{drawing}: triangles of {size:g} m do not follow the outline (area {area.sum():.4g} m2 for "
             f"{wanted:.4g} m2): use smaller elements"
         )
-    return xy, triangles
+    return xy, triangles, drawn.notes
 
 
 def _divide(ring: np.ndarray, size: float) -> np.ndarray:

@@ -35,6 +35,7 @@ class Layout:
 def make_panel(panel: Panel, building: "Building", options: MeshOptions, seed: int | None = None) -> Mesh:
     """Mesh of a panel; `seed` overrides that of the options. BadGeometry says what does not fit."""
     seed = options.seed if seed is None else seed
+    notes: tuple[str, ...] = ()
     if panel.outline is not None:
         if options.element not in ("T3", "T6"):
             raise BadGeometry(
@@ -45,7 +46,7 @@ def make_panel(panel: Panel, building: "Building", options: MeshOptions, seed: i
         if options.size is None:
             raise BadGeometry("an outline needs a size of elements")
         size = options.size
-        xy, connect = fill_outline(panel.outline, panel.outline_unit, building.folder, size, seed)
+        xy, connect, notes = fill_outline(panel.outline, panel.outline_unit, building.folder, size, seed)
     else:
         width, height = panel.size
         size = options.size or min(width, height) / DEFAULT_DIVISIONS
@@ -66,7 +67,9 @@ def make_panel(panel: Panel, building: "Building", options: MeshOptions, seed: i
     base = "T3" if options.element in ("T3", "T6") else "Q4"
     if options.element in ("T6", "Q8"):
         xy, connect = add_middles(xy, base, connect)
-    return build_mesh(panel, building, options, xy, options.element, connect, size)
+    mesh = build_mesh(panel, building, options, xy, options.element, connect, size)
+    mesh.warnings.extend(notes)
+    return mesh
 
 
 def grid_lines(layout: Layout, axis: int) -> np.ndarray:

@@ -15,7 +15,7 @@ from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.chains import with_chains
 from extrados.building.geometry.compas import is_compas, read_compas
 from extrados.building.geometry.contacts import MOST_NEIGHBOURS, box_pairs, shortest_joint
-from extrados.building.geometry.drawing import Drawing, Layer, Polygon, parsed, read_json
+from extrados.building.geometry.drawing import UNITS, Drawing, Layer, Polygon, parsed, read_json
 from extrados.building.geometry.dxf import SAGITTA, read_dxf
 from extrados.building.geometry.inspection import Inspection, areas, inspect, refuse
 from extrados.building.geometry.linework import MOST_PAIRS
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from extrados.building.geometry.solids.assembly import SolidAssembly
 
 SOLID = (".obj", ".stl")  # files of solids, which have no plane section
+SMALL = 1e-4  # of the size of solids: the greatest tolerance that is a default
 MARKS = 0.01  # m: how far a line that marks joints may lie from their middles
 
 
@@ -169,7 +170,8 @@ class Blocks(Structure):
         "foundations at unlike levels", min_length=1, max_length=100,
     )  # fmt: skip
     contact_tolerance: Length = key(
-        1e-4, "faces nearer than this touch, overlaps less deep are let pass; `check` says which tolerance closes which gap",
+        1e-4, "faces nearer than this touch, overlaps less deep are let pass, contacts of solids that are narrower carry no force; "
+        "`check` says which tolerance closes which gap; the default of solids is at most a ten-thousandth of their size",
         gt=0, le=0.1,
     )  # fmt: skip
     depth: Length | None = key(None, "depth out of plane; default that of the file, or 1 m", gt=0)
@@ -252,8 +254,21 @@ class Blocks(Structure):
             meshes = read_obj(file.text(), name)
         else:
             meshes = read_stl(file.content, name) if sort == ".stl" else read_solids(value, name)
-        stones = stones_of(meshes, building.material.density, self.unit, name)
-        return touch(stones, self.contact_tolerance, self.foundation_levels, name)
+        tolerance = self.contact_tolerance
+        if "contact_tolerance" not in self.model_fields_set:
+            points = np.concatenate([mesh.points for mesh in meshes])
+            tolerance = min(tolerance, SMALL * UNITS[self.unit or "m"] * float(np.ptp(points, axis=0).max()))
+        try:
+            stones = stones_of(meshes, building.material.density, self.unit, name, tolerance)
+        except BadGeometry as error:
+            try:  # prisms of one depth may be concave: their section is parted in convex pieces
+                whole = value is not None and read_compas(value, name, self.unit)[1] is not None
+            except NoView:
+                whole = False
+            if not whole:
+                raise error from None
+            return super().solids(building)
+        return touch(stones, tolerance, self.foundation_levels, name)
 
     def inspection(self, folder: Path) -> Inspection | None:
         try:

@@ -39,7 +39,7 @@ def scene(desk: Desk) -> Reply:
         arrows, more = _loads(options.load, name, assembly, desk.anchor)
         made.words["loads"] = arrows
         handles += more
-    made.words["limit_analysis"] = name
+    made.words |= {"limit_analysis": name, "warnings": [*assembly.remarks, *assembly.notes]}
     return _seen(desk, made, handles, made.words, made.arrays)
 
 

@@ -68,6 +68,7 @@ export function sidebar(app, box) {
       parts.push(h("h3", {}, `Reactions ${of}`), h("table", { class: "numbers" }, h("thead", {}, h("tr", {}, h("th", {}, ""), h("th", {}, "across"), h("th", {}, "up"))), h("tbody", {}, scene.reactions.slice(0, 12).map((r) => h("tr", {}, h("th", { scope: "row" }, r.name), h("td", {}, quantity(r.x_N, "N", 3)), h("td", {}, quantity(r.y_N, "N", 3)))))));
     }
     if (scene.remark) parts.push(h("p", { class: "remark" }, scene.remark));
+    for (const text of scene.warnings ?? []) parts.push(h("p", { class: "remark" }, text));
     parts.push(loads());
     const focused = pages.answer.contains(document.activeElement) || pages.answer.contains(app.root.getRootNode().activeElement);
     if (!focused || !pages.answer.querySelector("input:focus")) pages.answer.replaceChildren(...parts);

@@ -13,13 +13,15 @@ from extrados.building.errors import BadGeometry
 from extrados.building.geometry.compas import FARTHEST, mesh_of, nodes_of
 from extrados.building.geometry.drawing import UNITS
 from extrados.building.geometry.solids.assembly import MOST_SOLIDS, MOST_TOLD, Stone
-from extrados.building.geometry.solids.polyhedra import ManyFaces, Polyhedron, hull, moments
+from extrados.building.geometry.solids.contacts import near_pairs
+from extrados.building.geometry.solids.polyhedra import ManyFaces, Polyhedron, fitted, hull, moments, overlap_depth
 
 MOST_VERTICES = 2_000_000
 MOST_CORNERS = 2_000  # of a convex body: bodies that overlap are compared edge by edge
 MOST_POINTS = 10_000  # of its mesh: Qhull takes the square of those on a circle, and hears no signal meanwhile
 CONVEX = 1e-4  # of its volume: what the hull of a convex body may have more
 PLANE = 1e-5  # how far facets of one face of a mesh may turn
+SAME_PLANE = 1e-12  # of facets that Qhull has in one plane
 MERGED = 1e-6  # of the size of a file: corners of STL triangles nearer than this are one
 
 
@@ -69,10 +71,8 @@ def read_obj(text: str, name: str) -> list[Mesh]:
     found: list[Mesh] = []
     for (stone, part), faces in rows.items():
         for piece in _pieces(faces):
-            used = sorted({k for f in piece for k in f})
-            number_of = {k: i for i, k in enumerate(used)}
             title = stone or part or f"block {len(found) + 1}"
-            found.append(Mesh(part or title, xyz[used], [[number_of[k] for k in f] for f in piece], stone or part))
+            found.append(Mesh(part or title, *_alone(xyz, piece), stone or part))
     if all(not m.stone for m in found):
         for k, mesh in enumerate(found, start=1):
             mesh.name = mesh.stone = f"block {k}"
@@ -94,25 +94,37 @@ def read_stl(content: bytes, name: str) -> list[Mesh]:
         faces = [f for f in inverse.reshape(-1, 3).tolist() if len(set(f)) == 3]
         pieces = _pieces(faces)
         for piece in pieces:
-            used = sorted({k for f in piece for k in f})
-            number_of = {k: i for i, k in enumerate(used)}
             own = title if title and len(pieces) == 1 else f"block {len(found) + 1}"
-            found.append(Mesh(own, corners[first[used]], [[number_of[k] for k in f] for f in piece], own))
+            found.append(Mesh(own, *_alone(corners[first], piece), own))
     return found
 
 
 def read_solids(value: Any, name: str) -> list[Mesh]:
-    """Meshes of the JSON of a COMPAS assembly, a stone for each node; supports are ground."""
+    """Meshes of the JSON of a COMPAS assembly, a stone for each node, of whose mesh what hangs together is a convex part; supports
+    are ground."""
     nodes = nodes_of(value, name)
     found = []
     for key, node in nodes.items():
         points, faces = mesh_of(node, f"{name}: block {key}")
-        found.append(Mesh(f"block {key}", points, faces, f"block {key}", bool(node.get("is_support"))))
+        title, pieces = f"block {key}", _pieces(faces)
+        for k, piece in enumerate(pieces, start=1):
+            own = title if len(pieces) == 1 else f"part {k} of {title}"
+            found.append(Mesh(own, *_alone(points, piece), title, bool(node.get("is_support"))))
     return found
 
 
-def stones_of(meshes: Sequence[Mesh], density: float, unit: str | None, name: str) -> list[Stone]:
-    """Stones of meshes in a unit (metres unless one is given), of a density [kg/m^3].
+def _alone(points: np.ndarray, faces: Sequence[Sequence[int]]) -> tuple[np.ndarray, list[list[int]]]:
+    """The points that faces name, and the faces by their numbers among these."""
+    used = sorted({k for face in faces for k in face})
+    number_of = {k: i for i, k in enumerate(used)}
+    return points[used], [[number_of[k] for k in face] for face in faces]
+
+
+def stones_of(
+    meshes: Sequence[Mesh], density: float, unit: str | None, name: str, tolerance: float = 0.0
+) -> list[Stone]:
+    """Stones of meshes in a unit (metres unless one is given), of a density [kg/m^3]; tolerance [m]: of contacts, half of
+    which corners may lie off the plane of their face, and of a convex body.
 
     BadGeometry names the meshes that are open, flat or not convex.
     """
@@ -124,18 +136,31 @@ def stones_of(meshes: Sequence[Mesh], density: float, unit: str | None, name: st
     wrong: list[str] = []
     for mesh in meshes:
         try:
-            stones.setdefault(mesh.stone, []).append(convex_body(scale * mesh.points, mesh.faces))
+            stones.setdefault(mesh.stone, []).append(convex_body(scale * mesh.points, mesh.faces, 0.5 * tolerance))
             grounds[mesh.stone] = mesh.ground
         except ValueError as error:
             wrong.append(f"{mesh.name} {error}")
+    wrong += [fault for title, parts in stones.items() if (fault := _within_itself(title, parts, tolerance))]
     if wrong:
         more = f"; and {len(wrong) - MOST_TOLD} more" if len(wrong) > MOST_TOLD else ""
         raise BadGeometry(f"{name}: " + "; ".join(wrong[:MOST_TOLD]) + more)
     return [Stone(title, parts, density, grounds[title]) for title, parts in stones.items()]
 
 
-def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]]) -> Polyhedron:
-    """The convex body within a closed mesh; ValueError says in words why there is none."""
+def _within_itself(title: str, parts: Sequence[Polyhedron], tolerance: float) -> str:
+    """The fault of a stone whose parts overlap by more than a tolerance [m] and so would weigh twice; else nothing."""
+    if len(parts) < 2:
+        return ""
+    low, high = (np.array([getattr(part, end) for part in parts]) for end in ("low", "high"))
+    pairs = near_pairs(low, high, np.arange(len(parts)), 0.0)
+    depth = max((overlap_depth(parts[i], parts[j]) for i, j in pairs.tolist()), default=0.0)
+    least = max(tolerance, MERGED * float(np.ptp([low.min(axis=0), high.max(axis=0)], axis=0).max()))
+    return f"{title}: two of its parts overlap by {1e3 * depth:.3g} mm" if depth > least else ""
+
+
+def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]], within: float = 0.0) -> Polyhedron:
+    """The convex body around a closed mesh that lies within a distance [m] of it, faces with corners so far off a plane made
+    one; ValueError says in words why there is none."""
     if len(points) > MOST_POINTS:
         raise ValueError(f"is a mesh of {len(points)} points, at most {MOST_POINTS} are looked at: draw it coarser")
     around_edge: dict[tuple[int, int], list[int]] = {}
@@ -152,7 +177,8 @@ def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]]) -> Polyhedro
     volume = abs(moments(points, triangles)[0])
     fine = f"is of more than {MOST_CORNERS} corners, the most that are looked at: draw it coarser"
     try:
-        whole = hull(points, PLANE, 2 * MOST_CORNERS)  # more faces have more corners, by Euler
+        # more faces have more corners, by Euler; faces are made one by the fit of all of their corners where that is known
+        whole = hull(points, SAME_PLANE if within > 0.0 else PLANE, 2 * MOST_CORNERS)
     except ManyFaces:
         raise ValueError(fine) from None
     except ValueError:
@@ -160,12 +186,23 @@ def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]]) -> Polyhedro
     if len(whole.vertices) > MOST_CORNERS:
         raise ValueError(fine)
     around = moments(whole.vertices, whole.triangles)[0]
-    if volume < (1.0 - CONVEX) * around:
+    if volume < (1.0 - CONVEX) * around and _dent(whole, points, triangles) > within:
         raise ValueError(
             f"is not convex: its hull has {100.0 * (around / volume - 1.0):.3g} % more volume; cut it into convex parts, in an OBJ "
             "as groups `g` of one object `o`"
         )
-    return whole
+    return fitted(whole, within)
+
+
+def _dent(whole: Polyhedron, points: np.ndarray, triangles: np.ndarray) -> float:
+    """How deep a mesh lies below the hull around it [m], at its corners and in the middle of its edges: along an edge from hull
+    to hull the depth is at most twice as much."""
+    middles = 0.5 * (points[triangles] + points[np.roll(triangles, -1, axis=1)]).reshape(-1, 3)
+    places = np.concatenate([points[np.unique(triangles)], middles])
+    depth = np.full(len(places), np.inf)
+    for normal, offset in zip(whole.normals, whole.offsets, strict=True):
+        depth = np.minimum(depth, offset - places @ normal)
+    return float(depth.max())
 
 
 def _edges(face: Sequence[int]) -> list[tuple[int, int]]:

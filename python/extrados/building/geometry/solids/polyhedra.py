@@ -10,6 +10,8 @@ from scipy.spatial import ConvexHull, QhullError
 
 FLAT = 1e-7  # facets of a hull whose normals and offsets (over its size) differ less are one face
 
+SAME_WAY = 0.7  # cosine of the angle by which parts of one measured face may differ
+
 AT_ONCE = 2_000_000  # corners along axes that are looked at together
 
 
@@ -26,20 +28,47 @@ class Polyhedron:
     @cached_property
     def normals(self) -> np.ndarray:
         """Outward unit normals of the faces (nf, 3) (Newell's, which a vertex off the plane hardly turns)."""
+        return self._newell / np.sqrt((self._newell * self._newell).sum(axis=1))[:, None]
+
+    @cached_property
+    def areas(self) -> np.ndarray:
+        """Area of each face (nf) [m^2]."""
+        return 0.5 * np.sqrt((self._newell * self._newell).sum(axis=1))
+
+    @cached_property
+    def _newell(self) -> np.ndarray:
+        """Newell's vector of each face (nf, 3): twice its area, along its normal [m^2]."""
         arm = self.vertices[self.triangles] - self.vertices[self.triangles[:, :1]]
         x, y = arm[:, 1], arm[:, 2]
         across = x[:, [1, 2, 0]] * y[:, [2, 0, 1]] - x[:, [2, 0, 1]] * y[:, [1, 2, 0]]
         start = np.cumsum([0, *(len(face) - 2 for face in self.faces)])[:-1]
-        found = np.add.reduceat(across, start)
-        return found / np.sqrt((found * found).sum(axis=1))[:, None]
+        return np.add.reduceat(across, start)
 
     @cached_property
     def offsets(self) -> np.ndarray:
         """Distance of each face from the origin along its normal (nf) [m]."""
-        numbers = np.concatenate([np.array(face) for face in self.faces])
-        counts = np.array([len(face) for face in self.faces])
+        numbers, counts, first = self._corners
         heights = (self.vertices[numbers] * np.repeat(self.normals, counts, axis=0)).sum(axis=1)
-        return np.add.reduceat(heights, np.cumsum([0, *counts[:-1]])) / counts
+        return np.add.reduceat(heights, first) / counts
+
+    @cached_property
+    def middles(self) -> np.ndarray:
+        """Mean of the corners of each face (nf, 3) [m]."""
+        numbers, counts, first = self._corners
+        return np.add.reduceat(self.vertices[numbers], first, axis=0) / counts[:, None]
+
+    @cached_property
+    def widths(self) -> np.ndarray:
+        """Area of each face over its diameter (nf) [m], which is twice the way from its middle to its farthest corner."""
+        numbers, counts, first = self._corners
+        arm = self.vertices[numbers] - np.repeat(self.middles, counts, axis=0)
+        return 0.5 * self.areas / np.maximum.reduceat(np.linalg.norm(arm, axis=1), first)
+
+    @cached_property
+    def _corners(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The vertices of all faces in a row, how many each face has, and where it begins."""
+        counts = np.array([len(face) for face in self.faces])
+        return np.concatenate([np.array(face) for face in self.faces]), counts, np.cumsum([0, *counts[:-1]])
 
     @cached_property
     def triangles(self) -> np.ndarray:
@@ -127,6 +156,52 @@ def hull(points: np.ndarray, flat: float = FLAT, most: float = np.inf) -> Polyhe
     number = np.full(len(points), -1)
     number[used] = np.arange(len(used))
     return Polyhedron(points[used], tuple(tuple(number[f].tolist()) for f in faces))
+
+
+def fitted(body: Polyhedron, within: float) -> Polyhedron:
+    """The body with adjacent faces made one where all of their corners lie within a distance [m] of the plane fitted to them:
+    the triangles of a measured face. No corner moves; those within a face are dropped.
+
+    The least bent edges come first. Newell's vector of two faces together is the sum of theirs.
+    """
+    if within <= 0.0:
+        return body
+    beside = {edge: k for k, face in enumerate(body.faces) for edge in zip(face, (*face[1:], face[0]), strict=True)}
+    pairs = np.array([(k, beside[j, i]) for (i, j), k in beside.items() if i < j and (j, i) in beside])
+    bent = (body.normals[pairs[:, 0]] * body.normals[pairs[:, 1]]).sum(axis=1)
+    vector = {k: normal for k, normal in enumerate(body.normals * body.areas[:, None])}
+    group = list(range(len(body.faces)))
+    members = {k: [k] for k in group}
+    corners = {k: set(face) for k, face in enumerate(body.faces)}
+    for one, two in pairs[np.argsort(-bent, kind="stable")][np.sort(-bent) < -SAME_WAY].tolist():
+        a, b = group[one], group[two]
+        if a == b:
+            continue
+        total, both = vector[a] + vector[b], corners[a] | corners[b]
+        heights = body.vertices[list(both)] @ (total / np.linalg.norm(total))
+        if np.abs(heights - heights.mean()).max() > within or _loop(body, [*members[a], *members[b]]) is None:
+            continue
+        vector[a], corners[a] = total, both
+        members[a] += members[b]
+        for k in members.pop(b):
+            group[k] = a
+    loops = [loop for f in members.values() if (loop := _loop(body, f) if len(f) > 1 else body.faces[f[0]]) is not None]
+    used = sorted({corner for loop in loops for corner in loop})  # a corner within a face is none any more
+    number = {corner: k for k, corner in enumerate(used)}
+    return Polyhedron(body.vertices[used], tuple(tuple(number[corner] for corner in loop) for loop in loops))
+
+
+def _loop(body: Polyhedron, faces: list[int]) -> tuple[int, ...] | None:
+    """The outline of faces that hang together; None where it is not one ring."""
+    edges = {edge for k in faces for edge in zip(body.faces[k], (*body.faces[k][1:], body.faces[k][0]), strict=True)}
+    rim = {i: j for i, j in edges if (j, i) not in edges}
+    start = next(iter(rim), None)
+    if start is None:
+        return None
+    ring = [start]
+    while (here := rim.get(ring[-1])) not in (start, None) and len(ring) <= len(rim):
+        ring.append(here)
+    return tuple(ring) if len(ring) == len(rim) else None
 
 
 def cut(body: Polyhedron, point: np.ndarray, normal: np.ndarray, slack: float = 1e-9) -> Polyhedron | None:
