@@ -24,6 +24,7 @@ from extrados.core.errors import CoreError
 from extrados.core.restraints import FREE
 from extrados.limit.linkage import laden
 from extrados.results import codes as out
+from extrados.results.limit import DILATANT
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
@@ -195,7 +196,10 @@ def _of_building(context: Context) -> tuple[Capacity, tuple[np.ndarray, np.ndarr
         multiplier, field, slides = weaker
         why, without = "limit analysis finds a weaker mechanism", "it"
         if slides:
-            why, without = f"its joints slide, at a friction of {building.joints.friction},", "sliding"
+            why, without = (
+                f"its joints slide, at a friction of {building.joints.friction} ({DILATANT}),",
+                "sliding",
+            )
         elif building.material.compressive_strength is not None:
             why, without = "its stones crush at the hinges", "crushing"
         context.warnings.append(

@@ -54,7 +54,13 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             label=f"greatest: {r.optimum_value:.4g}",
         )
         for gap in r.gaps:
-            ax.plot(gap.value, 0.0, "x", color=style.THRUST, markersize=4)
+            ax.plot(gap.value, 0.0, "x" if gap.status == "cannot-stand" else ".", color=style.THRUST, markersize=4)
+        if r.upper_bound_values:
+            bounded = np.isin(value, r.upper_bound_values)
+            ax.plot(
+                value[bounded], tilt[bounded], "v", markersize=6, fillstyle="none", color=style.HINGE, zorder=4,
+                label="upper bound (dilatant friction)",
+            )  # fmt: skip
         ax.set_ylim(bottom=0.0)
         ax.set_xlabel(f"{spoken(r.vary)} [{r.unit}]" if r.unit else spoken(r.vary))
         ax.set_ylabel("tilt at collapse [deg]")
@@ -62,7 +68,8 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         found = [
             (
                 style.save(fig, folder, f"{name}-curve"),
-                "Tilt at collapse; dotted: changes of mechanism; crosses: values without a structure that stands.",
+                "Tilt at collapse; dotted: changes of mechanism; crosses: values at which the structure cannot stand; "
+                "points on the axis: values without an answer or without a limit.",
             )
         ]
     if len(run.array(name, "example")):
