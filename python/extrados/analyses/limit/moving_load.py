@@ -264,6 +264,8 @@ def run(context: Context, options: MovingLoad) -> Result:
             "train": train.name,
             "live_load_factor": factors.live * factors.dynamic,
         }
+    if job.associated and friction is not None:
+        asked["dilating_joints"] = reduced.dilating(mechanism)
     r = out.MovingLoad(
         chain=chain,
         collapse_load_N=float(capacity[k]),
@@ -273,7 +275,6 @@ def run(context: Context, options: MovingLoad) -> Result:
         worst_way="+x" if ways[k] > 0 else "-x",
         hinges=[out.NamedHinge(joint=j, side=side, name=assembly.joint_names[j]) for j, side in mechanism.hinges],
         sliding_joints=mechanism.sliding,
-        dilating_joints=reduced.dilating(mechanism) if job.associated and friction is not None else None,
         places_without_limit=int(np.isinf(factor).sum()),
         greatest_compression_N=float(np.nanmax(state.normal)),
         **tie_rows(building, dead, state),

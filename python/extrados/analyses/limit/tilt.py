@@ -78,7 +78,6 @@ def run(context: Context, options: Tilt) -> Result:
     state, mechanism = answer.collapse_state, answer.mechanism
     result = Result("tilt")
     fracture = _fracture(building, options, answer, result) if options.fracture else {}
-    dilates = limit.associated and limit.friction is not None
     dilating = {1: limit.dilating(mechanism), -1: limit.dilating(answer.back_mechanism)}
     sliding = _without_dilatancy(limit, answer, dilating, result)
     found = out.Tilt(
@@ -105,8 +104,6 @@ def run(context: Context, options: Tilt) -> Result:
         duality_gap=answer.gap,
         **fracture,
         **sliding,
-        dilating_joints=dilating[1] if dilates else None,
-        dilating_joints_opposite=dilating[-1] if dilates else None,
     )
     result.results = found
     result.arrays |= {
@@ -202,6 +199,8 @@ def _without_dilatancy(
     """Least states without dilatancy and their certificates: of both senses where the deck asks for that rule, and beside
     the upper bound of associated friction of each sense in whose mechanism pressed joints slide."""
     told: dict[str, object] = {}
+    if limit.associated and limit.friction is not None:
+        told |= {"dilating_joints": dilating[1], "dilating_joints_opposite": dilating[-1]}
     beside = limit.without_dilatancy() if limit.associated and any(dilating.values()) else limit
     for direction, end in ((1, ""), (-1, "_opposite")):
         try:

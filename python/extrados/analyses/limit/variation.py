@@ -157,8 +157,8 @@ def _evaluate(
             cracked = state.gamma if found is None else found.gamma
             if cracked <= 0.0:
                 raise NoEquilibrium("cannot stand upright")
-        except (NoEquilibrium, Refused) as error:
-            cracked = None
+        except (NoEquilibrium, NoAnswer, Refused) as error:
+            cracked = 0.0 if isinstance(error, NoEquilibrium) else None
             notes.append(f"with the buttress cracked: {error}")
     return Outcome(
         state.gamma, cracked, signature(assembly, mechanism), abs(state.gamma - mechanism.upper_bound), "",
