@@ -8,6 +8,8 @@ from extrados.plots import style
 from extrados.plots.limit import section
 from extrados.results.store import Stored
 
+MOST_NAMED = 8  # mechanisms in a legend
+
 
 def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Capacity curve with numbered mechanisms, and one section of each mechanism."""
@@ -16,7 +18,8 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     tilt = np.degrees(np.arctan(gamma))
     with style.figure(7.5, 4.2) as (fig, (ax,)):
         ax.plot(value, tilt, "-", color=style.EDGE, linewidth=1.0, zorder=2)
-        for k in range(1, int(number.max()) + 1):
+        seen = [k for k in range(1, int(number.max()) + 1) if (number == k).any()]
+        for k in seen:
             here = number == k
             ax.plot(
                 value[here],
@@ -24,7 +27,7 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 "o",
                 markersize=3.5,
                 color=section.CHAIN_COLOURS[(k - 1) % len(section.CHAIN_COLOURS)],
-                label=f"mechanism {k}",
+                label=f"mechanism {k}" if k in seen[:MOST_NAMED] else None,
                 zorder=3,
             )
         if "fractured" in run.arrays[name]:
