@@ -227,3 +227,18 @@ def test_a_survey_with_an_open_joint_says_what_closing_it_gives() -> None:
     assert "with all gaps closed" in open_joint.results.certificate
     told = float(open_joint.results.certificate.split("to +x is ")[1].split(" g")[0])
     assert told == pytest.approx(whole.results.collapse_acceleration_g, rel=1e-3)
+
+
+def test_an_assessment_uses_the_lower_end() -> None:
+    """The row of limit analysis has the least state for its capacity, and is open between it and the upper bound."""
+    deck = make_deck({
+        "structure": coursed(2), "joints": {"friction": 0.65},
+        "motion": {"kind": "sine-pulse", "amplitude": "0.45 g", "period": 0.5},
+        "analysis": {"kind": "assess", "strategies": ["tilt"]},
+    })  # fmt: skip
+    (result,) = run_analyses(Context(deck, threads=1))
+    (row,) = result.results.verdicts
+    tilt = run(coursed(2), kind="tilt").results
+    least = min(tilt.interval(opposite)[0] for opposite in (False, True))
+    assert row.outcome == "open" and row.capacity == pytest.approx(least) and row.margin == pytest.approx(least / 0.45)
+    assert DILATANT in row.statement
