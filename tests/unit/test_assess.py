@@ -10,7 +10,7 @@ import pytest
 from test_every_strategy import quick_save
 
 import extrados
-from extrados.analyses.assess import driver, hazard, sensitivity, strategies
+from extrados.analyses.assess import driver, hazard, reasons, sensitivity, strategies
 from extrados.analyses.assess.reasons import Facts
 from extrados.analyses.assess.words import conclusion, table_of
 from extrados.analyses.context import Context
@@ -296,7 +296,8 @@ def verdict(
 ) -> StrategyVerdict:
     keys = {
         "label": strategy, "part": None, "status": "ok", "reason": "", "axis": "acceleration", "unit": "g", "margin": None,
-        "margin_at_least": None, "margin_below": None, "parameters": "", "assumes": "", "statement": "",
+        "margin_at_least": None, "margin_below": None, "parameters": "", "assumes": "", "statement": "", "bound": None,
+        "violated": [],
     }  # fmt: skip
     return StrategyVerdict(strategy=strategy, outcome=outcome, capacity=capacity, demand=demand, **(keys | more))
 
@@ -315,11 +316,62 @@ def test_relations_and_overall_statement() -> None:
     assert overall == "stands under all" and "1.25" in words
     split = facts([verdict("tilt", "collapses"), verdict("dem", "stands")])
     overall, words = conclusion(split, [], [("tilt", "dem")], "block", (None, None), list(split.rows.values()))
-    assert overall == "depends" and "No rule finds a reason" in words
+    assert overall == "depends" and "Unexplained differences" in words
     assert far[1].margin_told() == "above 2" and "tilt" in table_of(far)
     close = verdict("rocking", "stands", margin_at_least=1.1071, margin_below=1.1124)
     assert close.margin_told() == "1.107 to 1.112", "two factors that differ are not told as one"
     assert verdict("dem", "stands").margin_told("") == ""
+
+
+def test_a_proof_of_collapse_overrules_all_else() -> None:
+    rows = [
+        verdict("tilt", "cannot-stand", 0.0, 0.4, margin=0.0, statement="Proof."),
+        verdict("sla", "stands", 0.5, 0.4, margin=1.25),
+    ]
+    found = facts(rows)
+    overall, words = conclusion(found, [], found.pairs(), "arch", (0.0, "tilt"), rows)
+    assert overall == "cannot stand" and "overrules the opposite result of sla" in words and "Proof." in words
+    assert found.relation("tilt", "sla") == "disagree"
+    assert facts([rows[0], verdict("dem", "collapses")]).relation("tilt", "dem") == "agree"
+
+
+@pytest.mark.parametrize(
+    "structure",
+    [
+        {"kind": "arch", "radius": 10.0, "thickness": 0.5, "embrace": 180, "voussoirs": 11},
+        {"kind": "blocks", "block": [{"points": [[0, 0], [1, 0], [4, 4], [3, 4]]}]},
+    ],
+)
+def test_what_cannot_stand_is_the_answer_of_an_assessment(structure: dict) -> None:
+    """A certificate of limit analysis is an answer, never "no strategy has a verdict"."""
+    run = extrados.run({"structure": structure, "motion": PULSE, "analysis": {"kind": "assess", "budget": 5}})
+    r = run["assess"]
+    assert r.overall == "cannot stand" and r.least_margin == 0.0
+    row = next(v for v in r.verdicts if v.strategy == "tilt")
+    assert (row.status, row.outcome, row.margin, row.capacity) == ("ok", "cannot-stand", 0.0, 0.0)
+    verdict = run.analyses[0]["verdict"]
+    assert (verdict["outcome"], verdict["ratio"]) == ("cannot-stand", 0.0)
+    assert not [v for v in r.verdicts if v.outcome == "stands"], [v.statement for v in r.verdicts]
+    assert not [v for v in r.verdicts if v.status == "failed"], [v.reason for v in r.verdicts]
+
+
+def test_a_strategy_that_fails_leaves_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever a strategy, a rule or a closer look raises, the table stays."""
+
+    def breaks(*_: object) -> None:
+        raise ZeroDivisionError("planted")
+
+    monkeypatch.setattr(
+        strategies, "ALL", tuple(replace(s, choose=breaks) if s.name == "sla" else s for s in strategies.ALL)
+    )
+    monkeypatch.setattr(driver._Work, "refine", breaks)
+    monkeypatch.setattr(reasons, "RULES", (breaks, *reasons.RULES))
+    run = extrados.run(deck(assess={"strategies": ["tilt", "rocking", "sla"]}))
+    r = run["assess"]
+    rows = {v.strategy: v for v in r.verdicts}
+    assert rows["sla"].status == "failed" and "planted" in rows["sla"].reason
+    assert rows["tilt"].status == rows["rocking"].status == "ok" and r.overall != "open"
+    assert sum("planted" in text for text in r.not_done) == 2
 
 
 # ----- sensitivity
@@ -432,3 +484,25 @@ def test_elements_that_a_millionth_turns_are_open(monkeypatch: pytest.MonkeyPatc
     assert rows["dem"].outcome == "open" and "last digits" in rows["dem"].statement
     (one,) = [x for x in r.reasons if x.rule == "last-digits"]
     assert one.numbers["displacement_nudged_m"] == 9.0
+
+
+@pytest.mark.parametrize(
+    "structure",
+    [
+        {"kind": "stack", "lower_width": 1.0, "lower_height": 1.5, "upper_width": 0.6, "upper_height": 2.0},
+        {
+            "kind": "wall",
+            "unit_length": 0.4,
+            "unit_height": 0.2,
+            "thickness": 0.2,
+            "height": 0.8,
+            "legs": [{"length": 1.2}, {"length": 0.8}],
+        },
+    ],
+)
+def test_what_strategies_cannot_look_at_ends_no_assessment(structure: dict) -> None:
+    run = extrados.run({"structure": structure, "motion": PULSE, "analysis": [{"kind": "assess", "budget": 5}]})
+    r = run["assess"]
+    rows = {v.strategy: v for v in r.verdicts}
+    assert rows["tilt"].status == "ok" and r.overall != "open"
+    assert not [v.reason for v in r.verdicts if "internal" in v.reason] + [n for n in r.not_done if "internal" in n]

@@ -10,7 +10,9 @@ import pytest
 from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
 from extrados.decks.reader import DeckError, make_deck
+from extrados.explore.stored import shown
 from extrados.results.model import Result
+from extrados.running.run import Run, compute
 
 ARCH = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 150.0, "voussoirs": 20}
 VAULT = {"kind": "vault", "preset": "dejong-a"}
@@ -297,3 +299,16 @@ def test_a_wall_that_slides_as_a_whole_says_so() -> None:
     wall = {"kind": "brickwork", "units": 8, "courses": 2, "unit_length": 0.5, "unit_height": 0.25}
     answer = run(wall, kind="tilt", joints={"friction": 0.2}).answer
     assert "at its whole base (8 joints)" in answer and "more" not in answer
+
+
+def test_what_cannot_stand_moves_on_the_page(tmp_path: Path) -> None:
+    """A stored run of any kind that cannot stand shows the collapse motion, which goes down."""
+    leaning = {"kind": "blocks", "block": [{"points": [[0, 0], [1, 0], [4, 4], [3, 4]]}]}
+    pulse = {"kind": "sine-pulse", "amplitude": "0.1 g", "period": 1.0}
+    kinds = [{"kind": "tilt"}, {"kind": "rocking"}]
+    made = compute(Context(make_deck({"structure": leaning, "motion": pulse, "analysis": kinds}), threads=1))
+    made.write(tmp_path / "out", figures=False)
+    for name in ("tilt", "rocking"):
+        words, arrays = shown(Run.read(tmp_path / "out"), name)
+        assert words["body"]["sort"] == "stones"
+        assert arrays["body_pose"][-1, 0, 1] < arrays["body_pose"][0, 0, 1]

@@ -47,6 +47,20 @@ def test_the_worst_comes_first(folder: Path, tmp_path: Path, monkeypatch: pytest
     assert not (tmp_path / "out.checkpoint").exists()
 
 
+def test_what_cannot_stand_comes_first(folder: Path, tmp_path: Path) -> None:
+    """A proof of collapse under self-weight is the worst verdict, and the command is done: exit code 0."""
+    leaning = '[structure]\nkind = "blocks"\n[[structure.block]]\nname = "leaning"\npoints = [[0, 0], [1, 0], [4, 4], [3, 4]]\n'
+    (folder / "z-leaning.toml").write_text(leaning)
+    rows = survey.assess_folder(folder, tmp_path / "out", figures=False)
+    assert [r.building for r in rows] == ["z-leaning", "w0.8", "w1.2", "w2.0"]
+    assert (rows[0].overall, rows[0].least_margin, rows[0].status) == ("cannot stand", 0.0, "ok")
+    deck = tmp_path / "deck.toml"
+    deck.write_text(leaning + '[[analysis]]\nkind = "tilt"\n')
+    done = CliRunner().invoke(cli.app, ["run", str(deck), "--out", str(tmp_path / "one")])
+    assert done.exit_code == 0 and "cannot stand" in done.output
+    assert (tmp_path / "one" / "figures" / "tilt-self-weight.png").exists()
+
+
 def test_it_goes_on_where_it_was_stopped(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     done: list[str] = []
     one = survey.SurveyJob._one

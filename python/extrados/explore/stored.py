@@ -9,6 +9,7 @@ import numpy as np
 from extrados.decks.reader import Deck
 from extrados.kinds import STRUCTURES, table
 from extrados.results.store import Stored, StoreError
+from extrados.results.verdict import SelfWeight
 from extrados.schema.constants import GRAVITY
 from extrados.schema.table import Table
 
@@ -114,8 +115,9 @@ def shown(run: Stored, name: str | None) -> tuple[dict[str, Any], Arrays]:
     kind = run.analysis(name)["kind"]
     arrays = {key: array.data for key, array in run.arrays[name].items()}
     made = _Maker(run, name, arrays)
+    draw = made.self_weight if isinstance(run[name], SelfWeight) else getattr(made, kind.replace("-", "_"), made.others)
     try:
-        getattr(made, kind.replace("-", "_"), made.others)()
+        draw()
     except KeyError as error:
         raise StoreError(f"the results of {name} lack the array {error}") from None
     results = run.analysis(name)["results"]
@@ -179,6 +181,15 @@ class _Maker:
             if name not in self.arrays:
                 raise KeyError(name)
             self.out[name] = self.arrays[name]
+
+    def self_weight(self) -> None:
+        """The collapse motion of a certificate, up to a tenth of the structure's size."""
+        velocity, centroid = self.arrays["collapse_velocity"], self.arrays["centroid"]
+        size = float(np.ptp(self.arrays["outline"], axis=0).max())
+        share = np.linspace(0.0, 1.0, MOST_STATES)
+        step = 0.1 * size / max(float(np.hypot(velocity[:, 0], velocity[:, 1]).max()), 1e-300)
+        pose = np.concatenate([centroid, np.zeros((len(centroid), 1))], axis=1) + step * share[:, None, None] * velocity
+        self._moving(share, pose, "", "share of the motion shown")
 
     def _moving(self, time: np.ndarray, pose: np.ndarray, unit: str, label: str, **lines: np.ndarray) -> None:
         """A body of stones that moves along `time`."""

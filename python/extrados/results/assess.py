@@ -3,10 +3,10 @@
 from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
-from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judge
+from extrados.results.verdict import Bound, Demand, KindResults, Outcome, Verdict, judge
 
 Axis = Literal["acceleration", "pulse", "displacement", "probability", "check"]
-Overall = Literal["stands under all", "collapses under all", "depends", "open"]
+Overall = Literal["stands under all", "collapses under all", "cannot stand", "depends", "open"]
 Agreement = Literal["agree", "apart", "disagree", "open"]
 
 
@@ -37,6 +37,10 @@ class StrategyVerdict(ResultModel):
     capacity: float | None = fact("what is borne, in `unit`")
     unit: str = fact("unit of both")
     outcome: Outcome = fact("stands, collapses, cannot-stand, open or not-applicable")
+    bound: Bound | None = fact("capacity as a bound: exact, upper or lower; null: an estimate")
+    violated: list[str] = fact(
+        "assumptions of the strategy that were checked and do not hold; the outcome is then open"
+    )
     margin: float | None = fact("factor on the hazard at which the verdict turns; null: not known")
     margin_at_least: float | None = fact("greatest factor at which it was seen to stand; null: none")
     margin_below: float | None = fact("least factor at which it was seen to fall; null: none")
@@ -125,5 +129,8 @@ class Assess(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The overall answer; the capacity is the least factor on the hazard."""
-        outcome: Outcome = {"stands under all": "stands", "collapses under all": "collapses"}.get(self.overall, "open")  # type: ignore[assignment]
+        decided: dict[str, Outcome] = {
+            "stands under all": "stands", "collapses under all": "collapses", "cannot stand": "cannot-stand",
+        }  # fmt: skip
+        outcome = decided.get(self.overall, "open")
         return judge(self.statement, 1.0, self.least_margin, "hazard", outcome)

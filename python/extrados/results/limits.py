@@ -35,8 +35,8 @@ LIMITS: dict[str, tuple[str, str]] = {
     ),
     "local-mechanism": (
         "A part of the building turns as rigid bodies about hinges, by the kinematic analysis of codes.",
-        "It holds for the mechanism that was named; others may be weaker. Clauses marked `verify clause` were not read in the "
-        "standard.",
+        "The result holds for this mechanism; others may be weaker. A rule outside its scope does not apply, which its row says. Clauses "
+        "marked `verify clause` were not read in the standard.",
     ),
     "sla": (
         "Elastic stones or walls whose joints or elements crack one after the other under a growing load, in the plane.",

@@ -32,7 +32,8 @@ COLUMNS = ("building", "overall", "least_margin", "strategy", "status", "stateme
 
 @dataclass(frozen=True)
 class Assessed:
-    """One building of the folder; least_margin: NaN where none is known; folder: its results."""
+    """One building of the folder; least_margin: critical scale factor of the hazard, NaN where none is known; folder: its
+    results."""
 
     building: str
     overall: str
@@ -44,10 +45,13 @@ class Assessed:
 
     @property
     def order(self) -> tuple[int, float]:
-        """The worst first: what has no answer, then by the least margin."""
-        if self.status != "ok":
+        """The worst first: buildings that cannot stand, those without an answer or a verdict, the others by the least
+        margin, last those that stand by a margin that is not known."""
+        if self.overall == "cannot stand":
             return 0, 0.0
-        return (1, self.least_margin) if np.isfinite(self.least_margin) else (2, 0.0)
+        if np.isfinite(self.least_margin):
+            return 2, self.least_margin
+        return (3, 0.0) if self.status == "ok" and self.overall == "stands under all" else (1, 0.0)
 
 
 @dataclass(frozen=True)

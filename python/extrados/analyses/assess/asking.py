@@ -10,12 +10,14 @@ import tomlkit
 from extrados import interrupts, kinds
 from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.assess.strategies import Strategy
+from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import MotionDemand, concluded
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.run import run_one
 from extrados.analyses.statistics.summaries import wilson
 from extrados.building.errors import WHOLE
 from extrados.core.calls import within
+from extrados.core.errors import Cancelled
 from extrados.decks.reader import DeckError, make_deck
 from extrados.results.assess import StrategyVerdict
 from extrados.results.limit import Tilt, judge_dilatant
@@ -23,7 +25,7 @@ from extrados.results.model import Result
 from extrados.results.shell import Pushover
 from extrados.results.sla import Sla
 from extrados.results.statistics import Ensemble, OverLevels
-from extrados.results.verdict import judge_acceleration
+from extrados.results.verdict import SelfWeight, judge_acceleration
 
 #: A strategy is stopped where it takes this many budgets
 STOPPED_AFTER = 2.0
@@ -34,7 +36,11 @@ class Interrupted(Exception):
 
 
 class OutOfTime(Exception):
-    """The clock has stopped a strategy."""
+    """The time limit has stopped a strategy."""
+
+
+#: Errors that end a whole assessment; any other ends one strategy
+ENDING = (Interrupted, Cancelled, Unfinished, MemoryError)
 
 
 @dataclass
@@ -123,6 +129,7 @@ def row_of(
     r = result.results
     outcome, margin, low, high = None, None, None, None
     verdict = r.judged(demand)
+    bound, violated = verdict.bound, verdict.violated
     wanted, borne, unit, statement = verdict.demand, verdict.capacity, verdict.unit, verdict.statement
     if isinstance(r, Ensemble | OverLevels):
         wanted, borne, unit, outcome, statement, low, high = _probability(r, acceptable)
@@ -138,11 +145,13 @@ def row_of(
         low = verdict.ratio  # it bears so much at least
         if verdict.outcome == "stands":
             statement = f"The run passed no peak, what it bears in the end is not known. {statement}"
-    elif strategy.axis in ("acceleration", "pulse", "check"):
+    elif strategy.axis in ("acceleration", "pulse", "check") or isinstance(r, SelfWeight):
         margin = verdict.ratio
+    if violated and outcome in ("stands", "collapses"):
+        outcome = "open"
     return StrategyVerdict(
         strategy=strategy.name, label=strategy.label, part=None, status="ok", reason="", axis=strategy.axis, demand=wanted,
-        capacity=borne, unit=unit, outcome=outcome or verdict.outcome, margin=margin, margin_at_least=low, margin_below=high,
+        capacity=borne, unit=unit, outcome=outcome or verdict.outcome, bound=bound, violated=violated, margin=margin, margin_at_least=low, margin_below=high,
         parameters=words, assumes=strategy.assumes, statement=statement,
     )  # fmt: skip
 
@@ -158,7 +167,7 @@ def no_row(strategy: Strategy, status: str, reason: str, words: str = "") -> Str
     """The row of a strategy without a result."""
     return StrategyVerdict(
         strategy=strategy.name, label=strategy.label, part=None, status=status, reason=reason, axis=strategy.axis, demand=None,
-        capacity=None, unit="", outcome="not-applicable", margin=None, margin_at_least=None, margin_below=None, parameters=words,
+        capacity=None, unit="", outcome="not-applicable", bound=None, violated=[], margin=None, margin_at_least=None, margin_below=None, parameters=words,
         assumes=strategy.assumes, statement="",
     )  # fmt: skip
 

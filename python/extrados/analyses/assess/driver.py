@@ -10,14 +10,24 @@ import numpy as np
 
 from extrados import kinds
 from extrados.analyses.assess import hazard, sensitivity, strategies
-from extrados.analyses.assess.asking import STOPPED_AFTER, Asker, Interrupted, OutOfTime, no_row, row_of, scaled_margin
+from extrados.analyses.assess.asking import (
+    ENDING,
+    STOPPED_AFTER,
+    Asker,
+    Interrupted,
+    OutOfTime,
+    no_row,
+    row_of,
+    scaled_margin,
+)
 from extrados.analyses.assess.reasons import SLID, Facts, Pair, explained
 from extrados.analyses.assess.strategies import Asked, Choice, LeftOut, Strategy
 from extrados.analyses.assess.tables import Assess
 from extrados.analyses.assess.words import answer, conclusion, table_of
 from extrados.analyses.batches import Unfinished
+from extrados.analyses.conclude import faulty
 from extrados.analyses.context import Context, Refused
-from extrados.building.errors import BadGeometry
+from extrados.building.errors import BadGeometry, NoView
 from extrados.motions.from_deck import is_set
 from extrados.results import assess as out
 from extrados.results.dem import DemRun
@@ -26,6 +36,7 @@ from extrados.results.rocking import FailureDomain
 from extrados.results.rocking import Rocking as RockingResults
 from extrados.results.statistics import OverLevels
 from extrados.results.store import group_names
+from extrados.results.verdict import SelfWeight
 
 #: Factors on the hazard at which discrete elements are tried, from 1 up while they stand, down while they fall
 UP, DOWN = (1.25, 1.5, 2.0, 3.0, 4.0), (0.8, 0.65, 0.5, 0.35, 0.25)
@@ -47,9 +58,9 @@ def run(context: Context, options: Assess) -> Result:
         work.cheap()
         context.tell(f"First answers:\n{table_of(list(work.rows.values()))}")
         work.costly()
-        work.refine()
+        work.further("closer looks where strategies differ", work.refine)
         if options.sensitivity or options.vary:
-            work.move()
+            work.further("sensitivity", work.move)
     except Interrupted:
         result.status, result.reason = "interrupted", "interrupted; what was asked before is told"
     work.conclude(result)
@@ -75,6 +86,7 @@ class _Work:
         self.bare: dict[str, tuple[str, ...]] = {}
         self.moved: list[sensitivity.Moved] = []
         self.shaken: list[out.TurningValue] = []
+        self.faults: dict[str, bytes] = {}
         self.asker = Asker(
             context,
             dict(context.deck.data["motion"]),
@@ -95,7 +107,21 @@ class _Work:
         return Asked(self.one_motion(), self.options, self.motions if self.many else 1, self.peak)
 
     def ask(self, strategy: Strategy) -> Result | None:
-        """Ask a strategy and put its row into the table; None where it has no result."""
+        """Ask a strategy and put its row into the table; None where it has no result of its kind.
+
+        A strategy that fails in whatever way gives a row that says so: the others still count.
+        """
+        try:
+            return self._asked(strategy)
+        except ENDING:
+            raise
+        except Exception as error:
+            found = faulty(strategy.kind, error)
+            self.faults |= found.files
+            self.rows[strategy.name] = no_row(strategy, "failed", found.reason)
+            return None
+
+    def _asked(self, strategy: Strategy) -> Result | None:
         name = strategy.name
         given = self.options.options.get(name, {})  # type: ignore[call-overload]
         try:
@@ -133,10 +159,26 @@ class _Work:
         )  # fmt: skip
         if result.status != "ok":
             return None
-        self.results[name] = result
         self.parts.append((name, f"{strategy.label}: {words}", result))
         self.decks.append(deck)
+        if isinstance(result.results, SelfWeight):  # nothing more to learn from it, and no results of its kind
+            return None
+        self.results[name] = result
         return result
+
+    def further(self, what: str, step: Callable[[], None]) -> None:
+        """A step beyond the rows of the table: where it fails, the table still counts."""
+        try:
+            step()
+        except ENDING:
+            raise
+        except Exception as error:
+            self._failed(what, error)
+
+    def _failed(self, what: str, error: Exception) -> None:
+        found = faulty("assess", error)
+        self.faults |= found.files
+        self.not_done.append(f"{what}: {found.reason}")
 
     def wants(self, name: str) -> bool:
         """Whether a strategy is to be asked; one that the deck names and that cannot look at the building is told."""
@@ -178,6 +220,10 @@ class _Work:
         """The factor on the one motion at which rocking brings it down: the margin of `rocking`."""
         found = self.ask(strategies.SCALED)
         row = self.rows.pop("scaled")
+        if row.outcome == "cannot-stand":
+            self.parts.pop()
+            self.decks.pop()
+            return
         if found is not None:  # a curve of one motion is none: its factors stand at the row of rocking
             self.parts.pop()
             self.decks.pop()
@@ -199,7 +245,7 @@ class _Work:
             found = self.ask(strategies.SCALED)
             row = self.rows.pop("scaled")
         member, how = 1, "the first, for nothing rocks that could choose"
-        if found is not None and row is not None:
+        if row is not None and row.status == "ok":
             strategy = strategies.of("probability")
             self.rows["probability"] = row.model_copy(
                 update={
@@ -209,8 +255,9 @@ class _Work:
                     "assumes": strategy.assumes,
                 }
             )
+            self.parts[-1] = ("probability", *self.parts[-1][1:])
+        if found is not None:
             self.results["probability"] = self.results.pop("scaled")
-            self.parts[-1] = ("probability", self.parts[-1][1], found)
             member = _governing(found)
             how = f"the motion of the set under which it turns farther than under {100 * hazard.GOVERNING:g} % of the others"
         self.chosen = {"member": member, "chosen_by": how}
@@ -394,7 +441,10 @@ class _Work:
             def needed(amplitude: float) -> float | None:
                 if "rocking" not in self.results:
                     return None
-                unit = self.context.building.rocker().time_unit
+                try:
+                    unit = self.context.building.rocker().time_unit
+                except NoView:  # it rocks in several coordinates
+                    return None
                 keys = {"pulse": "rectangular", "durations": [0.02 * unit, 20.0 * unit], "amplitudes": 2, "at_amplitudes": [f"{amplitude!r} g"],
                         "max_amplitude": f"{2.0 * amplitude!r} g"}  # fmt: skip
                 found = self._probe(
@@ -520,7 +570,7 @@ class _Work:
         """Rows, agreement, reasons, overall statement, arrays and files into `result`."""
         facts = self.facts()
         try:
-            reasons, unexplained = explained(facts)
+            reasons, unexplained = explained(facts, lambda rule, error: self._failed(f"reason {rule}", error))
         except Interrupted:
             reasons, unexplained = [], facts.pairs()
         there = [a.kind for a in self.context.deck.analyses]
@@ -531,7 +581,7 @@ class _Work:
             rows.append(row.model_copy(update={"part": part}))
         judged = facts.judged()
         agreement = {a: {b: facts.relation(a, b) for b in judged if b != a} for a in judged}
-        margins = [(low if row.margin is None else row.margin, row.strategy) for row in rows
+        margins = [(low if row.margin is None else row.margin, row.strategy) for row in rows if row.outcome != "not-applicable"
                    if (low := row.margin_at_least if row.outcome == "stands" else row.margin_below) is not None
                    or row.margin is not None]  # fmt: skip
         least = min(margins, default=(None, None), key=lambda m: m[0] if m[0] is not None else np.inf)
@@ -555,6 +605,7 @@ class _Work:
                 f"# {name}: one part of an assessment of {self.context.deck.path}; run it in the folder of that deck.\n"
             )
             result.files[f"assess/{name}.toml"] = (head + deck).encode()
+        result.files |= self.faults
         self._arrays(facts, rows, result)
         result.answer = answer(statement, rows, reasons, result.results.sensitivity or [])
         result.warnings += [

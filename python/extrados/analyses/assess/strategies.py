@@ -11,6 +11,7 @@ from extrados.analyses.assess.hazard import STRONG, strong_end
 from extrados.analyses.assess.tables import Assess
 from extrados.analyses.context import Context
 from extrados.building.building import Building
+from extrados.building.errors import NoView
 from extrados.building.templates.plan import Plan
 from extrados.motions.tables import Compatible
 from extrados.results.limits import LIMITS
@@ -232,7 +233,14 @@ def _dem(asked: Asked) -> Choice:
     from extrados.analyses.dem.model import joint_values
 
     building = asked.building
-    assembly, values = building.blocks(), joint_values(building)
+    try:
+        assembly = building.blocks()
+    except NoView:
+        _ = building.solids()
+        raise LeftOut(
+            "an assessment has no rule for discrete elements in space yet: give the deck an analysis of kind dem"
+        ) from None
+    values = joint_values(building)
     motion = asked.context.motion
     end = strong_end(motion) + AFTER * float(np.sqrt(assembly.size / GRAVITY))
     joints = len(assembly.a)

@@ -47,45 +47,56 @@ def conclusion(
     facts: Facts, reasons: list[Reason], unexplained: list[Pair], word: str, least: tuple, rows: list[StrategyVerdict]
 ) -> tuple[Overall, str]:
     """The overall answer, and its statement: which strategies say what, why they differ, and the least margin."""
-    groups = {
-        o: [facts.rows[n].label for n in facts.judged() if facts.outcome(n) == o]
-        for o in ("stands", "collapses", "open")
-    }
-    stands, falls, left = groups["stands"], groups["collapses"], groups["open"]
+    groups: dict[str, list[str]] = {}
+    for name in facts.judged():
+        groups.setdefault(facts.outcome(name), []).append(facts.rows[name].label)
+    stands, collapses, left, proven = (groups.get(o, []) for o in ("stands", "collapses", "open", "cannot-stand"))
     said: list[str] = []
     overall: Overall
-    if not stands and not falls and not left:
-        return "open", f"No strategy has a verdict on the {word} under this hazard."
-    if not falls and not left:
+    if proven:
+        overall = "cannot stand"
+        first = next(facts.rows[n] for n in facts.judged() if facts.outcome(n) == "cannot-stand")
+        said.append(f"The {word} cannot stand: collapse under self-weight is proved by {_list(proven)}.")
+        said.append(first.statement)
+        if stands:
+            said.append(f"The proof overrules the opposite result of {_list(stands)}.")
+    elif not stands and not collapses and not left:
+        overall = "open"
+        said.append(f"No strategy has a verdict on the {word} under this hazard.")
+    elif not collapses and not left:
         overall = "stands under all"
         said.append(f"The {word} stands under {_count(stands)}.")
     elif not stands and not left:
         overall = "collapses under all"
-        said.append(f"The {word} falls under {_count(falls)}.")
-    elif stands and falls:
+        said.append(f"The {word} collapses under {_count(collapses)}.")
+    elif stands and collapses:
         overall = "depends"
-        said.append(f"It depends on the strategy: the {word} falls by {_list(falls)}, and stands by {_list(stands)}.")
+        said.append(
+            f"The strategies disagree: the {word} collapses by {_list(collapses)}, and stands by {_list(stands)}."
+        )
     else:
         overall = "open"
-        said.append(
-            f"The {word} {'stands' if stands else 'falls'} by {_list(stands or falls)}." if stands or falls else ""
-        )
+        if stands or collapses:
+            said.append(f"The {word} {'stands' if stands else 'collapses'} by {_list(stands or collapses)}.")
     if left:
-        said.append(f"It stays open by {_list(left)}.")
+        said.append(f"The outcome stays open by {_list(left)}.")
     decisive = [one for one in reasons if any(facts.relation(*p) in ("disagree", "open") for p in one.explains)]  # type: ignore[misc]
     if decisive:
-        said.append(f"What decides is {_list(list(dict.fromkeys(one.headline for one in decisive)))}.")
+        said.append(f"The difference comes from {_list(list(dict.fromkeys(one.headline for one in decisive)))}.")
     bare = [p for p in unexplained if facts.relation(*p) == "disagree"]
     if bare:
         told = "; ".join(f"{facts.rows[a].label} and {facts.rows[b].label}" for a, b in bare)
-        said.append(f"No rule finds a reason why these differ: {told}.")
-    if least[0] is not None:
+        said.append(f"Unexplained differences: {told}.")
+    if least[0] is not None and not proven:
         label = facts.rows[least[1]].label
         row = next(r for r in rows if r.strategy == least[1])
-        said.append(f"The least factor on the hazard at which a verdict turns is {row.margin_told()}, that of {label}.")
-    none = [row.label for row in rows if row.status != "ok" or row.outcome == "not-applicable"]
+        said.append(f"The least critical scale factor of the hazard is {row.margin_told()}, by {label}.")
+    none = [row.label for row in rows if row.status != "ok"]
     if none:
-        said.append(f"Without an answer: {_list(none)}.")
+        said.append(f"No answer from {_list(none)}.")
+    idle = [row.label for row in rows if row.status == "ok" and row.outcome == "not-applicable"]
+    if idle:
+        said.append(f"No verdict from {_list(idle)}.")
     return overall, " ".join(s for s in said if s)
 
 
