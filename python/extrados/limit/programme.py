@@ -275,6 +275,22 @@ class LimitAnalysis:
         taken = -float((found.corners * found.motion).sum())
         return self._read(found.gamma, found.corners, found.share, found.twist, found.motion, taken)
 
+    def dilating(self, mechanism: Mechanism) -> list[int]:
+        """Joints that press and slide in a mechanism of associated friction: they open by the friction times the slip, so that
+        the collapse load is an upper bound. Joints that open faster carry nothing, and are none of them."""
+        if not self.associated or self._cone is None:
+            return []
+        opens, slips = np.minimum(mechanism.opening_p, mechanism.opening_q), np.abs(mechanism.slip)
+        fastest = float(np.hypot(mechanism.velocity[:, 0], mechanism.velocity[:, 1]).max())
+        slides = (slips > INNER_REST * fastest) & (opens <= self._mu * slips + INNER_REST * fastest)
+        return np.flatnonzero(slides).tolist()
+
+    def without_dilatancy(self) -> "LimitAnalysis":
+        """The same question with sliding that does not dilate."""
+        return LimitAnalysis(
+            self.assembly, self.friction, strength=self.strength, associated=False, loads=self.loads, starts=self.starts
+        )
+
     def _neutral(self, problem: CoulombProblem) -> CoulombState | None:
         """A state at rest in which a stone that friction alone holds between its neighbours slides out of them, by which the
         load does no work: the structure bears nothing that can be relied on. None where there is none."""

@@ -10,6 +10,7 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
 
 from extrados.plots import animation, scene, style
 from extrados.plots.limit import tilt
+from extrados.results.limit import DILATANT
 from extrados.results.solid_files import rotations
 from extrados.results.solids import SolidTilt
 from extrados.results.store import Stored
@@ -40,6 +41,12 @@ def faces_of(run: Stored, name: str, pose: np.ndarray | None = None) -> scene.Fa
     return scene.Faces(vertices, faces, block)
 
 
+def _title(r: SolidTilt) -> str:
+    """The collapse acceleration along the direction, an upper bound where contacts slide."""
+    bound = f",\n{DILATANT}" if r.dilating_contacts else ""
+    return f"Mechanism at {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} deg{bound}"
+
+
 def _draw_solids(run: Stored, name: str, folder: Path, r: SolidTilt) -> list[tuple[str, str]]:
     pose = run.array(name, "mechanism_pose")
     stones, moved = faces_of(run, name), faces_of(run, name, pose)
@@ -56,13 +63,14 @@ def _draw_solids(run: Stored, name: str, folder: Path, r: SolidTilt) -> list[tup
             scene.compass(ax, stones.vertices, VIEW, r.load_direction_deg if ax is axes[1] else None)
         x, y, z = np.ptp(stones.vertices, axis=0)
         axes[0].set_title(f"{r.blocks} stones, {r.contacts} contacts; {x:.3g} x {y:.3g} x {z:.3g} m")
-        axes[1].set_title(f"Mechanism at {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} deg")
+        axes[1].set_title(_title(r))
         bar = fig.colorbar(ScalarMappable(Normalize(0.0, 1.0), SPEED), ax=axes[1], shrink=0.6, pad=0.01)
         bar.set_label("speed of a stone over the fastest")
         found = [(
             style.save(fig, folder, f"{name}-mechanism"),
             f"The stones, and the mechanism at {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} degrees in plan, "
-            f"carried on; {r.moving_blocks} of {r.blocks} stones move.",
+            f"carried on; {r.moving_blocks} of {r.blocks} stones move."
+            + (f" Contacts slide: {DILATANT}." if r.dilating_contacts else ""),
         )]  # fmt: skip
     found.append(_draw_forces(run, name, folder, r, stones))
     angles, capacity = run.array(name, "rose_direction"), run.array(name, "rose_capacity")
@@ -124,7 +132,7 @@ def _film(
         (drawn,) = ax.images
         scene.ground(ax, stones.vertices, VIEW)
         scene.compass(ax, stones.vertices, VIEW, r.load_direction_deg)
-        ax.set_title(f"Mechanism at {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} deg")
+        ax.set_title(_title(r))
 
         def draw(k: int) -> None:
             drawn.set_data(scene.picture(faces_of(run, name, share[k] * pose), VIEW, frame, colours, FILM_PIXELS))

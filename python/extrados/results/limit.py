@@ -1,9 +1,11 @@
 """Results of limit analysis: tilt, thrust, moving-load, supports, sweep, survey."""
 
+from collections.abc import Sequence
+from math import inf
 from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
-from extrados.results.verdict import Demand, KindResults, Verdict, judge, judge_acceleration
+from extrados.results.verdict import Bound, Demand, KindResults, Outcome, Verdict, judge, judge_acceleration
 
 Side = Literal["intrados", "extrados"]
 
@@ -72,10 +74,24 @@ class Fracture(ResultModel):
     )
     resultant_from_outer_face_ratio: float = maybe("distance of the resultant from the outer face over the width there")
     hinges: list[Hinge] = maybe("hinges of the cracked structure")
+    dilating: bool = maybe(
+        "whether pressed joints slide in that mechanism: its collapse acceleration is then an upper bound (dilatant friction)"
+    )
+
+
+#: What results say of a capacity in whose mechanism pressed joints slide
+DILATANT = "upper bound (dilatant friction)"
+
+
+#: g: bounds that differ less are equal
+SAME = 1e-6
 
 
 class NonDilatant(ResultModel):
-    """Collapse to one side by sliding that does not dilate: the least state found, its bounds and residuals."""
+    """Collapse to one side by sliding that does not dilate: the least state found, its bounds and its certificate.
+
+    The certificate proves that collapse is possible at this load, not that less is safe.
+    """
 
     associated_g: float | None = fact(
         "upper bound: the same with sliding that dilates; null where that cannot be brought down",
@@ -87,7 +103,16 @@ class NonDilatant(ResultModel):
     )
     starts_g: list[float] = fact("load that each start led to; the least is the answer", "g")
     spread_g: float = fact("greatest less least of them: such states are not unique", "g")
-    equilibrium_residual: float = fact("greatest force left over at a stone, over the total load")
+    certified: bool = fact(
+        "whether the certificate holds: equilibrium, |s| <= mu N and zero gap, recomputed apart from the solver"
+    )
+    zero_gap_g: float = fact(
+        "|gamma - (work of friction - work of the weight)| per unit of work of the load; zero: forces and motion belong together",
+        "g",
+    )
+    equilibrium_residual: float = fact(
+        "greatest force, or moment over the size, left over at a block, over the total load"
+    )
     friction_residual: float = fact("greatest excess of |s| over mu N, over the total load")
     tension_residual: float = fact("greatest tension (or crushing beyond the strength), over the total load")
     overlap_residual: float = fact("greatest overlap of the motion, over the fastest joint")
@@ -109,6 +134,17 @@ class Tilt(KindResults):
     hinges: list[Hinge] = fact("hinges of the mechanism")
     sliding_joints: list[int] = fact("joints that slide or part in the mechanism")
     hinges_opposite: list[Hinge] = fact("hinges of the mechanism to -x")
+    dilating_joints: list[int] = maybe(
+        "associated friction: pressed joints that slide in the mechanism to +x; the collapse acceleration is then an upper "
+        "bound (dilatant friction)"
+    )
+    dilating_joints_opposite: list[int] = maybe("the same in the mechanism to -x")
+    collapse_acceleration_non_associated_g: float = maybe(
+        "sliding without dilatancy, to +x: the least certified state found, one of an interval whose upper end is the "
+        "associated value", "g", source="Ferris and Tin-Loi 2001",
+    )  # fmt: skip
+    collapse_acceleration_non_associated_opposite_g: float = maybe("the same to -x", "g")
+    non_associated_reason: str = maybe("why no state without dilatancy is given beside an upper bound")
     touching_joints: list[int] = fact("joints whose end the thrust line touches without a hinge")
     required_friction: float | None = fact("greatest coefficient of friction that the thrust line at collapse needs")
     required_friction_joint: int = fact("the joint that needs it")
@@ -137,13 +173,67 @@ class Tilt(KindResults):
     right_aisle_span_m: float = maybe("clear span of the right aisle", "m")
     duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
     fracture: Fracture = maybe("collapse with the leeward buttress cracked")
-    non_dilatant: NonDilatant = maybe("non-associated friction: what the collapse to +x rests on")
-    non_dilatant_opposite: NonDilatant = maybe("non-associated friction: what the collapse to -x rests on")
+    non_dilatant: NonDilatant = maybe("sliding without dilatancy: what the collapse to +x rests on")
+    non_dilatant_opposite: NonDilatant = maybe("sliding without dilatancy: what the collapse to -x rests on")
+
+    def interval(self, opposite: bool = False) -> tuple[float | None, float]:
+        """Least and greatest collapse acceleration [g] to +x, or to -x: equal where no pressed joint slides, the least None
+        where joints slide and no state without dilatancy is known; infinite where what dilates cannot be brought down."""
+        own, least, found, dilating = (
+            (self.collapse_acceleration_opposite_g, self.collapse_acceleration_non_associated_opposite_g,
+             self.non_dilatant_opposite, self.dilating_joints_opposite)
+            if opposite
+            else (self.collapse_acceleration_g, self.collapse_acceleration_non_associated_g, self.non_dilatant,
+                  self.dilating_joints)
+        )  # fmt: skip
+        if found is not None:
+            return least, inf if found.associated_g is None else found.associated_g
+        return (None if dilating else own), own
 
     def judged(self, demand: Demand) -> Verdict:
         """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
-        least = min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g)
-        return judge_acceleration(least, demand)
+        return self.judged_towards(demand, (False, True))
+
+    def judged_towards(self, demand: Demand, opposite: Sequence[bool]) -> Verdict:
+        """The verdict by pushes to +x (False) or to -x (True), or the lesser of both.
+
+        Where pressed joints slide the collapse acceleration lies in an interval: from its upper end on the structure
+        collapses, within it collapse is possible and the outcome open. The capacity is the lower end. Where that is not
+        known the upper end is a bound by which nothing stands.
+        """
+        intervals = [self.interval(one) for one in opposite]
+        high = min(most for _, most in intervals)
+        if any(least is None for least, _ in intervals):
+            least = min(most if least is None else least for least, most in intervals)
+            return judge_dilatant(least, demand, self.non_associated_reason)
+        least = min(least for least, _ in intervals if least is not None)
+        if least >= high - SAME * max(1.0, high):
+            return judge_acceleration(least, demand)
+        return judge_interval(least, high, demand)
+
+
+def judge_dilatant(capacity: float, demand: Demand, reason: str | None = None) -> Verdict:
+    """An upper bound by dilatant friction [g] against the peak of the motion; reason: why no lower state is known."""
+    found = judge_acceleration(capacity, demand, "upper")
+    why = f" A state without dilatancy is not given: {reason}." if reason else ""
+    return found.model_copy(update={"statement": f"{found.statement} Joints slide: {DILATANT}.{why}"})
+
+
+def judge_interval(least: float, most: float, demand: Demand) -> Verdict:
+    """A collapse acceleration between the least state found without dilatancy and the upper bound [g]."""
+    peak = demand.peak_g
+    upper = (
+        f"the {DILATANT} is {most:.3g} g" if most < inf else "with dilatant friction nothing brings the structure down"
+    )
+    text = f"Collapse acceleration (horizontal, constant) in an interval: joints slide; least state found {least:.3g} g, {upper}"
+    if peak is None:
+        return judge(f"{text}; the deck holds no single motion to compare with.", None, least, "g")
+    outcome: Outcome = "stands" if peak < least else "collapses" if peak >= most else "open"
+    place = {"stands": "below", "collapses": "above", "open": "within"}[outcome]
+    return judge(
+        f"{text}; the peak of the motion, {peak:.3g} g, applied as a sustained load, is {place} the interval.", peak, least, "g",
+        outcome,
+    )  # fmt: skip
 
 
 class ThrustLine(ResultModel):
@@ -180,6 +270,10 @@ class Thrust(KindResults):
     least_part_of_joints: float = maybe("the part of the joints, about their middles, that the most central line needs")
     weight_N: float = fact("weight of the structure with its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
+    dilating: bool = fact(
+        "whether pressed joints slide in the mechanisms at the ends of the admissible interval: these are upper bounds "
+        "(dilatant friction), and a line within friction does not prove that sliding without dilatancy is excluded"
+    )
     duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
     least: ThrustLine = maybe("the line of least thrust")
     most: ThrustLine = maybe("the line of greatest thrust")
@@ -210,6 +304,10 @@ class MovingLoad(KindResults):
     worst_way: Literal["+x", "-x"] = fact("where the train heads there")
     hinges: list[NamedHinge] = fact("hinges of the mechanism there")
     sliding_joints: list[int] = fact("joints that slide or part in the mechanism there")
+    dilating_joints: list[int] = maybe(
+        "associated friction: pressed joints that slide in the mechanism there; the collapse load is then an upper bound "
+        "(dilatant friction)"
+    )
     greatest_compression_N: float = fact("greatest compression across a joint there at collapse", "N")
     places_without_limit: int = fact("places where no load of the kind brings it down")
     ties: list[TieForce] = maybe("forces of the ties there at collapse")
@@ -225,21 +323,25 @@ class MovingLoad(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The adequacy factor of the train against 1, or the load of the deck against the least collapse load [N]."""
-        text, margin = f"Collapse load {self.collapse_load_N / 1e3:.4g} kN at the most dangerous place", ""
+        text = f"Collapse load {self.collapse_load_N / 1e3:.4g} kN at the most dangerous place"
+        bound: Bound | None = "upper" if self.dilating_joints else None
+        more = f" Joints slide: {DILATANT}." if self.dilating_joints else ""
         if self.characteristic:
-            margin = f" {CHARACTERISTIC}"
+            more += f" {CHARACTERISTIC}"
         violated = self.violated or ()
         if self.load_N is None and self.adequacy_factor is not None:
             factored = "" if self.characteristic else "factored "
             return judge(
-                f"Adequacy factor {self.adequacy_factor:.3g} on the {factored}train at the most dangerous place.{margin}",
-                1.0, self.adequacy_factor, violated=violated,
+                f"Adequacy factor {self.adequacy_factor:.3g} on the {factored}train at the most dangerous place.{more}",
+                1.0, self.adequacy_factor, bound=bound, violated=violated,
             )  # fmt: skip
         if self.load_N is None:
-            return judge(f"{text}; the deck gives no load to compare with.", None, self.collapse_load_N, "N")
+            return judge(
+                f"{text}; the deck gives no load to compare with.{more}", None, self.collapse_load_N, "N", bound=bound
+            )
         return judge(
-            f"{text}, {self.safety_factor:.3g} times the load of {self.load_N / 1e3:.4g} kN.{margin}",
-            self.load_N, self.collapse_load_N, "N", violated=violated,
+            f"{text}, {self.safety_factor:.3g} times the load of {self.load_N / 1e3:.4g} kN.{more}",
+            self.load_N, self.collapse_load_N, "N", bound=bound, violated=violated,
         )  # fmt: skip
 
 
@@ -307,11 +409,17 @@ class Change(ResultModel):
     collapse_acceleration_g: float | None = fact("collapse acceleration there", "g")
 
 
+#: Of one section among many: it has a capacity; a certificate proves that it cannot stand (capacity 0); no load of the kind
+#: brings it down; or there is no answer
+SectionStatus = Literal["ok", "cannot-stand", "locked", "no-answer"]
+
+
 class Gap(ResultModel):
-    """A value that gives no structure that stands."""
+    """A value of a sweep at which the structure has no mechanism under the load."""
 
     value: float = fact("the value of the key, in its unit")
-    reason: str = fact("why")
+    status: SectionStatus = fact("cannot-stand (capacity 0, by a certificate), locked, or no-answer")
+    reason: str = fact("why, with the certificate where it cannot stand")
 
 
 class Sweep(KindResults):
@@ -328,8 +436,13 @@ class Sweep(KindResults):
     optimum_tilt_angle_deg: float = fact("tilt of the ground that pushes alike", "deg")
     optimum_inside: bool = fact("whether it lies inside the range")
     values: list[float] = fact("the values, in the unit of the key")
-    collapse_accelerations_g: list[float | None] = fact("capacity at each value; null where it cannot stand", "g")
-    gaps: list[Gap] = fact("values without a structure that stands")
+    collapse_accelerations_g: list[float | None] = fact(
+        "capacity at each value; 0 where it cannot stand, null without an answer", "g"
+    )
+    upper_bound_values: list[float] = fact(
+        "values at which pressed joints slide in the mechanism: the capacity is an upper bound (dilatant friction)"
+    )
+    gaps: list[Gap] = fact("values without a mechanism: cannot stand, locked, or no answer")
     duality_gap: float = fact("greatest difference between the bounds", "g")
     fractured_collapse_accelerations_g: list[float | None] = maybe(
         "collapse accelerations with the leeward buttress cracked", "g"
@@ -342,13 +455,15 @@ class Sweep(KindResults):
         """The greatest capacity [g]; a sweep compares, it asks for no demand."""
         best = self.optimum_collapse_acceleration_g
         unit = f" {self.unit}" if self.unit else ""
-        return judge(
-            f"Of the values tried, {self.vary} = {self.optimum_value:.4g}{unit} bears most, {best:.3g} g.", None, best, "g"
-        )  # fmt: skip
+        text = f"Of the values tried, {self.vary} = {self.optimum_value:.4g}{unit} carries most, {best:.3g} g."
+        if not self.upper_bound_values:
+            return judge(text, None, best, "g")
+        text += f" At {len(self.upper_bound_values)} of {len(self.values)} values joints slide: {DILATANT}."
+        return judge(text, None, best, "g", bound="upper")
 
 
 class NoAnswerRow(ResultModel):
-    """A section of a survey that has no capacity."""
+    """A section of a survey that cannot stand, or has no answer."""
 
     row: int = fact("its line in the file")
     name: str = fact("its name")
@@ -360,8 +475,14 @@ class Survey(KindResults):
 
     sections: int = fact("sections in the table")
     standing: int = fact("sections that stand")
-    without_answer: list[NoAnswerRow] = fact("sections without a capacity, the first hundred")
-    weakest: str | None = fact("name of the weakest section that stands")
+    cannot_stand: list[NoAnswerRow] = fact(
+        "sections that a certificate proves to collapse under their own weight, the first hundred; their capacity is 0"
+    )
+    without_answer: list[NoAnswerRow] = fact("sections without an answer, the first hundred")
+    upper_bounds: int = fact(
+        "sections in whose mechanism pressed joints slide: their capacity is an upper bound (dilatant friction)"
+    )
+    weakest: str | None = fact("name of the weakest section; one that cannot stand has capacity 0")
     weakest_collapse_acceleration_g: float | None = fact("its capacity", "g")
     median_collapse_acceleration_g: float | None = fact("median capacity of those that stand", "g")
     sections_per_second: float = fact("speed of the survey", "1/s")
@@ -369,11 +490,16 @@ class Survey(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The capacity of the weakest section that stands [g]; a survey asks for no demand."""
-        text = f"{self.standing} of {self.sections} sections stand upright"
+        text = f"{self.standing} of {self.sections} sections stand upright, {len(self.cannot_stand)} cannot stand"
         if self.weakest is None:
             return judge(f"{text}.", None, None, "g")
         least = self.weakest_collapse_acceleration_g
-        return judge(f"{text}; the weakest of them, {self.weakest}, bears {least:.3g} g.", None, least, "g")
+        text += f"; the weakest, {self.weakest}, carries {least:.3g} g."
+        if not self.upper_bounds:
+            return judge(text, None, least, "g")
+        return judge(
+            f"{text} In {self.upper_bounds} of them joints slide: {DILATANT}.", None, least, "g", bound="upper"
+        )
 
 
 class Imperfections(KindResults):
@@ -387,9 +513,12 @@ class Imperfections(KindResults):
     high_collapse_acceleration_g: float = fact("its upper end: the 95th percentile", "g")
     least_collapse_acceleration_g: float = fact("least capacity; 0 where a survey cannot stand", "g")
     greatest_collapse_acceleration_g: float = fact("greatest capacity", "g")
-    cannot_stand: int = fact("surveys that cannot stand upright; they count as 0 g")
+    cannot_stand: int = fact("surveys that a certificate proves to collapse under their own weight; they count as 0 g")
     without_answer: int = fact("surveys whose programmes gave no answer; they are left out")
+    upper_bounds: int = fact(
+        "surveys in whose mechanism pressed joints slide: their capacity is an upper bound (dilatant friction)"
+    )
 
     def judged(self, demand: Demand) -> Verdict:
         """The 5th percentile of the capacities against the peak ground acceleration of the motion [g]."""
-        return judge_acceleration(self.low_collapse_acceleration_g, demand)
+        return (judge_dilatant if self.upper_bounds else judge_acceleration)(self.low_collapse_acceleration_g, demand)

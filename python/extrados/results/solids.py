@@ -2,6 +2,7 @@
 
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.limit import Tilt as SectionTilt
+from extrados.results.limit import judge_dilatant
 from extrados.results.verdict import Demand, KindResults, Verdict, judge_acceleration
 
 
@@ -56,12 +57,16 @@ class SolidTilt(KindResults):
         "greatest excess of shear over friction, or of tension, at a corner, over the weight"
     )
     overlap_residual: float = fact("greatest rate of overlap of the mechanism, over the fastest contact")
+    dilating_contacts: int = fact(
+        "contacts that press and slide in the mechanisms along the direction, back, and of the least capacity; with any the "
+        "capacity is an upper bound (dilatant friction)"
+    )
     pyramids: Pyramids = maybe("bounds by another method and another solver")
 
     def judged(self, demand: Demand) -> Verdict:
         """The least capacity of all directions sought against the peak ground acceleration of the motion [g]."""
         least = min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g, self.least_acceleration_g)
-        return judge_acceleration(least, demand)
+        return (judge_dilatant if self.dilating_contacts else judge_acceleration)(least, demand)
 
 
 #: What `tilt` gives: of a plane section, or of solids

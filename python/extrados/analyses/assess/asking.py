@@ -20,7 +20,7 @@ from extrados.core.calls import within
 from extrados.core.errors import Cancelled
 from extrados.decks.reader import DeckError, make_deck
 from extrados.results.assess import StrategyVerdict
-from extrados.results.limit import Tilt
+from extrados.results.limit import Tilt, judge_dilatant
 from extrados.results.model import Result
 from extrados.results.shell import Pushover
 from extrados.results.sla import Sla
@@ -134,12 +134,11 @@ def row_of(
     if isinstance(r, Ensemble | OverLevels):
         wanted, borne, unit, outcome, statement, low, high = _probability(r, acceptable)
     elif isinstance(r, Tilt) and wall is not None:
-        away = r.collapse_acceleration_g if wall == "left" else r.collapse_acceleration_opposite_g
-        judged = judge_acceleration(away, demand)
-        borne, outcome, margin = away, judged.outcome, judged.ratio
+        judged = r.judged_towards(demand, (wall == "right",))
+        borne, outcome, margin = judged.capacity, judged.outcome, judged.ratio
         statement = f"Pushed away from the wall: {judged.statement[:1].lower()}{judged.statement[1:]}"
     elif isinstance(r, Tilt) and (cracked := _cracked(r)) is not None and cracked < (borne or 0.0):
-        broken = judge_acceleration(cracked, demand)
+        broken = (judge_dilatant if r.fracture.dilating else judge_acceleration)(cracked, demand)
         borne, outcome, margin = cracked, broken.outcome, broken.ratio
         statement = f"With the leeward buttress cracked: {broken.statement[:1].lower()}{broken.statement[1:]}"
     elif isinstance(r, Sla | Pushover) and any(c.peak_load_N is None for c in (r, r.minus) if c is not None):

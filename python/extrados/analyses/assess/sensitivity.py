@@ -83,9 +83,8 @@ class MarginsJob:
             r = run_one(context, options, building).results
             if isinstance(r, Tilt):
                 wall = building.supports.abutting_wall
-                senses = {"left": (r.collapse_acceleration_g,), "right": (r.collapse_acceleration_opposite_g,)}
-                both = (r.collapse_acceleration_g, r.collapse_acceleration_opposite_g)
-                margins[k] = min(senses.get(wall or "", both)) / self.peak_g
+                senses = {"left": (False,), "right": (True,)}.get(wall or "", (False, True))
+                margins[k] = r.judged_towards(Demanded(self.peak_g), senses).ratio
             elif options.kind == "tilt" and (judged := r.judged(Demanded(self.peak_g))) is not None:  # of solids
                 margins[k] = np.nan if judged.ratio is None else judged.ratio
             elif isinstance(r, OverLevels):

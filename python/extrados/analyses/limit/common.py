@@ -15,6 +15,7 @@ from extrados.building.errors import WHOLE, BadGeometry
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.answer import Answer, assess
 from extrados.limit.equilibrium import Disconnected
+from extrados.limit.errors import CannotStand
 from extrados.limit.fill import passive_pressure, under_load
 from extrados.limit.fracture import Fracture, NoCrack, fractured_collapse
 from extrados.limit.lines import ThrustPath
@@ -85,6 +86,10 @@ def answer_of(building: Building, options: LimitAnalysisTable, limit: LimitAnaly
     assembly, limit = building.blocks(), limit or limit_of(building, options)
     try:
         answer = assess(assembly, limit=limit)
+    except CannotStand as proof:
+        if mended := mended_capacity(building, options, 0.0):
+            raise CannotStand(f"{proof}; {mended}", proof.motion, proof.neglects) from None
+        raise
     except NoEquilibrium as error:
         raise Refused(str(error), WHOLE) from None
     if limit.associated and answer.gap > closed(len(assembly.a), answer.gamma):
@@ -115,10 +120,11 @@ def mended_capacity(building: Building, options: LimitAnalysisTable, gamma: floa
         return None
     told = f'with all gaps closed (contact_tolerance = "{1e3 * mended.contact_tolerance:.3g} mm")'
     try:
-        closed = limit_of(building.apart().having(structure=mended), options).collapse(1)[0].gamma
+        closed_g = limit_of(building.apart().having(structure=mended), options).collapse(1)[0].gamma
     except (BadGeometry, Refused, NoEquilibrium, NoAnswer, Immovable) as error:
         return f"{told} there is no capacity: {error}"
-    return f"{told} it bears {closed:.4f} g to +x, {closed / gamma:.2f} times the {gamma:.4f} g told here"
+    text = f"{told} the collapse acceleration to +x is {closed_g:.4f} g"
+    return f"{text}, {closed_g / gamma:.2f} times the {gamma:.4f} g given here" if gamma > 0.0 else text
 
 
 def geometry_arrays(assembly: Assembly) -> dict[str, Array]:

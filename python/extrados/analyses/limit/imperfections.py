@@ -13,7 +13,8 @@ from extrados.building.building import Building
 from extrados.building.errors import WHOLE
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.deviation import resurveyed
-from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium
+from extrados.limit.answer import cannot_stand
+from extrados.limit.programme import Immovable, LimitAnalysis, NoAnswer, NoEquilibrium
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
 
@@ -41,16 +42,24 @@ class Surveys:
             survey, self.friction, strength=self.strength, associated=self.options.friction_rule == "associated",
             loads=loads_of(survey, self.options, self.building),
         )  # fmt: skip
-        gamma, answered = np.full(2, np.nan), True
+        gamma, answered, dilates = np.full(2, np.nan), True, False
         try:
-            found = np.array([sense * limit.collapse(sense)[0].gamma for sense in (1, -1)])
+            ends = [limit.collapse(sense) for sense in (1, -1)]
+            found = np.array([ends[0][0].gamma, -ends[1][0].gamma])
             if (found > 0.0).all():
-                gamma = found
+                gamma, dilates = found, any(limit.dilating(mechanism) for _, mechanism in ends)
+            else:
+                raise NoEquilibrium
+        except Immovable:
+            answered = False
         except NoEquilibrium:
-            pass
+            try:
+                cannot_stand(limit)
+            except (NoEquilibrium, NoAnswer):
+                answered = False  # nothing proves that it cannot stand
         except NoAnswer:
             answered = False
-        return {"gamma": gamma, "answered": np.array(answered)}
+        return {"gamma": gamma, "answered": np.array(answered), "dilates": np.array(dilates)}
 
 
 def run(context: Context, options: Imperfections) -> Result:
@@ -65,8 +74,8 @@ def run(context: Context, options: Imperfections) -> Result:
     answered = swept["answered"].astype(bool)
     stand = np.isfinite(lesser)
     fallen = int((answered & ~stand).sum())
-    if not stand.any():
-        raise Refused(f"none of {options.count} surveys within {1e3 * deviation:.3g} mm can stand", WHOLE)
+    if not answered.any():
+        raise Refused(f"none of {options.count} surveys within {1e3 * deviation:.3g} mm has an answer", WHOLE)
     # A survey that cannot stand bears nothing: it belongs to the lower end of the band.
     borne = np.where(stand, lesser, 0.0)[answered]
     low, median, high = np.percentile(borne, [BAND[0], 50.0, BAND[1]]).tolist()
@@ -82,6 +91,7 @@ def run(context: Context, options: Imperfections) -> Result:
         greatest_collapse_acceleration_g=float(borne.max()),
         cannot_stand=fallen,
         without_answer=int((~answered).sum()),
+        upper_bounds=int(swept["dilates"].sum()),
     )
     result.results = r
     result.arrays = {
@@ -100,6 +110,8 @@ def run(context: Context, options: Imperfections) -> Result:
     )
     if fallen:
         result.answer += f" {fallen} of them cannot stand."
+    if r.upper_bounds:
+        result.answer += f" In {r.upper_bounds} of them joints slide: {out.DILATANT}."
     if r.without_answer:
         result.warnings.append(f"{r.without_answer} surveys are left out: their programmes gave no answer")
     return result

@@ -28,12 +28,13 @@ from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.chains import is_stack
 from extrados.building.geometry.earth import skyline
 from extrados.building.structure import Structure
-from extrados.limit.errors import NoAnswer
+from extrados.limit.answer import cannot_stand
+from extrados.limit.errors import CannotStand, Immovable, NoAnswer
 from extrados.limit.fill import pressed, under_load
 from extrados.limit.lines import thrust_paths
 from extrados.limit.loads import Loads, forces_at
 from extrados.limit.motion import finite_motion
-from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium, State
+from extrados.limit.programme import LimitAnalysis, Mechanism, State
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
@@ -125,7 +126,7 @@ class Places:
             limit.crush_as(before)
         try:
             state, mechanism = limit.collapse(1)
-        except NoEquilibrium:
+        except Immovable:
             return None, limit
         return Collapse(state, loads, mechanism, state.gamma * scale, state.gamma * self.dead.scale, standing), limit
 
@@ -225,14 +226,19 @@ def run(context: Context, options: MovingLoad) -> Result:
     low, high = _way(assembly, chain)
     train = fitting_train(building, options)
     dead = factored(assembly, loads_of(assembly, options, building), factors)
+    friction, strength = building.friction(), building.material.compressive_strength
+    friction = None if friction is None else friction / factors.friction
+    strength = None if strength is None else strength / factors.strength
+    reduced = LimitAnalysis(assembly, friction, strength=strength, loads=dead)
+    if not reduced.stands():
+        proof = cannot_stand(reduced)
+        raise CannotStand(f"with the partial factors: {proof}", proof.motion)
     # The whole depth stands for the strip that carries the load: as much heavier is the load on all of it.
     strip = assembly.depth / (options.width or assembly.depth)
     design = factors.live * factors.dynamic * strip if train.known else 1.0
     places, ways = _places(options, train, low, high)
-    friction, strength = building.friction(), building.material.compressive_strength
     job = Places(
-        assembly, None if friction is None else friction / factors.friction,
-        None if strength is None else strength / factors.strength, options.friction_rule == "associated", dead, places,
+        assembly, friction, strength, options.friction_rule == "associated", dead, places,
         ways, Train(train.name, train.axles, train.forces * design, train.even * (1.0, 1.0, design), train.known),
         (low, high), options.contact_length, options.adverse, _top(assembly, low, high),
     )  # fmt: skip
@@ -263,6 +269,8 @@ def run(context: Context, options: MovingLoad) -> Result:
             "train": train.name,
             "live_load_factor": factors.live * factors.dynamic,
         }
+    if job.associated and friction is not None:
+        asked["dilating_joints"] = reduced.dilating(mechanism)
     r = out.MovingLoad(
         chain=chain,
         collapse_load_N=float(capacity[k]),
@@ -387,6 +395,8 @@ def _words(options: MovingLoad, r: out.MovingLoad, structure: Structure) -> str:
         text += f" The given load of {options.force / 1e3:.4g} kN has a safety factor of {r.safety_factor:.2f}."
         if r.adequacy_factor is not None and abs(r.adequacy_factor / r.safety_factor - 1.0) > 1e-9:
             text += f" With its partial factors the adequacy factor is {r.adequacy_factor:.3g}."
+    if r.dilating_joints:
+        text += f" Joints slide: {out.DILATANT}."
     if r.characteristic and (r.load_N is not None or r.adequacy_factor is not None):
         text += f" {out.CHARACTERISTIC}"
     return text + spoken_ties(r.ties)

@@ -2,15 +2,15 @@
 
 import numpy as np
 
-from extrados.analyses.context import Context, Refused
+from extrados.analyses.context import Context
 from extrados.analyses.limit.common import named_places
 from extrados.analyses.limit.tables import Tilt
-from extrados.building.errors import WHOLE
 from extrados.building.geometry.assembly import GROUND
 from extrados.building.geometry.solids.assembly import SolidAssembly
-from extrados.limit.errors import Immovable
+from extrados.limit.errors import CannotStand, Immovable
 from extrados.limit.solids import Falls, Programme, SolidLimit
 from extrados.results import solids as out
+from extrados.results.limit import DILATANT
 from extrados.results.model import Array, Result
 from extrados.results.solid_files import scene_files
 from extrados.schema.constants import GRAVITY
@@ -37,19 +37,18 @@ def run(context: Context, options: Tilt) -> Result:
     asked = np.unique(np.round(np.concatenate([[first, first + 180.0], angles]), 9))
     given = limit.pushes(asked.tolist(), context.threads, lambda done: context.progress(done, len(asked), "directions"))
     found_at = dict(zip(asked.tolist(), given, strict=True))
-    there, back = (_stands(found_at[round(d, 9)], assembly, word) for d in (first, first + 180.0))
+    there, back = (_stands(found_at[round(d, 9)], assembly) for d in (first, first + 180.0))
     if there.gamma < 0.0 or back.gamma < 0.0:
         low, high = sorted((there.gamma, -back.gamma))
-        raise Refused(
-            f"the {word} cannot stand under its own weight: it stands only when pushed along {first:g} degrees by {low:.4f} to "
-            f"{high:.4f} g; proof: the mechanism of the lesser push, in which the weights do work",
-            WHOLE,
+        raise CannotStand(
+            f"it stands only when pushed along {first:g} degrees by {low:.4f} to "
+            f"{high:.4f} g; proof: the mechanism of the lesser push, in which the weights do work"
         )
     rose = [found_at[round(d, 9)] for d in angles.tolist()]
-    capacity = np.array([np.inf if one is None else _stands(one, assembly, word).gamma for one in rose])
+    capacity = np.array([np.inf if one is None else _stands(one, assembly).gamma for one in rose])
     result = Result("tilt")
     least = int(np.flatnonzero(capacity <= capacity.min() + SAME)[0])  # of equals the first
-    opens = _openings(assembly, limit, there)
+    opens = _openings(assembly, there)
     speed = np.linalg.norm(there.motion[:, :3], axis=1)
     pose = _pose(assembly, there.motion)
     found = out.SolidTilt(
@@ -61,6 +60,7 @@ def run(context: Context, options: Tilt) -> Result:
         weight_N=float(limit.weight.sum() + GRAVITY * assembly.fill[:, 1].sum()), upper_bound_g=there.upper,
         duality_gap=max(there.gap, back.gap), equilibrium_residual=max(there.equilibrium, back.equilibrium),
         friction_residual=max(there.cone, back.cone), overlap_residual=max(there.overlap, back.overlap),
+        dilating_contacts=max(_dilating(assembly, limit, one) for one in (there, back, rose[least] if rose else there) if one),
         **({} if options.pyramids is None else {"pyramids": _pyramids(limit, first, options.pyramids)}),
     )  # fmt: skip
     result.results = found
@@ -97,15 +97,13 @@ def scene_arrays(assembly: SolidAssembly) -> dict[str, Array]:
     }  # fmt: skip
 
 
-def _stands(found: Programme | Falls | None, assembly: SolidAssembly, word: str) -> Programme:
+def _stands(found: Programme | Falls | None, assembly: SolidAssembly) -> Programme:
     if found is None:
         raise Immovable("no push of its weight brings it down: its contacts hold it from all sides")
     if isinstance(found, Falls):
         name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
-        raise Refused(
-            f"the {word} cannot stand under its own weight; proof: a motion, fastest at {name}, that no contact "
-            "hinders and by which the weights do work",
-            WHOLE,
+        raise CannotStand(
+            f"proof: a motion, fastest at {name}, that no contact hinders and by which the weights do work"
         )
     return found
 
@@ -163,8 +161,8 @@ def _resultants(assembly: SolidAssembly, found: Programme) -> tuple[np.ndarray, 
     return force, centre / total[:, None]
 
 
-def _openings(assembly: SolidAssembly, limit: SolidLimit, found: Programme) -> list[out.OpenContact]:
-    """Contacts that open or slide, the fastest first."""
+def _corner_rates(assembly: SolidAssembly, found: Programme) -> tuple[np.ndarray, np.ndarray]:
+    """Rates at which corners of contacts open and slide, over the fastest vertex."""
     joint = assembly.corner_joint
     rate = _rates(assembly, found.motion, assembly.corner, assembly.a[joint]) - _rates(
         assembly, found.motion, assembly.corner, assembly.b[joint]
@@ -174,9 +172,15 @@ def _openings(assembly: SolidAssembly, limit: SolidLimit, found: Programme) -> l
     points = np.concatenate([p.vertices for p in assembly.parts])
     owner = np.repeat(assembly.owner, [len(p.vertices) for p in assembly.parts])
     fastest = np.linalg.norm(_rates(assembly, found.motion, points, owner), axis=1).max()
+    return opening / fastest, sliding / fastest
+
+
+def _openings(assembly: SolidAssembly, found: Programme) -> list[out.OpenContact]:
+    """Contacts that open or slide, the fastest first."""
+    joint = assembly.corner_joint
     most = np.zeros((2, len(assembly.a)))
-    for row, values in zip(most, (opening, sliding), strict=True):
-        np.maximum.at(row, joint, values / fastest)
+    for row, values in zip(most, _corner_rates(assembly, found), strict=True):
+        np.maximum.at(row, joint, values)
     order = np.argsort(-most.max(axis=0), kind="stable")
     rows = []
     for j in order[most.max(axis=0)[order] > OPEN][:MOST_CONTACTS].tolist():
@@ -187,6 +191,16 @@ def _openings(assembly: SolidAssembly, limit: SolidLimit, found: Programme) -> l
             )
         )
     return rows
+
+
+def _dilating(assembly: SolidAssembly, limit: SolidLimit, found: Programme) -> int:
+    """Contacts with a corner that slides in a mechanism and opens by no more than its friction times the slip: there
+    associated friction dilates, and the multiplier is an upper bound."""
+    joint = assembly.corner_joint
+    opening, sliding = _corner_rates(assembly, found)
+    with np.errstate(invalid="ignore"):
+        slides = np.isfinite(limit.mu) & (sliding > OPEN) & (opening <= limit.mu * sliding + OPEN)
+    return len(np.unique(joint[slides]))
 
 
 def _words(word: str, r: out.SolidTilt, count: int) -> str:
@@ -203,6 +217,8 @@ def _words(word: str, r: out.SolidTilt, count: int) -> str:
     text += f"In the mechanism {moving}, {r.fastest_block} fastest{opens}. "
     if count:
         text += f"Of {count} directions it bears least along {r.least_direction_deg % 360.0:g} degrees: {r.least_acceleration_g:.4f} g. "
+    if r.dilating_contacts:
+        text += f"Contacts slide: {DILATANT}. "
     text += f"The bounds from equilibrium and from the mechanism differ by {r.duality_gap:.1e} g."
     if r.pyramids is not None:
         low, high = ("none" if g is None else f"{g:.4f} g" for g in (r.pyramids.lower_g, r.pyramids.upper_g))

@@ -11,6 +11,7 @@ from extrados.analyses.limit.tables import MovingSupports
 from extrados.building.errors import WHOLE, BadGeometry
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.chains import in_order, is_stack
+from extrados.limit.answer import cannot_stand
 from extrados.limit.loads import tilt_loads
 from extrados.limit.places import place_of
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
@@ -46,6 +47,9 @@ def run(context: Context, options: MovingSupports) -> Result:
         arch = None
     if arch is None:
         return _any_structure(context, _right_support(assembly, options))
+    upright = LimitAnalysis(arch)
+    if not upright.stands():
+        raise cannot_stand(upright)
     try:
         states = support_movement(arch, (options.spread, -options.settle), options.steps)
     except NoEquilibrium as error:
@@ -141,6 +145,8 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
     loads = tilt_loads(assembly)
     loads = replace(loads, resistance=together(loads.resistance, ties_of(building, loads.scale)))
     limit = LimitAnalysis(assembly, building.friction(), loads=loads)
+    if not limit.stands():
+        raise cannot_stand(limit)
     try:
         found = settle(limit, movement)
     except NoEquilibrium as error:
@@ -197,8 +203,8 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
     slid = [o.name for o in opened if abs(o.slip_mm) > 1e-3 * max(o.opening_mm, 1e-300)]
     if slid:
         result.warnings.append(
-            "joints that slide open by their friction times the slip too, since sliding dilates in this analysis; "
-            '`friction = "no-sliding"` shows what only opens'
+            "dilatant friction: joints that slide open by their friction times the slip too, and states in which less is "
+            'carried without dilatancy are not sought; `friction = "no-sliding"` shows what only opens'
         )
     most_moved = 1e3 * float(np.hypot(*movement[:, :2].T).max())
     given = f" by up to {most_moved:.3g} mm" if most_moved > 0.0 else ""

@@ -79,36 +79,54 @@ def run(context: Context, options: Survey) -> Result:
     for k, name in enumerate(header):
         if name != "name":
             columns[name] = [row[k] for row in rows]
+    columns["status"] = [o.status for o in outcomes]
+    columns["upper_bound"] = ["dilatant friction" if o.dilating else "" for o in outcomes]
     columns["reason"] = ["; ".join([o.reason] if o.reason else o.notes) for o in outcomes]
-    stand = np.isfinite(gamma)
+    answered, stand = np.isfinite(gamma), gamma > 0.0
+
+    def rows_of(*wanted: out.SectionStatus) -> list[out.NoAnswerRow]:
+        return [
+            out.NoAnswerRow(row=i + 2, name=n, reason=o.reason)
+            for i, (n, o) in enumerate(zip(names, outcomes, strict=True))
+            if o.status in wanted
+        ]
+
+    fallen, without = rows_of("cannot-stand"), rows_of("no-answer", "locked")
     result = Result("survey")
     r = out.Survey(
         sections=len(rows),
         standing=int(stand.sum()),
-        without_answer=[
-            out.NoAnswerRow(row=i + 2, name=n, reason=o.reason)
-            for i, (n, o) in enumerate(zip(names, outcomes, strict=True))
-            if o.reason
-        ][:100],
-        weakest=names[int(np.nanargmin(gamma))] if stand.any() else None,
-        weakest_collapse_acceleration_g=float(np.nanmin(gamma)) if stand.any() else None,
-        median_collapse_acceleration_g=float(np.nanmedian(gamma)) if stand.any() else None,
+        cannot_stand=fallen[:100],
+        without_answer=without[:100],
+        upper_bounds=sum(o.dilating for o in outcomes),
+        weakest=names[int(np.nanargmin(gamma))] if answered.any() else None,
+        weakest_collapse_acceleration_g=float(np.nanmin(gamma)) if answered.any() else None,
+        median_collapse_acceleration_g=float(np.median(gamma[stand])) if stand.any() else None,
         sections_per_second=len(rows) / max(seconds, 1e-9),
         duality_gap=max(o.gap for o in outcomes),
     )
     result.results = r
     result.arrays = {
-        "gamma": Array(gamma, ("section",), "g", "collapse acceleration to +x; NaN without an answer"),
+        "gamma": Array(
+            gamma,
+            ("section",),
+            "g",
+            "collapse acceleration to +x; 0 where a section cannot stand, NaN without an answer",
+        ),
         "section_name": Array(np.array(names, dtype=object), ("section",), "", "names of the sections"),
     }
     units = {"collapse_acceleration": "g", "fractured_collapse_acceleration": "g", "tilt_angle": "deg"}
     result.tables = {"survey": TableData(columns, units)}
     text = f"{int(stand.sum())} of {len(rows)} sections stand"
+    if fallen:
+        text += f", {len(fallen)} cannot stand (capacity 0)"
     if stand.any():
         text += (
             f"; the weakest is {r.weakest} with {r.weakest_collapse_acceleration_g:.4f} g, "
-            f"the median {r.median_collapse_acceleration_g:.4f} g"
+            f"the median of those that stand {r.median_collapse_acceleration_g:.4f} g"
         )
-    left = len(rows) - int(stand.sum())
-    result.answer = text + (f". Why {left} do{'es' if left == 1 else ''} not is told in survey.csv." if left else ".")
+    text += f". {len(without)} have no answer." if without else "."
+    if r.upper_bounds:
+        text += f" In {r.upper_bounds} of them joints slide: {out.DILATANT}."
+    result.answer = text + (" The reasons stand in survey.csv." if fallen or without else "")
     return result

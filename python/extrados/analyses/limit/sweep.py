@@ -23,6 +23,7 @@ from extrados.analyses.limit.variation import (
 )
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
+from extrados.limit.errors import CannotStand
 from extrados.limit.motion import finite_motion
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
@@ -88,9 +89,13 @@ def run(context: Context, options: Sweep) -> Result:
     ask = Range(context.building, table, path, data, options, whole)
     swept = sweep(context, "sweep", Values(ask, values), len(values), f"sweep of {options.vary}", slow=True)
     outcomes = outcomes_of(swept.whole())
-    if all(o.gamma is None for o in outcomes):
+    if not any(o.gamma for o in outcomes):
+        if all(o.status == "cannot-stand" for o in outcomes):
+            raise CannotStand(
+                f"no value of {options.vary} gives a structure that stands; at the last {outcomes[-1].reason}"
+            )
         raise Refused(
-            f"no value of {options.vary} gives a structure that stands: {outcomes[-1].reason}", ("analysis", "vary")
+            f"no value of {options.vary} gives a structure with a capacity: {outcomes[-1].reason}", ("analysis", "vary")
         )
     changes = _changes(context, ask, values, outcomes) if options.locate and not whole else []
     numbers: dict[Signature, int] = {}
@@ -126,7 +131,12 @@ def run(context: Context, options: Sweep) -> Result:
         optimum_inside=bool(values[0] < best < values[-1]),
         values=values.tolist(),
         collapse_accelerations_g=[o.gamma for o in outcomes],
-        gaps=[out.Gap(value=v, reason=o.reason) for v, o in zip(values, outcomes, strict=True) if o.reason],
+        upper_bound_values=[v for v, o in zip(values.tolist(), outcomes, strict=True) if o.dilating],
+        gaps=[
+            out.Gap(value=v, status=o.status, reason=o.reason)
+            for v, o in zip(values, outcomes, strict=True)
+            if o.status != "ok"
+        ],
         duality_gap=max(o.gap for o in outcomes),
         **({"fractured_collapse_accelerations_g": fractured} if options.fracture else {}),
         **({"buttress_alone_accelerations_g": [o.alone for o in outcomes]} if options.buttress_alone else {}),
@@ -142,8 +152,10 @@ def run(context: Context, options: Sweep) -> Result:
     }
     result.arrays = {
         "value": Array(values, ("value",), "", f"values of {options.vary}"),
-        "gamma": Array(gamma, ("value",), "g", "collapse acceleration to +x; NaN where it cannot stand"),
-        "mechanism": Array(number, ("value",), "", "number of the mechanism; 0 where it cannot stand"),
+        "gamma": Array(
+            gamma, ("value",), "g", "collapse acceleration to +x; 0 where it cannot stand, NaN without an answer"
+        ),
+        "mechanism": Array(number, ("value",), "", "number of the mechanism; 0 where there is none"),
         "change": Array(np.array([c["value"] for c in changes]), ("change",), "", "where the mechanism changes"),
     }
     if options.fracture:
@@ -156,6 +168,8 @@ def run(context: Context, options: Sweep) -> Result:
         columns["buttress_alone_acceleration"] = alone
     for name in next((o.measures for o in outcomes if o.measures), {}):
         columns[name] = [o.measures.get(name, np.nan) for o in outcomes]
+    columns["status"] = [o.status for o in outcomes]
+    columns["upper_bound"] = ["dilatant friction" if o.dilating else "" for o in outcomes]
     columns["reason"] = [o.reason for o in outcomes]
     units = {
         options.vary: r.unit,
@@ -201,7 +215,7 @@ class Between:
                     before = middle
                 else:
                     after = middle
-            gamma = after.gamma if before.gamma is None else before.gamma
+            gamma = before.gamma if before.signature else after.gamma
             found.append({"value": after.value, "before": before.signature, "after": after.signature, "gamma": gamma})
             low = after
         return found
@@ -329,6 +343,11 @@ def _words(options: Sweep, r: out.Sweep) -> str:
         text += f" At {locked} it locks: past that no load of this kind brings it down."
     if r.stable_limits:
         text += f" The range in which it stands ends at {', '.join(f'{v:.4g}' for v in r.stable_limits)}."
-    elif r.gaps:
-        text += f" {len(r.gaps)} of {len(r.values)} values give no structure that stands."
+    counts = {status: sum(gap.status == status for gap in r.gaps) for status in ("cannot-stand", "no-answer")}
+    if counts["cannot-stand"]:
+        text += f" At {counts['cannot-stand']} of {len(r.values)} values the structure cannot stand (capacity 0)."
+    if counts["no-answer"]:
+        text += f" At {counts['no-answer']} of {len(r.values)} values there is no answer."
+    if r.upper_bound_values:
+        text += f" At {len(r.upper_bound_values)} of {len(r.values)} values joints slide: {out.DILATANT}."
     return text

@@ -63,6 +63,7 @@ def run(context: Context, options: Thrust) -> Result:
         least_part_of_joints=part,
         weight_N=answer.loads.scale,
         depth_m=assembly.depth,
+        dilating=bool(limit.dilating(answer.mechanism) or limit.dilating(answer.back_mechanism)),
         duality_gap=answer.gap,
         **lines,
     )
@@ -148,7 +149,8 @@ def _words(r: out.Thrust, assembly: Assembly) -> str:
     low, high = r.admissible_interval_g
     shown = central or r.least
     text += spoken_ties(None if shown is None else shown.ties)
-    return f"{text} Lines are admissible from {low:.4f} to {high:.4f} g."
+    bound = f" (joints slide there: {out.DILATANT})" if r.dilating else ""
+    return f"{text} Lines are admissible from {low:.4f} to {high:.4f} g{bound}."
 
 
 def _table(assembly: Assembly, state: State) -> TableData:

@@ -25,10 +25,11 @@ from extrados.building.building import Building
 from extrados.building.errors import NoView
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.answer import Answer
+from extrados.limit.certificate import certify
 from extrados.limit.fracture import Fracture
 from extrados.limit.graphic import thrust_joint, thrust_of
 from extrados.limit.motion import finite_motion
-from extrados.limit.programme import LimitAnalysis, NoEquilibrium
+from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium
 from extrados.results import limit as out
 from extrados.results.model import Array, Result
 
@@ -38,7 +39,7 @@ FILM = 90  # tilts of an animation
 
 MOST_NAMED = 6  # hinges and sliding joints told in words
 
-SETTLED = 1e-7  # residual of a state without dilatancy that is worth a word
+MOST_BESIDE = 400  # joints up to which a state without dilatancy is sought beside an upper bound: a few seconds
 
 #: Above this the joints of masonry slide
 USUAL_FRICTION = 0.7
@@ -77,7 +78,8 @@ def run(context: Context, options: Tilt) -> Result:
     state, mechanism = answer.collapse_state, answer.mechanism
     result = Result("tilt")
     fracture = _fracture(building, options, answer, result) if options.fracture else {}
-    sliding = _non_dilatant(limit, result)
+    dilating = {1: limit.dilating(mechanism), -1: limit.dilating(answer.back_mechanism)}
+    sliding = _without_dilatancy(limit, answer, dilating, result)
     found = out.Tilt(
         collapse_acceleration_g=state.gamma,
         collapse_acceleration_opposite_g=-answer.back_state.gamma,
@@ -180,39 +182,68 @@ def _thrusts(answer: Answer) -> dict[str, object]:
     return {"thrust_min_N": first.min_N, "thrust_max_N": first.max_N, "thrusts": table}
 
 
-def _admissible(answer: Answer, sliding: dict[str, out.NonDilatant]) -> list[float]:
+def _admissible(answer: Answer, sliding: dict[str, object]) -> list[float]:
     """Accelerations between which forces find a way: how joints slide is no question there, so dilatant loads bound it."""
     low, high = answer.back_state.gamma, answer.gamma
-    if sliding:
-        back, forth = sliding["non_dilatant_opposite"].associated_g, sliding["non_dilatant"].associated_g
-        low, high = low if back is None else -back, high if forth is None else forth
+    back, forth = (sliding.get(name) for name in ("non_dilatant_opposite", "non_dilatant"))
+    if isinstance(back, out.NonDilatant) and back.associated_g is not None:
+        low = -back.associated_g
+    if isinstance(forth, out.NonDilatant) and forth.associated_g is not None:
+        high = forth.associated_g
     return [low, high]
 
 
-def _non_dilatant(limit: LimitAnalysis, result: Result) -> dict[str, out.NonDilatant]:
-    """What the collapse loads without dilatancy rest on, both ways; nothing where sliding dilates."""
-    told = {}
-    for direction, name in ((1, "non_dilatant"), (-1, "non_dilatant_opposite")):
-        if direction not in limit.coulomb:
+def _without_dilatancy(
+    limit: LimitAnalysis, answer: Answer, dilating: dict[int, list[int]], result: Result
+) -> dict[str, object]:
+    """Least states without dilatancy and their certificates: of both senses where the deck asks for that rule, and beside
+    the upper bound of associated friction of each sense in whose mechanism pressed joints slide."""
+    told: dict[str, object] = {}
+    if limit.associated and limit.friction is not None:
+        told |= {"dilating_joints": dilating[1], "dilating_joints_opposite": dilating[-1]}
+    beside = limit.without_dilatancy() if limit.associated and any(dilating.values()) else limit
+    for direction, end in ((1, ""), (-1, "_opposite")):
+        try:
+            if not limit.associated:
+                forth, back = (answer.collapse_state, answer.mechanism), (answer.back_state, answer.back_mechanism)
+                pair = forth if direction > 0 else back
+            elif dilating[direction]:
+                if len(limit.assembly.a) > MOST_BESIDE:
+                    raise NoAnswer(
+                        f'of more than {MOST_BESIDE} joints it is sought on request alone, by friction_rule = "non-associated"'
+                    )
+                pair = beside.collapse(direction)
+            else:
+                continue
+        except (NoAnswer, NoEquilibrium) as error:
+            told["non_associated_reason"] = str(error)
             continue
-        found = limit.coulomb[direction]
-        lower, upper = (None if g is None else direction * g for g in limit.without_dilatancy_between(direction))
-        r = found.residuals
-        starts = [direction * g for g in found.starts]
-        told[name] = out.NonDilatant(
-            associated_g=upper, frictionless_g=lower, starts_g=starts, spread_g=max(starts) - min(starts),
-            equilibrium_residual=r.equilibrium, friction_residual=r.friction, tension_residual=r.tension,
-            overlap_residual=r.overlap, complementarity_residual=r.complementarity, work_residual=r.work,
-        )  # fmt: skip
+        found = beside.coulomb[direction]
+        bounds = beside.without_dilatancy_between(direction)
+        lower, upper = (None if g is None else direction * g for g in bounds)
+        state, mechanism = pair
+        proof = certify(limit.assembly, limit.loads, limit.friction, state, mechanism, limit.strength)
+        certified = proof.holds(state.gamma)
+        if certified or not limit.associated:
+            told[f"collapse_acceleration_non_associated{end}_g"] = direction * state.gamma
+            r, starts = found.residuals, [direction * g for g in found.starts]
+            told[f"non_dilatant{end}"] = out.NonDilatant(
+                associated_g=upper, frictionless_g=lower, starts_g=starts, spread_g=max(starts) - min(starts),
+                certified=certified, zero_gap_g=proof.zero_gap, equilibrium_residual=proof.equilibrium,
+                friction_residual=proof.friction, tension_residual=proof.tension, overlap_residual=proof.closing,
+                complementarity_residual=r.complementarity, work_residual=r.work,
+            )  # fmt: skip
+        way = "to +x" if direction > 0 else "to -x"
         if found.falling is not None:
             stone = limit.assembly.block_names[found.falling]
             result.warnings.append(
                 f"{stone} hangs between its neighbours by friction alone, and slides out of them at any load in a state without "
-                f"dilatancy: {'to +x' if direction > 0 else 'to -x'} nothing is borne that can be relied on"
+                f"dilatancy: {way} nothing is borne that can be relied on"
             )
-        if r.worst > SETTLED:
+        if not certified:
+            told["non_associated_reason"] = f"the state found {way} is not certified (zero gap {proof.zero_gap:.1e} g)"
             result.warnings.append(
-                f"the state without dilatancy {'to +x' if direction > 0 else 'to -x'} obeys the laws of the joints to {r.worst:.1e} only"
+                f"the state without dilatancy {way} is not certified: its zero gap is {proof.zero_gap:.1e} g"
             )
     return told
 
@@ -258,20 +289,34 @@ def _fracture(building: Building, options: Tilt, answer: Answer, result: Result)
         crack_height_ratio=found.height_ratio,
         resultant_from_outer_face_ratio=found.section_ratio,
         hinges=hinge_rows(found.assembly, found.mechanism.hinges, found.mechanism.pivot),
+        dilating=bool(LimitAnalysis(found.assembly, building.friction()).dilating(found.mechanism)),
     )
     return {"fracture": told}
 
 
-def _told(r: out.NonDilatant) -> str:
-    """The bounds and the spread of a state without dilatancy in words."""
-    upper = "no load" if r.associated_g is None else f"{r.associated_g:.4f} g"
-    lower = (
-        "nothing stands without friction" if r.frictionless_g is None else f"{r.frictionless_g:z.4f} g without friction"
-    )
-    return (
-        f"Sliding does not dilate: it is the least of {len(r.starts_g)} states found, which spread over {r.spread_g:.4f} g; "
-        f"with dilatancy it bears {upper}, {lower}. "
-    )
+def _told(found: out.Tilt) -> str:
+    """In words: where capacities are upper bounds by dilatant friction, and the least states without dilatancy."""
+    ends = (
+        ("to +x", found.dilating_joints, found.non_dilatant, found.collapse_acceleration_non_associated_g),
+        (
+            "to -x", found.dilating_joints_opposite, found.non_dilatant_opposite,
+            found.collapse_acceleration_non_associated_opposite_g,
+        ),
+    )  # fmt: skip
+    bounds = [way for way, dilating, *_ in ends if dilating]
+    text = f"Pushed {' and '.join(bounds)} joints slide: {out.DILATANT}. " if bounds else ""
+    for way, _, r, least in ends:
+        if r is None or least is None:
+            continue
+        upper = "none" if r.associated_g is None else f"{r.associated_g:.4f} g"
+        lower = "nothing stands" if r.frictionless_g is None else f"{r.frictionless_g:z.4f} g"
+        text += (
+            f"Without dilatancy {way}: {least:.4f} g, the least of {len(r.starts_g)} states found (spread {r.spread_g:.4f} g); "
+            f"bounds: {lower} without friction, {upper} with dilatancy. "
+        )
+    if found.non_associated_reason:
+        text += f"A state without dilatancy is not given: {found.non_associated_reason}. "
+    return text
 
 
 def _some(names: list[str], apart: str = ", ") -> str:
@@ -298,8 +343,7 @@ def _words(what: str, assembly: Assembly, answer: Answer, found: out.Tilt) -> st
     )
     if abs(back - gamma) > 1e-6 * max(1.0, abs(gamma)):
         text += f"To -x it bears {back:.4f} g ({degrees(back):.2f} degrees). "
-    if found.non_dilatant:
-        text += _told(found.non_dilatant)
+    text += _told(found)
     needed = np.inf if found.required_friction is None else found.required_friction
     text += f"Friction of {needed:.2f} is needed" + (
         f"; upright the geometric safety factor is {answer.safety:.2f}." if np.isfinite(answer.safety) else "."

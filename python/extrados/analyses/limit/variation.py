@@ -12,10 +12,10 @@ from extrados.analyses.limit.tables import LimitAnalysisTable
 from extrados.building.building import Building
 from extrados.building.geometry.assembly import GROUND, Assembly, part_of
 from extrados.building.geometry.builder import BadGeometry
-from extrados.limit.answer import why_not
-from extrados.limit.errors import CannotStand
+from extrados.limit.answer import cannot_stand
 from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium
 from extrados.limit.solver import Immovable, NoAnswer
+from extrados.results import limit as out
 
 Signature = tuple[tuple[str, str], ...]
 #: Stands for a structure that no load of the kind brings down
@@ -24,7 +24,8 @@ LOCKED: Signature = (("all", "locked"),)
 
 @dataclass(frozen=True)
 class Outcome:
-    """What one section gives; gamma is None with a reason where it gives nothing."""
+    """What one section gives: its collapse acceleration gamma [g], 0 with the proof as reason where it cannot stand, None
+    with a reason where there is no answer."""
 
     gamma: float | None = None
     fractured: float | None = None
@@ -35,8 +36,16 @@ class Outcome:
     mechanism: Mechanism | None = None
     notes: list[str] = field(default_factory=list)
     locked: bool = False  # no load of the kind brings it down: it stands, but has no capacity to give
+    dilating: bool = False  # pressed joints slide in its mechanism: gamma is an upper bound by dilatant friction
     measures: dict[str, float] = field(default_factory=dict)  # derived lengths of the section [m]
     alone: float | None = None  # of the leeward buttress by itself
+
+    @property
+    def status(self) -> out.SectionStatus:
+        """Whether it has a capacity, cannot stand, is locked, or has no answer."""
+        if self.locked:
+            return "locked"
+        return "no-answer" if self.gamma is None else "cannot-stand" if self.reason else "ok"
 
     def row(self) -> dict[str, np.ndarray]:
         """What a sweep keeps of it: all but the assembly and its mechanism."""
@@ -47,7 +56,8 @@ class Outcome:
             self.gap,
             np.nan if self.alone is None else self.alone,
         ]
-        return {"numbers": np.array(numbers), "locked": np.array(self.locked), "words": np.array(json.dumps(words))}
+        marks = np.array([self.locked, self.dilating])
+        return {"numbers": np.array(numbers), "marks": marks, "words": np.array(json.dumps(words))}
 
 
 def outcome_of(row: dict[str, np.ndarray]) -> Outcome:
@@ -56,7 +66,7 @@ def outcome_of(row: dict[str, np.ndarray]) -> Outcome:
     marks, reason, notes, measures = json.loads(str(row["words"]))
     return Outcome(
         gamma, fractured, tuple((name, mark) for name, mark in marks), gap or 0.0, reason, notes=notes,
-        locked=bool(row["locked"]), measures=measures, alone=alone,
+        locked=bool(row["marks"][0]), dilating=bool(row["marks"][1]), measures=measures, alone=alone,
     )  # fmt: skip
 
 
@@ -131,8 +141,13 @@ def _evaluate(
             measures=measures_of(assembly),
         )  # fmt: skip
     except NoEquilibrium:
-        reason = _reason(limit) if explain else "cannot stand"
-        return Outcome(reason=reason, assembly=assembly, measures=measures_of(assembly))
+        if not explain:
+            return Outcome(reason="not proven", assembly=assembly, measures=measures_of(assembly))
+        try:
+            reason = f"cannot stand: {cannot_stand(limit)}"
+        except (NoEquilibrium, NoAnswer) as error:
+            return Outcome(reason=str(error), assembly=assembly, measures=measures_of(assembly))
+        return Outcome(0.0, reason=reason, assembly=assembly, measures=measures_of(assembly))
     except NoAnswer as error:
         return Outcome(reason=str(error), assembly=assembly, measures=measures_of(assembly))
     cracked, notes = None, []
@@ -142,20 +157,13 @@ def _evaluate(
             cracked = state.gamma if found is None else found.gamma
             if cracked <= 0.0:
                 raise NoEquilibrium("cannot stand upright")
-        except (NoEquilibrium, Refused) as error:
-            cracked = None
+        except (NoEquilibrium, NoAnswer, Refused) as error:
+            cracked = 0.0 if isinstance(error, NoEquilibrium) else None
             notes.append(f"with the buttress cracked: {error}")
     return Outcome(
         state.gamma, cracked, signature(assembly, mechanism), abs(state.gamma - mechanism.upper_bound), "",
-        assembly, mechanism, notes, measures=measures_of(assembly),
+        assembly, mechanism, notes, dilating=bool(limit.dilating(mechanism)), measures=measures_of(assembly),
     )  # fmt: skip
-
-
-def _reason(limit: LimitAnalysis) -> str:
-    try:
-        return f"cannot stand: {why_not(limit)}"
-    except (NoEquilibrium, NoAnswer, CannotStand) as error:
-        return f"cannot stand: {error}"
 
 
 def measures_of(assembly: Assembly) -> dict[str, float]:

@@ -39,6 +39,7 @@ export function sidebar(app, box) {
     else if (!scene.within) parts.push(h("p", { class: "verdict bad" }, h("b", {}, "It comes down. "), `${number(scene.gamma, 3)} g is more than it bears.`));
     else parts.push(h("p", { class: "verdict good" }, h("b", {}, scene.gamma ? "It stands when tilted. " : "It stands. "), `As a mechanism it comes down at ${number(Math.min(c.plus_g, c.minus_g), 4)} g.`));
     const rows = [];
+    if (c && (scene.dilating?.plus || scene.dilating?.minus)) parts.push(h("p", { class: "remark" }, "Joints slide in the mechanism: the collapse acceleration is an upper bound (dilatant friction). The analysis tilt of a deck also gives the least state found without dilatancy."));
     if (c) {
       rows.push(row("Bears to +x", h("span", { "data-number": "plus" }, `${number(c.plus_g, 4)} g · ${number(degrees(c.plus_g), 4)}°`), "horizontal acceleration, and tilt of the ground, at which it becomes a mechanism"));
       rows.push(row("Bears to −x", h("span", { "data-number": "minus" }, `${number(c.minus_g, 4)} g · ${number(degrees(c.minus_g), 4)}°`)));

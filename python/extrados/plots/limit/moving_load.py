@@ -9,7 +9,7 @@ from matplotlib.collections import LineCollection
 
 from extrados.plots import style
 from extrados.plots.limit import section
-from extrados.results.limit import MovingLoad
+from extrados.results.limit import DILATANT, MovingLoad
 from extrados.results.store import Stored
 
 LONG = 0.5  # height over length: below it section and mechanism stand one over the other
@@ -87,7 +87,11 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         curve.set_ylabel("adequacy factor" if adequacy else "load at collapse [kN]")
         curve.set_title("Adequacy over place" if adequacy else "Load at collapse over place")
         found.append(
-            (style.save(fig, folder, f"{name}-places"), "What brings it down, over the place of the first axle.")
+            (
+                style.save(fig, folder, f"{name}-places"),
+                "Load that causes collapse, over the place of the first axle."
+                + (f" At the worst place joints slide: {DILATANT}." if r.dilating_joints else ""),
+            )
         )
     return found
 

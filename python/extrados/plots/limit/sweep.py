@@ -8,6 +8,8 @@ from extrados.plots import style
 from extrados.plots.limit import section
 from extrados.results.store import Stored
 
+MOST_NAMED = 8  # mechanisms in a legend
+
 
 def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Capacity curve with numbered mechanisms, and one section of each mechanism."""
@@ -16,7 +18,8 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     tilt = np.degrees(np.arctan(gamma))
     with style.figure(7.5, 4.2) as (fig, (ax,)):
         ax.plot(value, tilt, "-", color=style.EDGE, linewidth=1.0, zorder=2)
-        for k in range(1, int(number.max()) + 1):
+        seen = [k for k in range(1, int(number.max()) + 1) if (number == k).any()]
+        for k in seen:
             here = number == k
             ax.plot(
                 value[here],
@@ -24,7 +27,7 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 "o",
                 markersize=3.5,
                 color=section.CHAIN_COLOURS[(k - 1) % len(section.CHAIN_COLOURS)],
-                label=f"mechanism {k}",
+                label=f"mechanism {k}" if k in seen[:MOST_NAMED] else None,
                 zorder=3,
             )
         if "fractured" in run.arrays[name]:
@@ -54,7 +57,13 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             label=f"greatest: {r.optimum_value:.4g}",
         )
         for gap in r.gaps:
-            ax.plot(gap.value, 0.0, "x", color=style.THRUST, markersize=4)
+            ax.plot(gap.value, 0.0, "x" if gap.status == "cannot-stand" else ".", color=style.THRUST, markersize=4)
+        if r.upper_bound_values:
+            bounded = np.isin(value, r.upper_bound_values)
+            ax.plot(
+                value[bounded], tilt[bounded], "v", markersize=6, fillstyle="none", color=style.HINGE, zorder=4,
+                label="upper bound (dilatant friction)",
+            )  # fmt: skip
         ax.set_ylim(bottom=0.0)
         ax.set_xlabel(f"{spoken(r.vary)} [{r.unit}]" if r.unit else spoken(r.vary))
         ax.set_ylabel("tilt at collapse [deg]")
@@ -62,7 +71,8 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         found = [
             (
                 style.save(fig, folder, f"{name}-curve"),
-                "Tilt at collapse; dotted: changes of mechanism; crosses: values without a structure that stands.",
+                "Tilt at collapse; dotted: changes of mechanism; crosses: values at which the structure cannot stand; "
+                "points on the axis: values without an answer or without a limit.",
             )
         ]
     if len(run.array(name, "example")):

@@ -6,7 +6,7 @@ import numpy as np
 
 from extrados.plots import animation, style
 from extrados.plots.limit import section
-from extrados.results.limit import Tilt
+from extrados.results.limit import DILATANT, Tilt
 from extrados.results.store import Stored
 
 
@@ -31,7 +31,7 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             style.legend_below(fig, axes[0])
         section.hinge_marks(axes[0], r.hinges)
         section.overall_dimensions(axes[0], blocks, section.beside(run, name, axes[0]))
-        axes[0].set_title(f"Collapse at {r.collapse_acceleration_g:.4f} g to +x (tilt {r.tilt_angle_deg:.2f} deg)")
+        axes[0].set_title(_title(r))
         section.stone(axes[1], blocks, ghost=True)
         section.stone(axes[1], section.carried(blocks, centroid, run.array(name, "mechanism_pose")))
         section.ties(axes[1], run, name, "collapse", run.array(name, "mechanism_pose"))
@@ -81,7 +81,22 @@ def _caption(r: Tilt) -> str:
         if len(r.thrusts or {}) > 1
         else ""
     )
-    return f"Thrust line, hinges and mechanism under the greatest constant acceleration. Hinges: {letters}.{free}"
+    slides = f" Joints slide: {DILATANT}." if r.dilating_joints else ""
+    least = r.collapse_acceleration_non_associated_g if r.dilating_joints else None
+    if least is not None:
+        slides += f" Without dilatancy collapse is possible at {least:.4f} g (not drawn)."
+    return (
+        f"Thrust line, hinges and mechanism under the greatest constant acceleration. Hinges: {letters}.{free}{slides}"
+    )
+
+
+def _title(r: Tilt) -> str:
+    """The collapse acceleration; where joints slide both ends of its interval."""
+    if not r.dilating_joints:
+        return f"Collapse at {r.collapse_acceleration_g:.4f} g to +x (tilt {r.tilt_angle_deg:.2f} deg)"
+    least = r.collapse_acceleration_non_associated_g
+    without = "" if least is None else f"\nwithout dilatancy {least:.4f} g (least found)"
+    return f"Collapse to +x at {r.collapse_acceleration_g:.4f} g at most (dilatant friction){without}"
 
 
 def _draw_fracture(run: Stored, name: str, folder: Path, blocks, centroid, height: float) -> tuple[str, str]:
