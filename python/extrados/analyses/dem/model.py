@@ -168,8 +168,9 @@ def checked(
 
 
 def warnings(model: Model, options: DemTable, values: JointValues | None = None) -> list[str]:
-    """What is doubtful about the damping (thesis 7.2.1, 7.4.2), and what of the building is left out."""
-    found = passive_left_out(model.assembly.earth)
+    """What is doubtful about the damping (thesis 7.2.1, 7.4.2), what of the building is left out, and by how much blocks are
+    not as drawn."""
+    found = [*passive_left_out(model.assembly.earth), *adjusted(model)]
     if options.rigid:
         return found
     found += doubts_of_springs(values or model.values)
@@ -177,6 +178,19 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
         found.append(
             "mass-proportional damping acts on rigid rocking as air would: it has no physical meaning here and is unsafe"
         )
+    return found
+
+
+def adjusted(model: Model) -> list[str]:
+    """By how much blocks are not as drawn [mm]."""
+    rigid, tolerance, found = model.rigid, model.assembly.tolerance, []
+    if rigid.moved > 1e-6 * model.size:
+        found.append(
+            f"faces of blocks are moved by up to {1e3 * rigid.moved:.2g} mm to the joints in them (contact_tolerance {1e3 * tolerance:g} mm)"
+        )
+    if rigid.cut > 0.0:
+        why = f"contact_tolerance {1e3 * tolerance:g} mm" if tolerance else "arcs are drawn by chords"
+        found.append(f"overlaps of blocks of up to {1e3 * rigid.cut:.2g} mm are cut back ({why})")
     return found
 
 
