@@ -54,8 +54,10 @@ def compared(context: Context, rigid: bool, model: Model | SolidModel, find: Cal
             proof = proof_of(context.building)
         except NoAnswer:
             raise Refused(str(error), WHOLE) from None
+        if proof is not None:
+            raise CannotStand(f"{proof}; discrete elements: {error}", proof.motion, proof.neglects) from None
         wedged = f"; {WEDGED}" if isinstance(error, Falls) else ""
-        raise proof or Refused(f"{error}{wedged}", WHOLE) from None
+        raise Refused(f"{error}{wedged}", WHOLE) from None
     if doubt and result.status == "ok":
         result.answer += f" {doubt}"
     result.warnings += [text for text in (warning, alone or _contradiction(context.building, proof_of)) if text]
