@@ -44,8 +44,9 @@
   ENTRY(3, left, "left")           /* a body left the domain */ \
   ENTRY(4, blow_up, "blow-up")     /* the energy ledger does not close */ \
   ENTRY(5, step, "step")           /* the step asked for is above the critical one */ \
-  ENTRY(6, unsettled, "unsettled") /* no rest under gravity */ \
-  ENTRY(7, overlap, "overlap")     /* bodies overlap at the start */
+  ENTRY(6, unsettled, "unsettled") /* a body falls under gravity */ \
+  ENTRY(7, overlap, "overlap")     /* bodies overlap at the start */ \
+  ENTRY(8, restless, "restless")   /* no rest under gravity in the steps given */
 
 /* Rows of the energy ledger of discrete elements */
 #define EXTRADOS_DEM_ENERGY_LIST(ENTRY) \

@@ -18,8 +18,9 @@ contains
       use dem_run, only : run_options
       integer(c_int64_t), intent(in) :: handle
       !> End time [s], step [s] or 0, fraction of the critical step, settling tolerance, farthest settlement [m] or 0,
-      !> collapse [m] or 0, limit of the energy residual
-      real(c_double), intent(in) :: limits(7)
+      !> collapse [m] or 0, limit of the energy residual, beta while it settles [s], rotation [rad] and loss of height [m]
+      !> of a body that has collapsed
+      real(c_double), intent(in) :: limits(10)
       integer(c_int), intent(in) :: settle_steps              !! at most; 0: no settling
       integer(c_int), intent(in) :: stop_at_rest              !! 1: end once all is quiet
       integer(c_int), intent(in) :: threads
@@ -28,7 +29,7 @@ contains
       call model_take(handle, built, status)
       if (status /= status_ok) return
       call set_options(built, run_options(limits(1), limits(2), limits(3), limits(4), limits(5), limits(6), limits(7), &
-         int(settle_steps), stop_at_rest /= 0, int(threads)), status)
+         limits(8), limits(9), limits(10), int(settle_steps), stop_at_rest /= 0, int(threads)), status)
       call handle_leave(handle)
    end subroutine options
 

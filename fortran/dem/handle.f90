@@ -132,7 +132,8 @@ contains
       status = status_invalid_argument
       if (.not. (options%end_time > 0.0_wp .and. options%fraction > 0.0_wp .and. options%fraction <= 1.0_wp)) return
       if (.not. min(options%step, options%settle_tolerance, options%settlement, options%collapse, &
-                    options%residual_limit) >= 0.0_wp) return
+                    options%residual_limit, options%settle_damping, options%collapse_turn, &
+                    options%collapse_drop) >= 0.0_wp) return
       if (options%threads < 1) return
       built%options = options
       built%ready = .true.

@@ -5,7 +5,7 @@ module dem_joint
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: joint_law, brace
+   public :: joint_law, brace, free_mortar
 
    !> A type of joint; in the plane stiffnesses and strengths are those of the area times the depth
    type :: joint_law
@@ -19,24 +19,34 @@ module dem_joint
 
 contains
 
-   !> Make mortar unbreakable; `own` keeps what it was, and is not allocated where there is none
-   subroutine brace(law, own, status)
+   !> Damp joints and make mortar unbreakable; `own` keeps what they were
+   subroutine brace(law, damping, own, braced, status)
       type(joint_law), intent(inout) :: law(:)
+      real(wp), intent(in) :: damping               !! beta, where their own is less [s]
       type(joint_law), allocatable, intent(out) :: own(:)
+      logical, intent(out) :: braced                !! whether there is mortar
       integer(c_int), intent(out) :: status         !! status_out_of_memory, else ok
       real(wp), parameter :: unbreakable = 1.0e30_wp    ! far from overflow, squared and times an area too
       integer :: k, failed
-      status = status_ok
-      if (.not. any(max(law%cohesion, law%tension) > 0.0_wp)) return
+      braced = any(max(law%cohesion, law%tension) > 0.0_wp)
       allocate (own(size(law)), stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
       if (failed /= 0) return
       own(:) = law
+      law%damping = max(law%damping, damping)
       do k = 1, size(law)
          if (.not. max(law(k)%cohesion, law(k)%tension) > 0.0_wp) cycle
          law(k)%cohesion = unbreakable
          law(k)%tension = unbreakable
       end do
    end subroutine brace
+
+   !> Give mortar its own strength again
+   subroutine free_mortar(law, own)
+      type(joint_law), intent(inout) :: law(:)
+      type(joint_law), intent(in) :: own(:)
+      law%cohesion = own%cohesion
+      law%tension = own%tension
+   end subroutine free_mortar
 
 end module dem_joint

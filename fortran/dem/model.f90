@@ -24,7 +24,7 @@ module dem_model
       type(body_set) :: set
       type(contact_set) :: contacts
       type(joint_law), allocatable :: law(:)
-      type(joint_law), allocatable :: own_law(:)      !! while mortar is braced: with its own strength
+      type(joint_law), allocatable :: own_law(:)      !! while joints are braced: as they are
       real(wp) :: gravity(2) = 0.0_wp          !! [m/s^2]
       real(wp) :: mass_damping = 0.0_wp        !! alpha [1/s]
       real(wp) :: pull(2) = 0.0_wp             !! body force of the last step [m/s^2]

@@ -8,12 +8,12 @@ module dem_plane_run
    use dem_clock, only : model_clock
    use dem_contacts, only : contact_pair, overlap, measure
    use dem_energy, only : energy_terms
-   use dem_joint, only : brace
+   use dem_joint, only : brace, free_strength => free_mortar
    use dem_law, only : elastic_energy
    use dem_model, only : block_model, advance, critical_step
    use dem_moreau, only : advance_rigid, quickest
    use dem_rigid, only : rigid_solver, suitable_step
-   use dem_run, only : simulation, any_step, model_sizes
+   use dem_run, only : simulation, any_step, model_sizes, slides_not
    use dem_search, only : search
    use dem_tape, only : tape
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
@@ -39,8 +39,9 @@ module dem_plane_run
       procedure :: limits
       procedure :: mark_rest
       procedure :: stop_all
-      procedure :: brace_mortar
-      procedure :: unbrace_mortar
+      procedure :: brace_joints
+      procedure :: free_mortar
+      procedure :: free_joints
       procedure :: forget_settling
       procedure :: put_down
       procedure :: sizes
@@ -205,15 +206,16 @@ contains
       real(wp), intent(in) :: collapse
       integer :: k
       real(wp) :: x, y
+      logical :: gone
       associate (model => run%model, record => run%record, domain => run%domain)
          do k = 1, size(model%set%item)
             associate (b => model%set%item(k))
                if (b%fixed) cycle
                x = b%x - model%base_place(1)
                y = b%y - model%base_place(2)
-               if (collapse > 0.0_wp) then
-                  if (hypot(x - b%rest_x, y - b%rest_y) > collapse) record%reason = stop_collapse
-               end if
+               gone = collapse > 0.0_wp .and. hypot(x - b%rest_x, y - b%rest_y) > collapse
+               if (gone .and. model%shaking) gone = slides_not(run%options, abs(b%angle - b%rest_angle), b%rest_y - y)
+               if (gone) record%reason = stop_collapse
                if (x < domain(1) .or. x > domain(2) .or. y < domain(3) .or. y > domain(4)) record%reason = stop_left
                if (record%reason == stop_end) cycle
                record%blamed(1) = k
@@ -259,18 +261,22 @@ contains
       end associate
    end subroutine stop_all
 
-   subroutine brace_mortar(run, braced, status)
+   subroutine brace_joints(run, braced, status)
       class(block_simulation), intent(inout) :: run
       logical, intent(out) :: braced
       integer(c_int), intent(out) :: status
-      call brace(run%model%law, run%model%own_law, status)
-      braced = allocated(run%model%own_law)
-   end subroutine brace_mortar
+      call brace(run%model%law, run%options%settle_damping, run%model%own_law, braced, status)
+   end subroutine brace_joints
 
-   subroutine unbrace_mortar(run)
+   subroutine free_mortar(run)
+      class(block_simulation), intent(inout) :: run
+      call free_strength(run%model%law, run%model%own_law)
+   end subroutine free_mortar
+
+   subroutine free_joints(run)
       class(block_simulation), intent(inout) :: run
       call move_alloc(run%model%own_law, run%model%law)
-   end subroutine unbrace_mortar
+   end subroutine free_joints
 
    subroutine forget_settling(run)
       class(block_simulation), intent(inout) :: run

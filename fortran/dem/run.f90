@@ -6,7 +6,8 @@ module dem_run
    use common_cancel, only : cancel_requested
    use common_kinds, only : wp
    use common_lists, only : dem_energy_count, stop_end => dem_stop_end, stop_blow_up => dem_stop_blow_up, &
-      stop_rest => dem_stop_rest, stop_step => dem_stop_step, stop_unsettled => dem_stop_unsettled
+      stop_rest => dem_stop_rest, stop_restless => dem_stop_restless, stop_step => dem_stop_step, &
+      stop_unsettled => dem_stop_unsettled
    use common_status, only : status_ok, status_cancelled, status_not_finite, status_out_of_memory
    use dem_clock, only : model_clock
    use dem_energy, only : energy_terms, energy_residual, energy_row
@@ -16,7 +17,8 @@ module dem_run
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: run_options, run_record, run_record_new, simulation, run_begin, run_on, any_step, model_sizes
+   public :: run_options, run_record, run_record_new, simulation, run_begin, run_on, any_step, model_sizes, &
+      slides_not
 
    !> Greatest stable step where any step is stable [s]
    real(wp), parameter :: any_step = huge(1.0_wp)
@@ -31,6 +33,9 @@ module dem_run
       real(wp) :: settlement = 0.0_wp        !! displacement by which a body falls instead of settling [m]; 0: none
       real(wp) :: collapse = 0.0_wp          !! displacement that counts as collapse [m]; 0: none
       real(wp) :: residual_limit = 0.1_wp    !! of the energy that went round
+      real(wp) :: settle_damping = 0.0_wp    !! beta of all joints while they settle, where their own is less [s]
+      real(wp) :: collapse_turn = 0.0_wp     !! a body that moved that far has collapsed where it turned by more [rad]
+      real(wp) :: collapse_drop = 0.0_wp     !! or is lower by more [m]; both 0: the displacement alone counts
       integer :: settle_steps = 0            !! at most; 0: no settling
       logical :: stop_at_rest = .false.      !! once the ground is quiet
       integer :: threads = 1
@@ -83,8 +88,9 @@ module dem_run
       procedure(look), deferred :: limits               !! has a body collapsed or left the scene?
       procedure(change), deferred :: mark_rest          !! places are counted from here
       procedure(change), deferred :: stop_all           !! no body moves
-      procedure(hold_mortar), deferred :: brace_mortar  !! mortar is unbreakable from now on, where there is any
-      procedure(change), deferred :: unbrace_mortar     !! it has its own strength again
+      procedure(hold_mortar), deferred :: brace_joints  !! damped to settle; mortar, where there is any, is unbreakable
+      procedure(change), deferred :: free_mortar        !! it has its own strength again
+      procedure(change), deferred :: free_joints        !! they have their own damping and strength again
       procedure(change), deferred :: forget_settling    !! no dashpot force, loss or count is left from it
       procedure(change), deferred :: put_down           !! places and rates at the last forces, as the last point
       procedure(lengths), deferred :: sizes             !! what a state has in common with the model; its lengths
@@ -217,6 +223,16 @@ contains
       if (failed == 0) record%wanted(:) = wanted
    end subroutine run_record_new
 
+   !> Whether a body that moved farther than counts as collapse did more than slide: it turned or is lower
+   pure function slides_not(options, turned, dropped) result(gone)
+      type(run_options), intent(in) :: options
+      real(wp), intent(in) :: turned                 !! [rad]
+      real(wp), intent(in) :: dropped                !! [m]
+      logical :: gone
+      gone = max(options%collapse_turn, options%collapse_drop) <= 0.0_wp
+      if (.not. gone) gone = turned > options%collapse_turn .or. dropped > options%collapse_drop
+   end function slides_not
+
    !> Settle a model and take the first step of its motion; paused then, unless it cannot run
    subroutine run_begin(run, status)
       class(simulation), intent(inout), target :: run
@@ -269,7 +285,7 @@ contains
       end if
       if (status /= status_ok) return
       if (.not. rests) then
-         run%record%reason = stop_unsettled
+         run%record%reason = merge(stop_restless, stop_unsettled, run%record%reason == stop_end)
          if (run%record%blamed(1) == 0) run%record%blamed(1) = run%least_balanced()
       end if
       call run%forget_settling()
@@ -279,20 +295,23 @@ contains
       clock%steps = 0
    end subroutine settle
 
-   !> Rest on springs. Mortar does not break while the weight comes, which comes at once and overshoots; then what
-   !> cannot bear the weight at rest breaks, and all comes to rest anew.
+   !> Rest on springs, damped as much as rest needs, whatever the damping of the motion. Mortar does not break while the
+   !> weight comes, which comes at once and overshoots; then what cannot bear the weight at rest breaks, and all comes
+   !> to rest anew.
    subroutine rest_with_mortar(run, rests, status)
       class(simulation), intent(inout), target :: run
       logical, intent(out) :: rests
       integer(c_int), intent(out) :: status
       logical :: braced
       rests = .false.
-      call run%brace_mortar(braced, status)
+      call run%brace_joints(braced, status)
       if (status /= status_ok) return
       call rest_by_damping(run, rests, status)
-      if (.not. braced) return
-      call run%unbrace_mortar()
-      if (status == status_ok .and. rests) call rest_by_damping(run, rests, status)
+      if (braced .and. status == status_ok .and. rests) then
+         call run%free_mortar()
+         call rest_by_damping(run, rests, status)
+      end if
+      call run%free_joints()
    end subroutine rest_with_mortar
 
    !> Rest by kinetic damping: whenever the kinetic energy has passed a peak, all stops

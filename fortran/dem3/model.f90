@@ -30,7 +30,7 @@ module dem3_model
       integer, allocatable :: colour_first(:)         !! first of each colour in the sweep; then what has none
       integer :: colours = 0
       type(joint_law), allocatable :: law(:)          !! the first is that of contacts that form later
-      type(joint_law), allocatable :: own_law(:)      !! while mortar is braced: with its own strength
+      type(joint_law), allocatable :: own_law(:)      !! while joints are braced: as they are
       integer, allocatable :: law_of(:, :)            !! (3, joints): two bodies, the lower first, law; ascending
       type(dowel), allocatable :: dowels(:)
       real(wp) :: way(3) = [1.0_wp, 0.0_wp, 0.0_wp]   !! of the horizontal ground motion

@@ -5,9 +5,9 @@ module dem3_run
    use common_status, only : status_ok, status_invalid_argument, status_not_finite, status_out_of_memory
    use dem_clock, only : model_clock
    use dem_energy, only : energy_terms
-   use dem_joint, only : brace
+   use dem_joint, only : brace, free_strength => free_mortar
    use dem_rigid, only : rigid_solver, suitable_step
-   use dem_run, only : any_step, model_sizes, simulation
+   use dem_run, only : any_step, model_sizes, simulation, slides_not
    use dem_tape, only : tape, loading
    use dem3_bodies, only : body, spin_of, turn_freely
    use dem3_law, only : contact_point
@@ -37,8 +37,9 @@ module dem3_run
       procedure :: limits
       procedure :: mark_rest
       procedure :: stop_all
-      procedure :: brace_mortar
-      procedure :: unbrace_mortar
+      procedure :: brace_joints
+      procedure :: free_mortar
+      procedure :: free_joints
       procedure :: forget_settling
       procedure :: put_down
       procedure :: sizes
@@ -187,12 +188,19 @@ contains
       class(solid_simulation), intent(inout) :: run
       real(wp), intent(in) :: collapse
       integer :: k
-      real(wp) :: away
+      real(wp) :: away, turned
+      logical :: gone
       associate (model => run%model, record => run%record)
          do k = 1, size(model%set%item)
             if (model%set%item(k)%fixed) cycle
-            away = norm2(model%set%item(k)%x - model%set%item(k)%rest)
-            if (collapse > 0.0_wp .and. away > collapse) record%reason = stop_collapse
+            associate (b => model%set%item(k))
+               away = norm2(b%x - b%rest)
+               ! The trace of a rotation is 1 + 2 cos of its angle.
+               turned = acos(max(-1.0_wp, min(1.0_wp, 0.5_wp * (sum(b%turn * b%rest_turn) - 1.0_wp))))
+               gone = collapse > 0.0_wp .and. away > collapse
+               if (gone .and. model%shaking) gone = slides_not(run%options, turned, b%rest(3) - b%x(3))
+               if (gone) record%reason = stop_collapse
+            end associate
             if (model%shaking .and. run%domain > 0.0_wp .and. away > run%domain) record%reason = stop_left
             if (record%reason == stop_end) cycle
             record%blamed(1) = k
@@ -221,18 +229,22 @@ contains
       end do
    end subroutine stop_all
 
-   subroutine brace_mortar(run, braced, status)
+   subroutine brace_joints(run, braced, status)
       class(solid_simulation), intent(inout) :: run
       logical, intent(out) :: braced
       integer(c_int), intent(out) :: status
-      call brace(run%model%law, run%model%own_law, status)
-      braced = allocated(run%model%own_law)
-   end subroutine brace_mortar
+      call brace(run%model%law, run%options%settle_damping, run%model%own_law, braced, status)
+   end subroutine brace_joints
 
-   subroutine unbrace_mortar(run)
+   subroutine free_mortar(run)
+      class(solid_simulation), intent(inout) :: run
+      call free_strength(run%model%law, run%model%own_law)
+   end subroutine free_mortar
+
+   subroutine free_joints(run)
       class(solid_simulation), intent(inout) :: run
       call move_alloc(run%model%own_law, run%model%law)
-   end subroutine unbrace_mortar
+   end subroutine free_joints
 
    subroutine forget_settling(run)
       class(solid_simulation), intent(inout) :: run

@@ -49,14 +49,14 @@ def test_a_column_rocks_in_the_direction_of_the_motion(tmp_path) -> None:
         answered(tmp_path, f'{COLUMN}{PULSE}[[analysis]]\nkind = "dem"\nend_time = 0.8\ndirection = {d}\n')
         for d in (90.0, -90.0)
     )
-    assert there.status == "ok" and there.results.outcome == "recovery" and there.results.energy_residual_ratio < 1e-2
+    assert there.status == "ok" and there.results.outcome == "rocked" and there.results.energy_residual_ratio < 1e-2
     shift, other = (r.arrays["shift"].data for r in (there, back))
     assert np.abs(shift[..., 1]).max() > 0.02
     assert shift[..., 1] == pytest.approx(-other[..., 1], abs=5e-3 * np.abs(shift).max())
     assert np.abs(shift[..., 0]).max() < 0.01 * np.abs(shift[..., 1]).max()
     assert there.results.peak_displacement_m == pytest.approx(np.linalg.norm(shift, axis=2).max())
     assert there.arrays["state"].data.max() == 1 and list(there.results.peak_rotation_rad) == ["drum 1", "drum 2"]
-    assert "dem.glb" in there.files and "It rocks" in there.answer
+    assert "dem.glb" in there.files and there.answer.startswith("Blocks rock")
 
 
 def test_both_horizontal_components_of_a_record_act_at_once(tmp_path) -> None:
@@ -125,13 +125,13 @@ def test_solids_of_a_file_stand_or_fall(tmp_path) -> None:
     (tmp_path / "stones.obj").write_text(f"o cube\n{OBJ}\n{CUBE}")
     text = '[structure]\nkind = "blocks"\nfile = "stones.obj"\nunit = "m"\n[joints]\nnormal_stiffness = 1e8\n[[analysis]]\nkind = "dem"\n'
     stands = answered(tmp_path, text)
-    assert stands.status == "ok" and stands.results.outcome == "no-hinging"
+    assert stands.status == "ok" and stands.results.outcome == "at-rest"
     assert stands.answer.startswith("It stands under its own weight; nothing moves it.")
     leaning = "\n".join(f"v {x + 1.1 * z} {y} {z}" for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)))
     (tmp_path / "stones.obj").write_text(f"o slab\n{leaning}\n{CUBE}")
     falls = answered(tmp_path, text)
-    assert falls.status == "refused" and "does not stand under its own weight: slab falls" in falls.reason
-    assert "limit analysis agrees" in falls.reason
+    assert falls.status == "ok" and falls.verdict.outcome == "cannot-stand"
+    assert "does not stand under its own weight: slab falls" in falls.answer and "proof: " in falls.answer
 
 
 @pytest.mark.parametrize(
@@ -195,7 +195,7 @@ def test_a_column_rocks_on_rigid_contacts(tmp_path) -> None:
         for d in (90.0, -90.0)
     )
     r = there.results
-    assert there.status == "ok" and r.outcome == "recovery" and r.energy_residual_ratio < 1e-2
+    assert there.status == "ok" and r.outcome == "rocked" and r.energy_residual_ratio < 1e-2
     assert r.solver == "nonsmooth" and r.beta_s is None and r.critical_step_s is None
     assert r.convergence.open_steps == 0 and r.convergence.steps == pytest.approx(r.steps, abs=2)
     assert "rigid contacts converged in all" in there.answer and not any("damped" in text for text in there.warnings)
@@ -210,7 +210,7 @@ def test_rebound_and_rest_without_inertia_are_heard_of_solids(tmp_path) -> None:
     dead, lively = (answered(tmp_path, f"{text}rebound = {e}\n").results for e in (0.0, 0.8))
     assert dead.bounces == 0 and lively.bounces > 5
     push = '[motion]\nkind = "constant"\namplitude = "{}"\n[[analysis]]\nkind = "dem"\nend_time = 2.0\nquasi_static = true\n'
-    for amplitude, outcome in (("0.45 g", "no-hinging"), ("0.55 g", "collapse")):
+    for amplitude, outcome in (("0.45 g", "at-rest"), ("0.55 g", "collapse")):
         found = answered(tmp_path, f"{COLUMN}{push.format(amplitude)}{RIGID}")
         assert found.results.outcome == outcome and (found.results.collapse_time_s == 0.0) == (outcome == "collapse")
 
@@ -246,7 +246,7 @@ def test_rigid_contacts_find_what_falls(tmp_path) -> None:
     leaning = "\n".join(f"v {x + 1.1 * z} {y} {z}" for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)))
     (tmp_path / "stones.obj").write_text(f"o slab\n{leaning}\n{CUBE}")
     falls = answered(tmp_path, text)
-    assert falls.status == "refused" and "slab falls" in falls.reason and "limit analysis agrees" in falls.reason
+    assert falls.verdict.outcome == "cannot-stand" and "slab falls" in falls.answer
 
 
 @pytest.mark.parametrize(
@@ -281,7 +281,7 @@ def test_a_section_drawn_out_stands_on_its_springings(tmp_path) -> None:
         tmp_path,
         f'[structure]\n{arch}\n[joints]\nnormal_stiffness = 1e9\n[[analysis]]\nkind = "dem"\ndirection = 0.0\nend_time = 0.05\n',
     )
-    assert found.status == "ok" and found.results.outcome == "no-hinging" and found.results.contacts == 6
+    assert found.status == "ok" and found.results.outcome == "at-rest" and found.results.contacts == 6
 
 
 def test_stored_results_are_typed(tmp_path) -> None:

@@ -33,8 +33,9 @@ STILL = Ground(breaks=np.array([0.0, 1.0]), linear=np.zeros((1, 1, 2)), harmonic
 @dataclass(frozen=True)
 class RunOptions:
     """How to run. step [s]: 0 takes `fraction` of the critical step. settle_steps 0 starts without settling under gravity;
-    settlement: displacement by which a body falls instead of settling [m], 0 none. collapse: displacement that counts as
-    collapse [m], 0 none. residual_limit: of the energy that went round, above it the run is stopped. stop_at_rest: end once
+    settlement: displacement by which a body falls instead of settling [m], 0 none; settle_damping: beta of the joints until
+    then, where their own is less [s]. collapse: displacement that counts as collapse [m], 0 none, of a body that also turned
+    by more than `collapse_turn` [rad] or is lower by more than `collapse_drop` [m]; both 0: the displacement alone counts. residual_limit: of the energy that went round, above it the run is stopped. stop_at_rest: end once
     all rests and the ground is still. rigid: contacts without springs (the joints' stiffness and damping play no part, `step` 0
     takes one that suits the smallest block), with Newton's coefficient `rebound` at each point; quasi_static: without inertia."""
 
@@ -47,6 +48,9 @@ class RunOptions:
     settlement: float = 0.0
     collapse: float = 0.0
     residual_limit: float = 0.1
+    settle_damping: float = 0.0
+    collapse_turn: float = 0.0
+    collapse_drop: float = 0.0
     stop_at_rest: bool = False
     threads: int = 1
     rigid: bool = False
@@ -126,9 +130,20 @@ class BodyModel(Owner, ABC, Generic[Found]):
         o = self.options
         if not (o.end_time > 0.0 and o.output_step > 0.0 and 0.0 < o.fraction <= 1.0):
             raise ValueError("end time, output step and the fraction of the critical step must be positive")
-        limits = [o.end_time, o.step, o.fraction, o.settle_tolerance, o.settlement, o.collapse, o.residual_limit]
+        limits = [
+            o.end_time,
+            o.step,
+            o.fraction,
+            o.settle_tolerance,
+            o.settlement,
+            o.collapse,
+            o.residual_limit,
+            o.settle_damping,
+            o.collapse_turn,
+            o.collapse_drop,
+        ]
         status = _core.api_dem_run.options(
-            self.handle, real("limits", limits, (7,)), int(o.settle_steps) if settle else 0, int(o.stop_at_rest),
+            self.handle, real("limits", limits, (10,)), int(o.settle_steps) if settle else 0, int(o.stop_at_rest),
             thread_count(o.threads),
         )  # fmt: skip
         check(status, "options of the run")

@@ -156,7 +156,14 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     names = list(run[name].peak_rotation_rad)
     label = dict(zip(tracked.tolist(), names, strict=True))
     rigid = next((a for a in run.analyses if a["kind"] == "rocking" and "rotation" in run.arrays[a["name"]]), None)
-    with style.figure(8.0, 5.4, rows=2, sharex=True, height_ratios=[3, 1]) as (fig, (top, low)):
+    slid = run[name].slipped_joint
+    rows = [3, 1] if slid is None else [3, 2, 1]
+    with style.figure(8.0, 1.35 * sum(rows), rows=len(rows), sharex=True, height_ratios=rows) as (fig, axes):
+        top, low = axes[0], axes[-1]
+        if slid is not None:
+            slip = np.nan_to_num(run.array(name, "slip"))
+            axes[1].plot(time, 1e3 * slip[:, int(np.abs(slip).max(axis=0).argmax())], color=style.EDGE)
+            axes[1].set_ylabel("greatest slip [mm]")
         if rigid is not None and len(tracked) == 1:
             other = run.arrays[rigid["name"]]
             top.plot(
@@ -175,7 +182,8 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         low.set_xlabel("time [s]")
         low.set_xlim(0.0, time[-1])
         saved = style.save(fig, folder, f"{name}-rotation")
-    return saved, "Rotation of the blocks from their settled state, and the ground acceleration."
+    slips = "" if slid is None else ", slip of the joint that slides most"
+    return saved, f"Rotation of the blocks from their settled state{slips}, and the ground acceleration."
 
 
 def _energies(run: Stored, name: str, folder: Path) -> tuple[str, str]:

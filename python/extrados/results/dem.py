@@ -4,11 +4,17 @@ from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.limit import NamedHinge
-from extrados.results.rocking import RockingOutcome, between
-from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judge, judge_acceleration
+from extrados.results.rocking import between
+from extrados.results.verdict import Demand, KindResults, Verdict, judge, judge_acceleration
 
 #: What a joint does, in the stored array `hinge`: hinged at its first end (intrados) or its second (extrados)
 HINGED_FIRST, CLOSED, HINGED_SECOND, APART = -1, 0, 1, 2
+#: How a run ends: no joint opens or slides; joints slide and none opens; joints open, and it stands; it collapses
+DemOutcome = Literal["at-rest", "slid", "rocked", "collapse"]
+#: By what a block that moved farther than the collapse displacement has collapsed, rather than slid
+CollapseCriterion = Literal["rotation", "loss of height", "loss of support", "separation"]
+#: Of the length of a joint: it may slide so far without a doubt on the support that is left
+SLIP_LIMIT = 0.25
 #: What a contact of solids does, in the stored array `state`: CLOSED, open at some corners, APART
 ROCKS = 1
 
@@ -25,7 +31,7 @@ class Variation(ResultModel):
         "least fraction of critical damping at rotational impact", source="thesis Eq. 7.13"
     )
     damping_ratio_edge: float = fact("least fraction of critical damping at edge impact", source="thesis Eq. 7.9")
-    outcome: str = fact("no-hinging, recovery or collapse, or why the run is not to be trusted")
+    outcome: str = fact("at-rest, slid, rocked or collapse, or why the run is not to be trusted")
     peak_rotation_rad: float = fact("greatest rotation of any block", "rad")
     bounces: int = fact("times that blocks left the ground or each other")
     airborne_time_s: float = fact("longest time that a block was without contact", "s")
@@ -49,16 +55,26 @@ class Convergence(ResultModel):
 class DemRun(KindResults):
     """dem: the blocks under a motion."""
 
-    outcome: RockingOutcome = fact("no joint opens, joints open and it stands, or it comes down")
-    collapse_time_s: float | None = fact("when a block first moved farther than the collapse displacement", "s")
+    outcome: DemOutcome = fact("no joint opens or slides, joints slide, joints open and the blocks stand, or collapse")
+    collapse_criterion: CollapseCriterion | None = fact(
+        "by what the block collapsed, besides its displacement; null without collapse"
+    )
+    governing_block: str = fact("the block that collapsed first, else the block that moved farthest")
+    collapse_time_s: float | None = fact("when the first block collapsed", "s")
     stopped: str = fact("why the run ended")
     stopped_by: list[str] = fact("the blocks that ended it")
     stop_time_s: float = fact("when it ended", "s")
     still_moving: bool = fact("whether it still moved at the end")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block, positive to +x", "rad")
-    collapse_displacement_m: float = fact("displacement of a block that counts as collapse", "m")
+    collapse_displacement_m: float = fact(
+        "displacement of a block that counts as collapse where the block did more than slide", "m"
+    )
     peak_displacement_m: float = fact("greatest displacement of any block from its settled place", "m")
     peak_slip_m: float = fact("greatest slip of joints that still touch", "m")
+    residual_slip_m: float = fact("greatest slip of joints at the end", "m")
+    slip_ratio: float = fact("greatest slip over the length of its joint")
+    slipped_joint: str | None = fact("joint of that ratio; null where none slides by 1 %")
+    off_footing: list[str] = fact("blocks that slid farther than their footings reach, where no floor is named")
     peak_kinetic_energy_J: float = fact("greatest kinetic energy", "J")
     friction_loss_J: float = fact("energy lost in friction", "J")
     damping_loss_J: float = fact("energy lost in damping", "J")
@@ -101,7 +117,7 @@ class DemTilt(KindResults):
     """dem: the constant acceleration that brings the blocks down."""
 
     test: Literal["tilt"] = fact("the test")
-    outcome: RockingOutcome = fact("it comes down, at these accelerations")
+    outcome: DemOutcome = fact("it comes down, at these accelerations")
     collapse_acceleration_g: float = fact("constant acceleration that brings it down, pushed to +x", "g")
     collapse_acceleration_opposite_g: float = fact("constant acceleration that brings it down, pushed to -x", "g")
     tilt_angle_deg: float = fact("tilt of the ground that pushes alike, to +x", "deg")
@@ -127,8 +143,14 @@ class DemTilt(KindResults):
 class SolidDemRun(KindResults):
     """dem: blocks in space under a motion."""
 
-    outcome: RockingOutcome = fact("no contact opens, contacts open and it stands, or it comes down")
-    collapse_time_s: float | None = fact("when a block first moved farther than the collapse displacement", "s")
+    outcome: DemOutcome = fact(
+        "no contact opens or slides, contacts slide, contacts open and the blocks stand, or collapse"
+    )
+    collapse_criterion: CollapseCriterion | None = fact(
+        "by what the block collapsed, besides its displacement; null without collapse"
+    )
+    governing_block: str = fact("the block that collapsed first, else the block that moved farthest")
+    collapse_time_s: float | None = fact("when the first block collapsed", "s")
     direction_deg: float = fact("direction in plan of the horizontal motion, from +x to +y", "deg")
     horizontal_components: int = fact("2 where a record moves the ground across that direction, too")
     stopped: str = fact("why the run ended")
@@ -141,11 +163,17 @@ class SolidDemRun(KindResults):
     dowel_slip_m: float = fact("how far one of them gave way at most, settling included", "m")
     dowels_out: int = fact("how many of them came out")
     peak_rotation_rad: dict[str, float] = fact("greatest angle by which each followed block has turned", "rad")
-    collapse_displacement_m: float = fact("displacement of a block that counts as collapse", "m")
+    collapse_displacement_m: float = fact(
+        "displacement of a block that counts as collapse where the block did more than slide", "m"
+    )
     peak_displacement_m: float = fact("greatest displacement of any block from its settled place", "m")
     final_displacement_m: float = fact("greatest displacement of any block at the end", "m")
     peak_opening_m: float = fact("greatest gap at a corner of a contact that still touches", "m")
     peak_slip_m: float = fact("greatest slip of contacts that still touch", "m")
+    residual_slip_m: float = fact("greatest slip of contacts at the end", "m")
+    slip_ratio: float = fact("greatest slip over the least width of its contact")
+    slipped_joint: str | None = fact("joint of that ratio; null where none slides by 1 %")
+    off_footing: list[str] = fact("blocks that slid farther than their footings reach, where no floor is named")
     peak_kinetic_energy_J: float = fact("greatest kinetic energy", "J")
     friction_loss_J: float = fact("energy lost in friction", "J")
     damping_loss_J: float = fact("energy lost in damping", "J")
@@ -180,7 +208,7 @@ class SolidDemTilt(KindResults):
     """dem: the constant acceleration along a direction that brings blocks in space down."""
 
     test: Literal["tilt"] = fact("the test")
-    outcome: RockingOutcome = fact("it comes down, at these accelerations")
+    outcome: DemOutcome = fact("it comes down, at these accelerations")
     collapse_acceleration_g: float = fact("constant acceleration that brings it down, pushed along the direction", "g")
     collapse_acceleration_opposite_g: float = fact("the same, pushed the opposite way", "g")
     tilt_angle_deg: float = fact("tilt of the ground that pushes alike, along the direction", "deg")
@@ -203,15 +231,26 @@ class SolidDemTilt(KindResults):
 
 
 def _judged_run(run: DemRun | SolidDemRun) -> Verdict:
-    """The greatest displacement against the one that counts as collapse [m]; open where it still moves."""
-    outcome: Outcome = "collapses" if run.outcome == "collapse" else "open" if run.still_moving else "stands"
-    most, limit = run.peak_displacement_m, run.collapse_displacement_m
-    text = {
-        "collapses": f"A block moves farther than the {limit:.3g} m that count as collapse",
-        "stands": f"No block moves farther than {most:.3g} m; {limit:.3g} m count as collapse",
-        "open": "The run ended while it still moved",
-    }[outcome]
-    return judge(f"{text}.", most, limit, "m", outcome)
+    """The greatest displacement against the one that counts as collapse [m], or where joints slide beyond `SLIP_LIMIT` the
+    slip against that. Open where blocks still move, slid too far, or slid off a footing."""
+    most, limit, slip = run.peak_displacement_m, run.collapse_displacement_m, 1e3 * run.peak_slip_m
+    violated = [f"The footing under {name} ends where {name} slides on." for name in run.off_footing]
+    if run.outcome == "collapse":
+        how = f"{run.governing_block} collapses by {run.collapse_criterion}"
+        text = f"{how}, and moves farther than the {1e3 * limit:.3g} mm that count as collapse."
+        return judge(text, max(most, limit), limit, "m", "collapses", violated=violated)
+    if run.still_moving:
+        return judge("The run ended while blocks still moved.", most, limit, "m", "open", violated=violated)
+    if run.slip_ratio > SLIP_LIMIT:
+        text = (
+            f"Blocks slide by up to {slip:.3g} mm, {100 * run.slip_ratio:.3g} % of the joint {run.slipped_joint} (limit "
+            f"{100 * SLIP_LIMIT:g} %): whether the support that is left suffices is not decided."
+        )
+        return judge(text, run.slip_ratio, SLIP_LIMIT, "of the joint", "open", violated=violated)
+    text = f"No block moves farther than {1e3 * most:.3g} mm; {1e3 * limit:.3g} mm count as collapse."
+    if run.slipped_joint is not None:
+        text += f" Blocks slide by up to {slip:.3g} mm, {100 * run.slip_ratio:.3g} % of the joint {run.slipped_joint} (limit {100 * SLIP_LIMIT:g} %)."
+    return judge(text, most, limit, "m", "stands" if most < limit else "open", violated=violated)
 
 
 Dem = DemRun | DemTilt | SolidDemRun | SolidDemTilt

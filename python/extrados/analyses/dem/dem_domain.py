@@ -55,7 +55,7 @@ class Search:
     ):
         self.context, self.options, self.model, self.curves = context, options, model, curves
         self.settle = options.settle or dem_model.settle_time(model)
-        self.limit = options.collapse_displacement or 0.2 * model.size
+        self.collapse = measures.Collapse.of(options.collapse_displacement or 0.2 * model.size, model.size)
         self.job = _of_section(self, model) if isinstance(model, Model) else _of_solids(self, model)
         self.asked, self.total = 0, len(curves) * len(options.amplitudes) * rounds
         self.residual, self.steps, self.effort = 0.0, 0, dem_run.NO_EFFORT
@@ -94,7 +94,7 @@ class Search:
         """What of the core's options is the same of a section and of solids; `end` of the pulse [s]."""
         return {
             "end_time": end + self.settle, "output_step": output_step, "fraction": self.options.fraction,
-            "collapse": self.limit, "stop_at_rest": True, "rigid": self.curves[curve].rigid, "rebound": self.options.rebound,
+            **self.collapse.options, "settle_damping": self.curves[curve].values.settle_damping, "stop_at_rest": True, "rigid": self.curves[curve].rigid, "rebound": self.options.rebound,
             "step": self.options.time_step or 0.0,
         }  # fmt: skip
 

@@ -27,11 +27,12 @@ def friction_threshold(context: Context, trial: Trial, slip: float) -> float | N
         done += 1
         job = trial.job([model.values.scaled(friction=friction)])
         (run,) = answered(context, "dem-friction", job, "", tell=lambda n: None)
-        if run.reason == "unsettled":
+        if run.reason in ("unsettled", "restless"):
             return True
         dem_model.checked(run, model)
         gap_p, gap_q, moved = measures.openings(model, run)
-        return measures.peak_slip(measures.hinges(model, gap_p, gap_q, moved), moved) > slip
+        state = measures.hinges(model, gap_p, gap_q, moved)
+        return measures.Slip.of(state, moved, model.assembly.length).peak > slip
 
     low, high = 0.0, HIGHEST
     if slides(high):

@@ -1,6 +1,7 @@
 """What is read off a run: openings and slip of joints, hinges, the outcome, restitution, blocks, snapshots."""
 
 import itertools
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from extrados.analyses.dem.tables import Dem
 from extrados.building.geometry.assembly import GROUND
 from extrados.building.geometry.rigid import FOOTING
 from extrados.core import dem, dem3, dem_run
-from extrados.results.dem import APART, CLOSED, HINGED_FIRST, HINGED_SECOND, Convergence
+from extrados.results.dem import APART, CLOSED, HINGED_FIRST, HINGED_SECOND, CollapseCriterion, Convergence, DemOutcome
 from extrados.results.model import Array, TableData
 from extrados.schema.constants import GRAVITY
 
@@ -64,13 +65,30 @@ def hinges(model: Model, gap_p: np.ndarray, gap_q: np.ndarray, slip: np.ndarray)
     """State of each joint (time, joint): closed, hinged at p (intrados) or at q (extrados), or apart."""
     small = OPEN * model.assembly.length
     open_p, open_q = np.nan_to_num(gap_p) > small, np.nan_to_num(gap_q) > small
-    apart = (open_p & open_q) | (np.abs(np.nan_to_num(slip)) > 0.5 * model.assembly.length)
+    between = (model.assembly.a != GROUND) & (model.assembly.b != GROUND)
+    # What slid by more than its length lies on another block; on level ground it slides on.
+    apart = (open_p & open_q) | (between & (np.abs(np.nan_to_num(slip)) > model.assembly.length))
     return np.where(apart, APART, np.where(open_p, HINGED_SECOND, np.where(open_q, HINGED_FIRST, CLOSED)))
 
 
-def peak_slip(state: np.ndarray, slip: np.ndarray) -> float:
-    """Greatest slip of joints that still touch [m]."""
-    return float(np.nanmax(np.abs(np.where(state == APART, 0.0, slip)), initial=0.0))
+@dataclass(frozen=True)
+class Slip:
+    """Greatest slip of joints that still touch, at any time and at the end [m]; the greatest over the length of its joint, and
+    that joint."""
+
+    peak: float
+    residual: float
+    ratio: float
+    joint: int
+
+    @classmethod
+    def of(cls, state: np.ndarray, slip: np.ndarray, length: np.ndarray) -> "Slip":
+        """By the states and slips of the joints (time, joint) [m], and their lengths [m]."""
+        touching = np.where(state == APART, 0.0, np.abs(np.nan_to_num(slip)))
+        most = touching.max(axis=0, initial=0.0)
+        share = most / length
+        last = float(touching[-1].max(initial=0.0)) if len(touching) else 0.0
+        return cls(float(most.max(initial=0.0)), last, float(share.max(initial=0.0)), int(share.argmax()))
 
 
 def convergence(effort: dem_run.Effort) -> Convergence:
@@ -97,12 +115,12 @@ def springs(options: Dem, values: JointValues | SolidValues, found: dem_run.Foun
     return dict.fromkeys(told) if options.rigid else told
 
 
-def off_their_footings(model: Model, state: np.ndarray, slip: np.ndarray) -> list[str]:
-    """Blocks that slide farther on the ground than their footings reach, by the states and slips (time, joint) [m]."""
+def off_their_footings(model: Model, state: np.ndarray, slip: np.ndarray) -> list[int]:
+    """Numbers of the blocks that slide farther on the ground than their footings reach, by the states and slips (time, joint) [m]."""
     a = model.assembly
     far = np.where(state == APART, 0.0, np.abs(np.nan_to_num(slip))).max(axis=0, initial=0.0) > FOOTING * a.length
     ground = (a.a == GROUND) | (a.b == GROUND)
-    return [a.block_names[max(a.a[j], a.b[j])] for j in np.flatnonzero(far & ground)]
+    return sorted({int(max(a.a[j], a.b[j])) for j in np.flatnonzero(far & ground)})
 
 
 def ground_level(model: Model) -> float:
@@ -112,30 +130,89 @@ def ground_level(model: Model) -> float:
     return float(np.minimum(a.p[ground, 1], a.q[ground, 1]).min())
 
 
+def movements(model: Model, run: dem.Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """How far each body is from its settled place [m], how far it has turned [rad] and how much lower it is [m] (time, body)."""
+    mobile = slice(0, model.rigid.count)
+    shift = run.place[:, mobile] - run.settled[mobile]
+    return np.hypot(shift[..., 0], shift[..., 1]), np.abs(shift[..., 2]), -shift[..., 1]
+
+
 def displacements(model: Model, run: dem.Run) -> np.ndarray:
     """How far each body is from its settled place (time, body) [m]."""
-    mobile = slice(0, model.rigid.count)
-    return np.hypot(*(run.place[:, mobile, :2] - run.settled[mobile, :2]).transpose(2, 0, 1))
+    return movements(model, run)[0]
 
 
-def outcome(run: dem.Run, state: np.ndarray, farthest: float, limit: float) -> str:
-    """no-hinging, recovery or collapse: a block moved farther than the limit [m] at some time."""
-    if run.reason in ("collapse", "left") or farthest > limit:
-        return "collapse"
-    return "recovery" if (state != CLOSED).any() else "no-hinging"
+@dataclass(frozen=True)
+class Collapse:
+    """When a block has collapsed: it moved farther than `displacement` [m], and it turned by more than `turn` [rad] or is lower
+    by more than `drop` [m]. A block that slides does neither, however far."""
+
+    displacement: float
+    turn: float
+    drop: float
+
+    @classmethod
+    def of(cls, displacement: float, size: float) -> "Collapse":
+        """Of a structure of a size [m]: half the rotation that moves a block so far at the end of a lever as long as the
+        structure, and a quarter of that displacement."""
+        return cls(displacement, 0.5 * displacement / size, 0.25 * displacement)
+
+    @property
+    def options(self) -> dict[str, float]:
+        """As the core's options call it."""
+        return {"collapse": self.displacement, "collapse_turn": self.turn, "collapse_drop": self.drop}
+
+    def reached(self, away: np.ndarray, turn: np.ndarray, drop: np.ndarray) -> np.ndarray:
+        """Which bodies have collapsed (time, body)."""
+        return (away > self.displacement) & ((turn > self.turn) | (drop > self.drop))
+
+
+@dataclass(frozen=True)
+class Fate:
+    """How a run ends: `outcome`; of a collapse the criterion, and its time [s]; `block`: number of the body that collapsed
+    first, else of the one that moved farthest."""
+
+    outcome: DemOutcome
+    criterion: CollapseCriterion | None
+    time: float | None
+    block: int
+
+
+def fate(
+    run: dem.Run | dem3.Run, collapse: Collapse, away: np.ndarray, turn: np.ndarray, drop: np.ndarray, unsupported: set[int],
+    rocks: bool, slides: bool,
+) -> Fate:  # fmt: skip
+    """How a run ends, by the displacements [m], rotations [rad] and losses of height [m] of its bodies (time, body).
+
+    unsupported: bodies that slid off their footings; rocks: some joint opened; slides: some joint slid.
+    """
+    gone = collapse.reached(away, turn, drop)
+    far = int(away.max(axis=0, initial=0.0).argmax())
+    if not gone.any() and run.reason not in ("collapse", "left"):
+        return Fate("rocked" if rocks else "slid" if slides else "at-rest", None, None, far)
+    if gone.any():
+        at = int(gone.any(axis=1).argmax())
+        block, when = int(gone[at].argmax()), float(run.time[at])
+    else:
+        at, block, when = -1, (run.blamed or [far])[0], run.stop_time
+    if block in unsupported:
+        criterion: CollapseCriterion = "loss of support"
+    elif run.reason == "left" and not gone.any():
+        criterion = "separation"
+    else:  # a run is stopped between two outputs: by which of both it has come nearer
+        how_far = (
+            [float(values[at, block]) / limit for values, limit in ((turn, collapse.turn), (drop, collapse.drop))]
+            if len(turn)
+            else [1.0, 0.0]
+        )
+        criterion = "rotation" if how_far[0] >= how_far[1] else "loss of height"
+    return Fate("collapse", criterion, when, block)
 
 
 def peak_displacement(run: dem.Run | dem3.Run, farthest: float, limit: float) -> float:
     """Greatest displacement of any block [m]: `farthest` of the output times; a run that was stopped since a block had passed
     the limit [m] was stopped between two of them."""
     return max(farthest, limit) if run.reason == "collapse" else farthest
-
-
-def collapse_time(run: dem.Run, far: np.ndarray, limit: float) -> float | None:
-    """When a block first moved farther than the limit [s]."""
-    if (far > limit).any():
-        return float(run.time[np.argmax(far > limit)])
-    return run.stop_time if run.reason in ("collapse", "left") else None
 
 
 def moving(run: dem.Run, model: Model) -> bool:

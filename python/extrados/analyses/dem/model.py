@@ -45,6 +45,11 @@ class JointValues:
             friction=self.friction if friction is None else np.full_like(self.friction, friction),
         )  # fmt: skip
 
+    @property
+    def settle_damping(self) -> float:
+        """beta that is critical at edge impact, by which joints are damped until all rests under its own weight [s]."""
+        return impact_rules.damping_constant(float(self.impact.edge.max()), 1.0)
+
     def ratios(self) -> dict[str, float]:
         """Least fraction of critical damping over the joints at each impact frequency."""
         return {
@@ -142,7 +147,11 @@ def make_model(context: Context, options: DemTable) -> Model:
 
 
 class Falls(Refused):
-    """The structure does not stand under its own weight."""
+    """A block falls under its own weight."""
+
+
+class Restless(Refused):
+    """The structure does not come to rest under its own weight."""
 
 
 def checked(
@@ -156,11 +165,13 @@ def checked(
         return run
     names = [model.body_names[k] for k in run.blamed]
     first = names[0] if names else "a block"
-    raise (Falls if run.reason == "unsettled" else Refused)(
+    raise {"unsettled": Falls, "restless": Restless}.get(run.reason, Refused)(
         {
             "step": f"the time step is above the critical one, {run.critical_step:.3g} s",
             "overlap": f"{' and '.join(names)} overlap at the start",
-            "unsettled": f"the structure does not stand under its own weight: {first} falls, or does not come to rest",
+            "unsettled": f"the structure does not stand under its own weight: {first} falls",
+            "restless": f"the structure does not come to rest under its own weight in {run.settling_steps} steps, {first} least of "
+            "all: elements do not show whether it stands",
             "blow-up": f"the energy ledger does not close: stopped at step {run.steps} ({run.stop_time:.4g} s), fastest block "
             f"{first}; a smaller step may help",
         }.get(run.reason, f"stopped: {run.reason} ({first})")
@@ -168,8 +179,9 @@ def checked(
 
 
 def warnings(model: Model, options: DemTable, values: JointValues | None = None) -> list[str]:
-    """What is doubtful about the damping (thesis 7.2.1, 7.4.2), and what of the building is left out."""
-    found = passive_left_out(model.assembly.earth)
+    """What is doubtful about the damping (thesis 7.2.1, 7.4.2), what of the building is left out, and by how much blocks are
+    not as drawn."""
+    found = [*passive_left_out(model.assembly.earth), *adjusted(model)]
     if options.rigid:
         return found
     found += doubts_of_springs(values or model.values)
@@ -177,6 +189,19 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
         found.append(
             "mass-proportional damping acts on rigid rocking as air would: it has no physical meaning here and is unsafe"
         )
+    return found
+
+
+def adjusted(model: Model) -> list[str]:
+    """By how much blocks are not as drawn [mm]."""
+    rigid, tolerance, found = model.rigid, model.assembly.tolerance, []
+    if rigid.moved > 1e-6 * model.size:
+        found.append(
+            f"faces of blocks are moved by up to {1e3 * rigid.moved:.2g} mm to the joints in them (contact_tolerance {1e3 * tolerance:g} mm)"
+        )
+    if rigid.cut > 0.0:
+        why = f"contact_tolerance {1e3 * tolerance:g} mm" if tolerance else "arcs are drawn by chords"
+        found.append(f"overlaps of blocks of up to {1e3 * rigid.cut:.2g} mm are cut back ({why})")
     return found
 
 

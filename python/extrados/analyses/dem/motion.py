@@ -28,8 +28,8 @@ from extrados.results.model import Array, Result, TableData
 @dataclass(frozen=True)
 class Seen:
     """What is read off a run: openings and slip of the joints (time, joint) [m] and what these do (results.dem), rotations
-    of the blocks (time, block) [rad] and those followed, the farthest displacement of any block (time) [m], the greatest
-    slip of joints that touch [m], and the ground's acceleration (time) [m/s^2]."""
+    of the blocks (time, block) [rad] and those followed, displacements and losses of height [m] and rotations [rad] of the
+    bodies (time, body), how far joints that touch slide, blocks off their footings, and the ground's acceleration (time) [m/s^2]."""
 
     gap_p: np.ndarray
     gap_q: np.ndarray
@@ -37,14 +37,15 @@ class Seen:
     state: np.ndarray
     rotation: np.ndarray
     tracked: list[int]
-    far: np.ndarray
-    sliding: float
+    moved: tuple[np.ndarray, np.ndarray, np.ndarray]
+    sliding: measures.Slip
+    off_footing: list[int]
     ground: np.ndarray
 
     @property
     def farthest(self) -> float:
         """Greatest displacement of any block at any time [m]."""
-        return float(self.far.max(initial=0.0))
+        return float(self.moved[0].max(initial=0.0))
 
 
 def run(context: Context, options: Dem, model: Model) -> Result:
@@ -61,9 +62,9 @@ def run(context: Context, options: Dem, model: Model) -> Result:
     result.reason = f"interrupted at {found.stop_time:.3f} s{again}" if found.interrupted else ""
     numbers = _numbers(options, trial, found, seen) | {"animation": options.animation}
     _store(options, model, found, seen, result)
-    if seen.sliding > measures.SLIDES * float(model.assembly.length.min()):
-        result.warnings.append(f"joints slide by up to {1e3 * seen.sliding:.3g} mm")
-    if options.floor is None and (who := measures.off_their_footings(model, seen.state, seen.slip)):
+    if seen.sliding.ratio > measures.SLIDES:
+        result.warnings.append(f"joints slide by up to {1e3 * seen.sliding.peak:.3g} mm")
+    if who := numbers["off_footing"]:
         result.warnings.append(
             f"{', '.join(who[:6])} slides off its footing: floor = {measures.ground_level(model):.4g} names a floor to slide on"
         )
@@ -80,7 +81,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         _further(context, options, trial, result, numbers)
     result.results = out.DemRun(**numbers)
     result.files |= dem_files.files(model, found, options)
-    result.answer = motion_answer(result.results, model, trial.idle)
+    result.answer = motion_answer(result.results, trial.idle)
     return result
 
 
@@ -88,10 +89,11 @@ def _look(options: Dem, model: Model, found: dem.Run, ground: np.ndarray) -> See
     gap_p, gap_q, slip = measures.openings(model, found)
     state = measures.hinges(model, gap_p, gap_q, slip)
     body = model.rigid.body_of_block
+    off = [] if options.floor is not None else measures.off_their_footings(model, state, slip)
     return Seen(
         gap_p, gap_q, slip, state, -(found.place[:, body, 2] - found.settled[body, 2]),
-        measures.tracked(model, options, found), measures.displacements(model, found).max(axis=1, initial=0.0),
-        measures.peak_slip(state, slip), ground,
+        measures.tracked(model, options, found), measures.movements(model, found),
+        measures.Slip.of(state, slip, model.assembly.length), off, ground,
     )  # fmt: skip
 
 
@@ -100,17 +102,28 @@ def _numbers(options: Dem, trial: Trial, found: dem.Run, seen: Seen) -> dict[str
     model, names = trial.model, trial.model.assembly.block_names
     peak = np.abs(seen.rotation).argmax(axis=0)
     mobile = slice(0, model.rigid.count)
+    unsupported = {int(model.rigid.body_of_block[i]) for i in seen.off_footing}
+    slides = seen.sliding.ratio > measures.SLIDES
+    fate = measures.fate(
+        found, trial.collapse, *seen.moved, unsupported, bool((seen.state != out.CLOSED).any()), slides
+    )
     return {
-        "outcome": measures.outcome(found, seen.state, seen.farthest, trial.limit),
-        "collapse_time_s": measures.collapse_time(found, seen.far, trial.limit),
+        "outcome": fate.outcome,
+        "collapse_criterion": fate.criterion,
+        "collapse_time_s": fate.time,
+        "governing_block": model.rigid.names[fate.block],
         "stopped": found.reason,
         "stopped_by": [model.rigid.names[k] for k in found.blamed],
         "stop_time_s": found.stop_time,
         "still_moving": found.reason == "end" and measures.moving(found, model),
         "peak_rotation_rad": {names[i]: float(seen.rotation[peak[i], i]) for i in seen.tracked},
-        "collapse_displacement_m": trial.limit,
-        "peak_displacement_m": measures.peak_displacement(found, seen.farthest, trial.limit),
-        "peak_slip_m": seen.sliding,
+        "collapse_displacement_m": trial.collapse.displacement,
+        "peak_displacement_m": measures.peak_displacement(found, seen.farthest, trial.collapse.displacement),
+        "peak_slip_m": seen.sliding.peak,
+        "residual_slip_m": seen.sliding.residual,
+        "slip_ratio": seen.sliding.ratio,
+        "slipped_joint": model.assembly.joint_names[seen.sliding.joint] if slides else None,
+        "off_footing": [names[i] for i in seen.off_footing],
         "peak_kinetic_energy_J": float(found.energy["kinetic"].max(initial=0.0)),
         "friction_loss_J": float(found.energy["friction"][-1]) if len(found.time) else 0.0,
         "damping_loss_J": float(found.energy["damping"][-1]) if len(found.time) else 0.0,

@@ -6,6 +6,7 @@ from scipy.sparse.linalg import splu
 
 from extrados.analyses.dem.model import JointValues, Model
 from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.geometry.polygons import distance
 from extrados.schema.constants import GRAVITY
 
 #: What stands settles by .3 to 1.2 times what its joints would give if none opened (tests/unit/test_dem_settlement.py);
@@ -80,13 +81,5 @@ def _gaps(assembly: Assembly) -> np.ndarray:
     found = np.zeros(ends.shape[:2])
     for side in (assembly.a, assembly.b):
         for j in np.flatnonzero(side != GROUND):
-            found[j] += _from_outline(ends[j], assembly.outlines[side[j]])
+            found[j] += distance(assembly.outlines[side[j]], ends[j])
     return found.max(axis=1)
-
-
-def _from_outline(points: np.ndarray, outline: np.ndarray) -> np.ndarray:
-    """Distance of points from the edges of a polygon (points,) [m]."""
-    edge = np.roll(outline, -1, axis=0) - outline
-    away = points[:, None] - outline
-    along = np.clip((away * edge).sum(axis=2) / (edge**2).sum(axis=1), 0.0, 1.0)
-    return np.hypot(*np.moveaxis(away - along[..., None] * edge, -1, 0)).min(axis=1)

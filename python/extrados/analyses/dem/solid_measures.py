@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from extrados.analyses.dem.measures import MOST_TRACKED, OPEN
+from extrados.analyses.dem.measures import MOST_TRACKED, OPEN, Slip
 from extrados.analyses.dem.solid_model import SolidModel
+from extrados.building.geometry.rigid import FOOTING
 from extrados.building.geometry.solids.contacts import GROUND
 from extrados.core import dem3
 from extrados.results.dem import APART, CLOSED, ROCKS
@@ -18,7 +19,7 @@ class SolidsSeen:
 
     turn (time, block, 3): rotation vectors from the settled attitude [rad]; opening (time, contact): of the corner that
     gapes most [m]; slip (time, contact): along the contact at its most closed corner [m]; state (time, contact): CLOSED,
-    ROCKS where some corner is open, APART where all are; far (time): the farthest displacement of any block [m]; ground
+    ROCKS where some corner is open, APART where all are; drop (time, block): losses of height [m]; away: displacements [m]; ground
     (time): its acceleration along the direction [m/s^2].
     """
 
@@ -26,7 +27,9 @@ class SolidsSeen:
     opening: np.ndarray
     slip: np.ndarray
     state: np.ndarray
-    far: np.ndarray
+    away: np.ndarray
+    drop: np.ndarray
+    sliding: Slip
     tracked: list[int]
     ground: np.ndarray
 
@@ -34,11 +37,6 @@ class SolidsSeen:
     def angle(self) -> np.ndarray:
         """How far each block has turned (time, block) [rad]."""
         return np.linalg.norm(self.turn, axis=2)
-
-    @property
-    def sliding(self) -> float:
-        """Greatest slip of contacts that still touch [m]."""
-        return float(np.where(self.state == APART, 0.0, self.slip).max(initial=0.0))
 
 
 def look(model: SolidModel, run: dem3.Run, names: list[str], ground: np.ndarray) -> SolidsSeen:
@@ -49,7 +47,20 @@ def look(model: SolidModel, run: dem3.Run, names: list[str], ground: np.ndarray)
     index = {name: k for k, name in enumerate(model.assembly.block_names)}
     most = np.argsort(-angle, kind="stable")[:MOST_TRACKED]
     tracked = [index[name] for name in names] if names else sorted(most.tolist())
-    return SolidsSeen(turn, opening, slip, state, displacements(model, run).max(axis=1, initial=0.0), tracked, ground)
+    away, drop = displacements(model, run), run.settled[: model.count, 2] - run.place[:, : model.count, 2]
+    sliding = Slip.of(state, slip, widths(model))
+    return SolidsSeen(turn, opening, slip, state, away, drop, sliding, tracked, ground)
+
+
+def widths(model: SolidModel) -> np.ndarray:
+    """Least width of each contact (contact) [m]: between one of its edges and the corner farthest from it."""
+    one = model.assembly
+    found = []
+    for polygon, normal in zip(one.polygon, one.normal, strict=True):
+        along = np.roll(polygon, -1, axis=0) - polygon
+        across = np.cross(normal, along / np.linalg.norm(along, axis=1)[:, None])
+        found.append(np.abs(np.einsum("ekx,ex->ek", polygon[None] - polygon[:, None], across)).max(axis=1).min())
+    return np.array(found)
 
 
 def turns(model: SolidModel, run: dem3.Run) -> np.ndarray:
@@ -80,7 +91,7 @@ def contacts(model: SolidModel, run: dem3.Run) -> tuple[np.ndarray, np.ndarray, 
         opening[:, j] = np.maximum(gap.max(axis=1, initial=0.0), 0.0)
         slip[:, j] = along[np.arange(len(along)), nearest]
         small, width = OPEN * np.sqrt(one.area[j]), np.sqrt(one.area[j])
-        gone = (gap > small).all(axis=1) | (slip[:, j] > 0.5 * width)
+        gone = (gap > small).all(axis=1) | ((GROUND not in (a, b)) & (slip[:, j] > width))
         state[:, j] = np.where(gone, APART, np.where((gap > small).any(axis=1), ROCKS, CLOSED))
     return opening, slip, state
 
@@ -95,11 +106,12 @@ def _carried(run: dem3.Run, body: int, points: np.ndarray, normal: np.ndarray) -
     return run.place[:, None, body] + np.einsum("txy,ky->tkx", turn, arm), turn @ normal
 
 
-def outcome(run: dem3.Run, state: np.ndarray, farthest: float, limit: float) -> str:
-    """no-hinging, recovery or collapse: a block moved farther than the limit [m] at some time."""
-    if run.reason in ("collapse", "left") or farthest > limit:
-        return "collapse"
-    return "recovery" if (state != CLOSED).any() else "no-hinging"
+def off_their_footings(model: SolidModel, seen: SolidsSeen) -> list[int]:
+    """Numbers of the blocks that slide farther on the ground than their supports reach."""
+    one = model.assembly
+    far = np.where(seen.state == APART, 0.0, seen.slip).max(axis=0, initial=0.0) > FOOTING * widths(model)
+    ground = (one.a == GROUND) | (one.b == GROUND)
+    return sorted({int(max(one.a[j], one.b[j])) for j in np.flatnonzero(far & ground)})
 
 
 def poses(model: SolidModel, run: dem3.Run) -> np.ndarray:

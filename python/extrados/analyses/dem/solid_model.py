@@ -31,6 +31,11 @@ class SolidValues:
     beta: float
     impact: impact_rules.Impact
 
+    @property
+    def settle_damping(self) -> float:
+        """beta that is critical at edge impact, by which contacts are damped until all rests under its own weight [s]."""
+        return impact_rules.damping_constant(float(self.impact.edge.max()), 1.0)
+
     def ratios(self) -> dict[str, float]:
         """Least fraction of critical damping over the contacts at each frequency of impact."""
         return {

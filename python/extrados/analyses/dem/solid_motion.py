@@ -23,9 +23,9 @@ from extrados.results.solid_files import glb, series
 from extrados.schema.constants import GRAVITY
 
 
-def collapse_limit(options: Dem, model: SolidModel) -> float:
-    """Displacement that counts as collapse [m]."""
-    return options.collapse_displacement or 0.2 * model.size
+def collapse_of(options: Dem, model: SolidModel) -> measures.Collapse:
+    """When a block has collapsed."""
+    return measures.Collapse.of(options.collapse_displacement or 0.2 * model.size, model.size)
 
 
 def core_options(context: Context, options: Dem, model: SolidModel) -> dem3.Options:
@@ -36,7 +36,7 @@ def core_options(context: Context, options: Dem, model: SolidModel) -> dem3.Opti
         output_step=options.output_step,
         step=options.time_step or 0.0,
         fraction=options.fraction,
-        collapse=collapse_limit(options, model) if options.stop_at_collapse else 0.0,
+        settle_damping=model.values.settle_damping,
         domain=options.domain * model.size,
         settlement=farthest_settlement(model, options.rigid),
         stop_at_rest=options.end_time is None,
@@ -44,6 +44,7 @@ def core_options(context: Context, options: Dem, model: SolidModel) -> dem3.Opti
         rebound=options.rebound,
         quasi_static=options.quasi_static,
         way=options.way,
+        **(collapse_of(options, model).options if options.stop_at_collapse else {}),
     )
 
 
@@ -68,8 +69,8 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
             "m/s^2",
             "acceleration of the ground a quarter turn from the direction",
         )
-    if seen.sliding > measures.SLIDES * float(np.sqrt(model.assembly.area.min())):
-        result.warnings.append(f"contacts slide by up to {1e3 * seen.sliding:.3g} mm")
+    if seen.sliding.ratio > measures.SLIDES:
+        result.warnings.append(f"contacts slide by up to {1e3 * seen.sliding.peak:.3g} mm")
     if found.residual > 0.01:
         result.warnings.append(
             f"the energy ledger is off by {100 * found.residual:.2g} % of the energy that went round"
@@ -84,7 +85,12 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
 
 
 def _numbers(options: Dem, model: SolidModel, found: dem3.Run, seen: SolidsSeen) -> dict[str, Any]:
-    names, limit = model.assembly.block_names, collapse_limit(options, model)
+    names, collapse = model.assembly.block_names, collapse_of(options, model)
+    limit, slides = collapse.displacement, seen.sliding.ratio > measures.SLIDES
+    off = [] if options.floor is not None else solid_measures.off_their_footings(model, seen)
+    fate = measures.fate(
+        found, collapse, seen.away, seen.angle, seen.drop, set(off), bool((seen.state != out.CLOSED).any()), slides
+    )
     mobile = slice(0, model.count)
     kinetic = found.energy["kinetic"]
     noise = 1e-6 * float(model.assembly.mass.sum()) * GRAVITY * model.size
@@ -92,8 +98,10 @@ def _numbers(options: Dem, model: SolidModel, found: dem3.Run, seen: SolidsSeen)
     angle = seen.angle.max(axis=0, initial=0.0)
     apart = solid_measures.displacements(model, found)
     return {
-        "outcome": solid_measures.outcome(found, seen.state, float(seen.far.max(initial=0.0)), limit),
-        "collapse_time_s": measures.collapse_time(found, seen.far, limit),
+        "outcome": fate.outcome,
+        "collapse_criterion": fate.criterion,
+        "collapse_time_s": fate.time,
+        "governing_block": names[fate.block],
         "direction_deg": options.direction or 0.0,
         "stopped": found.reason,
         "stopped_by": [model.body_names[k] for k in found.blamed],
@@ -106,10 +114,14 @@ def _numbers(options: Dem, model: SolidModel, found: dem3.Run, seen: SolidsSeen)
         "dowels_out": int(found.dowel_out.sum()),
         "peak_rotation_rad": {names[i]: float(angle[i]) for i in seen.tracked},
         "collapse_displacement_m": limit,
-        "peak_displacement_m": measures.peak_displacement(found, float(seen.far.max(initial=0.0)), limit),
+        "peak_displacement_m": measures.peak_displacement(found, float(seen.away.max(initial=0.0)), limit),
         "final_displacement_m": float(apart[-1].max(initial=0.0)) if len(found.time) else 0.0,
         "peak_opening_m": float(np.where(seen.state == out.APART, 0.0, seen.opening).max(initial=0.0)),
-        "peak_slip_m": seen.sliding,
+        "peak_slip_m": seen.sliding.peak,
+        "residual_slip_m": seen.sliding.residual,
+        "slip_ratio": seen.sliding.ratio,
+        "slipped_joint": model.assembly.joint_names[seen.sliding.joint] if slides else None,
+        "off_footing": [names[i] for i in off],
         "peak_kinetic_energy_J": float(kinetic.max(initial=0.0)),
         "friction_loss_J": float(found.energy["friction"][-1]) if len(found.time) else 0.0,
         "damping_loss_J": float(found.energy["damping"][-1]) if len(found.time) else 0.0,

@@ -25,6 +25,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
     base = replace(
         core_options(context, options, model), end_time=RAMP + dem_model.settle_time(model), stop_at_rest=False,
         output_step=0.05, collapse=options.collapse_displacement or 0.05 * model.size,
+        collapse_turn=0.0, collapse_drop=0.0,  # under a constant push a block that slides slides on
     )  # fmt: skip
     bodies = model.bodies()
     (collapse, last), (back, back_run) = capacities(

@@ -6,18 +6,17 @@ import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import settlement, solid_settlement
-from extrados.analyses.dem.model import Falls, Model, checked
+from extrados.analyses.dem.model import Falls, Model, Restless, checked
 from extrados.analyses.dem.runs import Runs, SolidRuns, SolidTask, Task
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.limit.common import loads_of
 from extrados.building.building import Building
 from extrados.building.errors import WHOLE
-from extrados.building.geometry.solids.assembly import SolidAssembly
 from extrados.core import dem, dem3
 from extrados.core.calls import interruptible
-from extrados.limit.answer import why_not
+from extrados.limit.answer import cannot_stand
 from extrados.limit.equilibrium import Disconnected
-from extrados.limit.errors import NoAnswer
+from extrados.limit.errors import CannotStand, NoAnswer
 from extrados.limit.programme import LimitAnalysis
 from extrados.limit.solids import SolidLimit
 from extrados.results.model import Result
@@ -39,22 +38,41 @@ MOST_SOLIDS = 300
 
 
 def compared(context: Context, rigid: bool, model: Model | SolidModel, find: Callable[[], Result]) -> Result:
-    """What elements find, with what other methods say of their standing under the own weight; Refused where they fall."""
+    """What elements find, with what other methods find under the own weight. Where the elements collapse: CannotStand where
+    limit analysis of the same blocks proves it, else Refused."""
     alone, doubt, warning = left_out(model), "", ""
-    against = against_limit_analysis if isinstance(model, Model) else solids_against_limit_analysis
+    proof_of = proof_of_section if isinstance(model, Model) else proof_of_solids
     try:
         with interruptible():  # Ctrl-C between two runs stops the next one
             if rigid and not alone:  # first: Ctrl-C here loses nothing
                 doubt, warning = jammed(model, context.threads)
             result = find()
-    except Falls as error:
-        told = alone or against(context.building, stands=False)
-        raise Refused(f"{error}; {told}" if told else str(error), WHOLE) from None
+    except (Falls, Restless) as error:
+        if alone:
+            raise Refused(f"{error}; {alone}", WHOLE) from None
+        try:
+            proof = proof_of(context.building)
+        except NoAnswer:
+            raise Refused(str(error), WHOLE) from None
+        if proof is not None:
+            raise CannotStand(f"{proof}; discrete elements: {error}", proof.motion, proof.neglects) from None
+        wedged = f"; {WEDGED}" if isinstance(error, Falls) else ""
+        raise Refused(f"{error}{wedged}", WHOLE) from None
     if doubt and result.status == "ok":
         result.answer += f" {doubt}"
-    told = alone or against(context.building, stands=True)
-    result.warnings += [text for text in (warning, told) if text]
+    result.warnings += [text for text in (warning, alone or _contradiction(context.building, proof_of)) if text]
     return result
+
+
+def _contradiction(building: Building, proof_of: Callable[[Building], CannotStand | None]) -> str:
+    """That limit analysis proves collapse where elements stand; empty where it does not."""
+    try:
+        proof = proof_of(building)
+    except NoAnswer:
+        return ""
+    if proof is None:
+        return ""
+    return f"elements stand {_held(building, proof_of)}, but limit analysis finds collapse under self-weight: {proof}"
 
 
 def left_out(model: Model | SolidModel) -> str:
@@ -87,52 +105,44 @@ def jammed(model: Model | SolidModel, threads: int) -> tuple[str, str]:
         found = SolidRuns(model.bodies(), [SolidTask(in_space)]).one(0, threads)
     try:
         checked(found, model)
+    except Restless:
+        return (
+            "",
+            f"on springs it does not come to rest in {SETTLING} steps: whether it stands by jamming alone is not known",
+        )
     except Falls:
-        if found.settling_steps >= SETTLING:
-            return (
-                "",
-                f"on springs it does not come to rest in {SETTLING} steps: whether it stands by jamming alone is not known",
-            )
         answer = "That it stands as it begins may be by jamming alone: settled on springs it falls."
         return answer, f"{JAMMED} {model.body_names[found.blamed[0]]} falls"
     return "", ""
 
 
-def against_limit_analysis(building: Building, stands: bool) -> str:
-    """What is to be said of elements that found that a building stands, or that it falls; empty where limit analysis
-    finds that it stands too, or has no answer."""
+def proof_of_section(building: Building) -> CannotStand | None:
+    """The proof by limit analysis that a section collapses under its own weight; None where an admissible state was found.
+    NoAnswer where neither was found."""
     try:
         limit = LimitAnalysis(building.blocks(), building.friction(), loads=loads_of(building.blocks(), None, building))
-        admissible = limit.stands()
-        reason = "" if admissible else why_not(limit)
-    except (NoAnswer, Disconnected, Refused):
-        return ""
-    if admissible:
-        return "" if stands else WEDGED
-    if not stands:
-        return f"limit analysis agrees: {reason}"
-    return f"elements stand {_held(building, None)}, but limit analysis finds that it cannot stand under its own weight: {reason}"
+        return None if limit.stands() else cannot_stand(limit)
+    except (Disconnected, Refused) as error:
+        raise NoAnswer(str(error)) from None
 
 
-def _held(building: Building, assembly: SolidAssembly | None) -> str:
-    """By what a building stands that limit analysis finds to fall."""
+def proof_of_solids(building: Building) -> CannotStand | None:
+    """The same of blocks in space; None where no motion proves collapse."""
+    assembly = building.solids()
+    found = SolidLimit(assembly, building.friction(assembly)).falls()
+    if found is None:
+        return None
+    name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
+    return CannotStand(
+        f"{name} cannot be in equilibrium; proof: a collapse motion, fastest at {name}, that no contact hinders and in which the "
+        "weights do work"
+    )
+
+
+def _held(building: Building, proof_of: Callable[[Building], CannotStand | None]) -> str:
+    """By what a building stands that limit analysis finds to collapse."""
+    assembly = building.solids() if proof_of is proof_of_solids else None
     for name in ("cohesion", "tension"):
         if np.nanmax(building.joint_property(name, assembly), initial=0.0) > 0.0:
-            return "by the cohesion and tension of its joints, which limit analysis leaves out"
-    return "for no reason known"
-
-
-def solids_against_limit_analysis(building: Building, stands: bool) -> str:
-    """The same of blocks in space."""
-    assembly = building.solids()
-    try:
-        found = SolidLimit(assembly, building.friction(assembly)).falls()
-    except NoAnswer:
-        return ""
-    if found is None:
-        return "" if stands else WEDGED
-    name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
-    reason = f"a motion, fastest at {name}, that no contact hinders and by which the weights do work"
-    if not stands:
-        return f"limit analysis agrees: {reason}"
-    return f"elements stand {_held(building, assembly)}, but limit analysis finds that it cannot stand under its own weight: {reason}"
+            return "by the cohesion and tension of its joints, which limit analysis neglects"
+    return "for no known reason"

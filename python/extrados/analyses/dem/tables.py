@@ -129,7 +129,10 @@ class Dem(SpatialDem, Animated):
     end_time: Time | None = key(None, "when to stop; default the end of the motion and some time after", gt=0)
     output_step: Time = key(0.01, "spacing of the history", ge=1e-6)
     base: Literal["body-force", "moving"] = key("body-force", "how the ground moves: both give the same")
-    collapse_displacement: Length | None = key(None, "of any block; default a fifth of the structure's size", gt=0)
+    collapse_displacement: Length | None = key(
+        None, "displacement of a block that counts as collapse, where the block also turns or loses height; in a tilt test, where it "
+        "slides, too; default a fifth of the structure's size, in a tilt test a twentieth", gt=0,
+    )  # fmt: skip
     domain: float = key(10.0, "blocks may go this many sizes of the structure away from it", gt=1, le=1000)
     stop_at_collapse: bool = key(True, "end the run once a block has moved that far")
     track: list[str] = key([], "names of blocks whose rotation is followed; default all, at most 24", max_length=200)
@@ -159,7 +162,10 @@ class DemDomain(SpatialDem):
     durations: list[Time] = key(about="durations that are tried first, ascending", min_length=2, max_length=500)
     accuracy: Time = key(0.005, "of the failing durations", ge=1e-6)
     settle: Time | None = key(None, "time after the pulse in which it must come to rest or down", gt=0)
-    collapse_displacement: Length | None = key(None, "of any block; default a fifth of the structure's size", gt=0)
+    collapse_displacement: Length | None = key(
+        None, "displacement of a block that counts as collapse, where the block also turns or loses height; default a fifth of the "
+        "structure's size", gt=0,
+    )  # fmt: skip
     mode_II: bool = key(
         False, "also the shortest pulses that bring it down in its first swing, before any impact; with merge = "
         '"three-bars" beside the four-hinge curve of that name', source="thesis Fig. 7-11",

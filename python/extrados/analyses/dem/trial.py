@@ -6,6 +6,7 @@ import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import model as dem_model
+from extrados.analyses.dem.measures import Collapse
 from extrados.analyses.dem.model import JointValues, Model
 from extrados.analyses.dem.runs import Runs, Task
 from extrados.analyses.dem.settlement import farthest_settlement
@@ -17,9 +18,9 @@ from extrados.core import dem
 from extrados.core.ground import Ground
 
 
-def collapse_limit(options: Dem, model: Model) -> float:
-    """Displacement that counts as collapse [m]."""
-    return options.collapse_displacement or 0.2 * model.size
+def collapse_of(options: Dem, model: Model) -> Collapse:
+    """When a block has collapsed."""
+    return Collapse.of(options.collapse_displacement or 0.2 * model.size, model.size)
 
 
 def core_options(context: Context, options: Dem, model: Model) -> dem.Options:
@@ -34,7 +35,7 @@ def core_options(context: Context, options: Dem, model: Model) -> dem.Options:
         output_step=options.output_step,
         step=options.time_step or 0.0,
         fraction=options.fraction,
-        collapse=collapse_limit(options, model) if options.stop_at_collapse else 0.0,
+        settle_damping=model.values.settle_damping,
         domain=(low[0], high[0], low[1], high[1]),
         stop_at_rest=options.end_time is None,
         moving_base=options.base == "moving",
@@ -42,6 +43,7 @@ def core_options(context: Context, options: Dem, model: Model) -> dem.Options:
         rigid=options.rigid,
         rebound=options.rebound,
         quasi_static=options.quasi_static,
+        **(collapse_of(options, model).options if options.stop_at_collapse else {}),
     )
 
 
@@ -98,7 +100,7 @@ class Trial:
     def __init__(self, context: Context, options: Dem, model: Model):
         self.model = model
         self.options = core_options(context, options, model)
-        self.limit = collapse_limit(options, model)
+        self.collapse = collapse_of(options, model)
         self.ground: Ground | None = context.motion.ground if context.deck.motion else None
         self.moves = _moves(context, model)
         self.shift = start(context, model)
@@ -113,8 +115,8 @@ class Trial:
         options = replace(self.options, **change)
         tasks = [
             Task(
-                k, replace(options, settlement=farthest_settlement(self.model, v, options.rigid)), self.ground, shift=self.shift,
-                moves=self.moves,
+                k, replace(options, settlement=farthest_settlement(self.model, v, options.rigid), settle_damping=v.settle_damping),
+                self.ground, shift=self.shift, moves=self.moves,
             )
             for k, v in enumerate(values)
         ]  # fmt: skip

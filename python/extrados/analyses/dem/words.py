@@ -1,7 +1,5 @@
 """The answers of a run and of a tilt test in words."""
 
-from extrados.analyses.dem.measures import SLIDES
-from extrados.analyses.dem.model import Model
 from extrados.results.dem import Convergence, DemRun, DemTilt, SolidDemRun, SolidDemTilt
 
 
@@ -25,22 +23,27 @@ def _audit(r: DemRun | SolidDemRun) -> str:
     )
 
 
-def motion_answer(r: DemRun, model: Model, idle: bool) -> str:
+def _fate(r: DemRun | SolidDemRun, joint: str) -> str:
+    """How a run ends."""
+    if r.outcome == "collapse":
+        return f"{r.governing_block} collapses first ({r.collapse_criterion}), at {r.collapse_time_s:.2f} s"
+    if r.outcome == "slid":
+        return (
+            f"Blocks slide by up to {1e3 * r.peak_slip_m:.3g} mm ({100 * r.slip_ratio:.3g} % of the {joint} {r.slipped_joint}), "
+            f"{1e3 * r.residual_slip_m:.3g} mm at the end; no {joint} opens"
+        )
+    if r.outcome == "at-rest":
+        return f"No {joint} opens or slides"
+    fate = f"rock and still move at {r.stop_time_s:.2f} s" if r.still_moving else "rock and come to rest"
+    return f"Blocks {fate}: greatest displacement {1e3 * r.peak_displacement_m:.3g} mm ({r.governing_block})"
+
+
+def motion_answer(r: DemRun, idle: bool) -> str:
     """The answer of a run under a motion; idle: nothing moves the ground."""
-    if idle and r.outcome == "no-hinging":
+    if idle and r.outcome == "at-rest":
         return "It stands under its own weight; nothing moves it."
     turn = max(r.peak_rotation_rad.items(), key=lambda item: abs(item[1]), default=("", 0.0))
-    audit = _audit(r)
-    if r.outcome == "collapse":
-        who = f" ({r.stopped_by[0]} is the first to go)" if r.stopped_by else ""
-        first = f"It collapses{who} at {r.collapse_time_s:.2f} s"
-    elif r.outcome == "no-hinging" and r.peak_slip_m > SLIDES * float(model.assembly.length.min()):
-        first = f"It slides by {r.peak_slip_m:.3g} m; no joint opens"
-    elif r.outcome == "no-hinging":
-        first = "No joint opens"
-    else:
-        fate = f"rocks and still moves at {r.stop_time_s:.2f} s" if r.still_moving else "rocks and stands"
-        first = f"It {fate}: greatest displacement {r.peak_displacement_m:.3g} m"
+    first, audit = _fate(r, "joint"), _audit(r)
     return (
         f"{first}; {turn[0]} turns by {1e3 * abs(turn[1]):.3g} mrad at most, slip {1e3 * r.peak_slip_m:.2g} mm, "
         f"{r.bounces} bounces; {audit}."
@@ -61,18 +64,12 @@ def tilt_answer(r: DemTilt) -> str:
 
 def solid_answer(r: SolidDemRun, idle: bool) -> str:
     """The answer of a run in space; idle: nothing moves the ground."""
-    if idle and r.outcome == "no-hinging":
+    if idle and r.outcome == "at-rest":
         return "It stands under its own weight; nothing moves it."
     turn = max(r.peak_rotation_rad.items(), key=lambda item: item[1], default=("", 0.0))
-    audit = _audit(r)
-    if r.outcome == "collapse":
-        who = f" ({r.stopped_by[0]} is the first to go)" if r.stopped_by else ""
-        first = f"It collapses{who} at {r.collapse_time_s:.2f} s"
-    elif r.outcome == "no-hinging":
-        first = f"No contact opens; greatest displacement {r.peak_displacement_m:.3g} m"
-    else:
-        fate = f"rocks and still moves at {r.stop_time_s:.2f} s" if r.still_moving else "rocks and stands"
-        first = f"It {fate}: greatest displacement {r.peak_displacement_m:.3g} m, {r.final_displacement_m:.3g} m of it left at the end"
+    first, audit = _fate(r, "contact"), _audit(r)
+    if r.outcome == "rocked":
+        first += f", {1e3 * r.final_displacement_m:.3g} mm of it left at the end"
     if r.dowels:
         gave = f"gave way by up to {1e3 * r.dowel_slip_m:.2g} mm" if r.dowel_slip_m > 0.0 else "held"
         first += f"; dowels {gave}" + (f", {r.dowels_out} of {r.dowels} came out" if r.dowels_out else "")

@@ -23,6 +23,7 @@ class Assembly:
     that this fill is where it spreads loads and pushes back; `measures`, derived lengths worth telling, by names that
     end in their unit; `materials`, for each block a name of [materials] or None, empty where all are of one; `groups`,
     name -> joints that [[joints.types]] may call by one name.
+    `tolerance`: of a survey, how far faces may lie from the joints in them and in each other [m]; 0 where they are exact.
     `remarks` must be told beside every answer; `notes`, what was made of a survey, once.
 
     `inward` (nj) is +1 where the left side of p -> q lies in block a, -1 where the right side does; None
@@ -48,6 +49,7 @@ class Assembly:
     measures: dict[str, float] = field(default_factory=dict, kw_only=True)
     materials: list[str | None] = field(default_factory=list, kw_only=True)
     groups: dict[str, list[int]] = field(default_factory=dict, kw_only=True)
+    tolerance: float = field(default=0.0, kw_only=True)
     remarks: tuple[str, ...] = field(default=(), kw_only=True)
     notes: tuple[str, ...] = field(default=(), kw_only=True)
 

@@ -165,3 +165,22 @@ def overlap(one: np.ndarray, other: np.ndarray) -> tuple[float, np.ndarray, np.n
 def overlap_depth(one: np.ndarray, other: np.ndarray) -> float:
     """How deep two convex polygons overlap [m]; negative: the gap along the best separating edge."""
     return overlap(one, other)[0]
+
+
+def crossings(one: np.ndarray, other: np.ndarray, small: float) -> np.ndarray:
+    """Places where the outlines of two polygons cross, those within `small` [m] of each other as one (k, 2) [m]; parallel
+    edges do not cross."""
+    u, v = (np.roll(polygon, -1, axis=0) - polygon for polygon in (one, other))
+    u, v, away = u[:, None], v[None], other[None] - one[:, None]
+    area = u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        on_one = (away[..., 0] * v[..., 1] - away[..., 1] * v[..., 0]) / area
+        on_other = (away[..., 0] * u[..., 1] - away[..., 1] * u[..., 0]) / area
+    slanted = np.abs(area) > STRAIGHT * np.linalg.norm(u, axis=-1) * np.linalg.norm(v, axis=-1)
+    met = slanted & (on_one >= 0.0) & (on_one <= 1.0) & (on_other >= 0.0) & (on_other <= 1.0)
+    found: list[np.ndarray] = []
+    for i, k in np.argwhere(met):
+        place = one[i] + on_one[i, k] * u[i, 0]
+        if all(np.hypot(*(place - known)) > small for known in found):
+            found.append(place)
+    return np.reshape(found, (-1, 2))

@@ -91,6 +91,14 @@ def inside(outline: np.ndarray, points: np.ndarray) -> np.ndarray:
     return ((spans & (x < reach)).sum(axis=1) % 2).astype(bool)
 
 
+def distance(outline: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Distance of points (k, 2) from the edges of the outline (k) [m]."""
+    edge = following(outline) - outline
+    away = points[:, None] - outline
+    along = np.clip((away * edge).sum(axis=2) / (edge**2).sum(axis=1), 0.0, 1.0)
+    return np.hypot(*np.moveaxis(away - along[..., None] * edge, -1, 0)).min(axis=1)
+
+
 def crossing_edges(outline: np.ndarray) -> tuple[int, int] | None:
     """Two edges of an outline that cross each other, by their first vertices; None where it is simple."""
     n = len(outline)

@@ -74,6 +74,7 @@ def assemble(inspection: Inspection, density: float, depth: float) -> Assembly:
         inward=np.ones(len(contacts.a), dtype=int),
         materials=[p.material if p.density is None else None for p in polygons],
         groups=_groups(inspection),
+        tolerance=inspection.tolerance,
         remarks=tuple(inspection.remarks()),
         notes=tuple(inspection.notes()),
     )

@@ -1,0 +1,148 @@
+"""How a run of discrete elements ends: at rest, slid, rocked, or a collapse by a criterion that the result names."""
+
+import numpy as np
+import pytest
+
+import extrados
+from extrados.schema.constants import GRAVITY
+
+SOLVERS = [
+    pytest.param({}, id="springs"),
+    pytest.param({"solver": "nonsmooth"}, id="rigid"),
+    pytest.param({"direction": 0.0}, id="space"),
+    pytest.param({"direction": 0.0, "solver": "nonsmooth"}, id="space-rigid"),
+]
+SQUAT = {"kind": "block", "width": 0.5, "height": 0.3}
+SINE = {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 1.0}
+
+
+def run(structure: dict, motion: dict | None = None, friction: float = 0.2, **dem):
+    """The result of discrete elements."""
+    deck = {"structure": structure, "joints": {"friction": friction}, "analysis": [{"kind": "dem", **dem}]}
+    return extrados.run(deck | ({"motion": motion} if motion else {})).results[0]
+
+
+def newmark(amplitude: float, period: float, friction: float, end: float = 3.0) -> np.ndarray:
+    """Slip history [m] of a rigid block on ground that moves by one sine of acceleration [m/s^2] (Newmark 1965), integrated in
+    small steps: while it slides the block is accelerated by friction alone."""
+    step = 1e-5
+    time = np.arange(0.0, end, step)
+    ground = np.where(time < period, amplitude * np.sin(2.0 * np.pi * time / period), 0.0)
+    limit, rate, slip, found = friction * GRAVITY, 0.0, 0.0, []
+    for a in ground:
+        if rate == 0.0 and abs(a) <= limit:
+            found.append(slip)
+            continue
+        sense = np.sign(rate) if rate != 0.0 else -np.sign(a)
+        after = rate + (-a - sense * limit) * step
+        rate = 0.0 if after * sense < 0.0 else after
+        slip += rate * step
+        found.append(slip)
+    return np.array(found)
+
+
+def step_slip(amplitude_g: float, duration: float, friction: float) -> float:
+    """Slip [m] on ground that moves by a step pulse, a then -a / 2 for twice as long, of a block that stops within the latter."""
+    a, mu = amplitude_g * GRAVITY, friction * GRAVITY
+    fast = (a - mu) * duration
+    braked = fast**2 / (2.0 * (mu + 0.5 * a))
+    assert fast / (mu + 0.5 * a) < 2.0 * duration
+    return 0.5 * fast * duration + braked
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_block_that_slides_has_not_collapsed(solver: dict) -> None:
+    """0.233 m at most and 0.020 m on the other side at the end, by Newmark's sliding block."""
+    found = run(SQUAT, SINE, **solver)
+    exact = newmark(0.5 * GRAVITY, 1.0, 0.2)
+    assert np.abs(exact).max() == pytest.approx(0.233, abs=1e-3) and abs(exact[-1]) == pytest.approx(0.020, abs=1e-3)
+    assert found["outcome"] == "slid" and found["collapse_criterion"] is None and found["collapse_time_s"] is None
+    assert found["peak_slip_m"] == pytest.approx(np.abs(exact).max(), rel=5e-3)
+    assert found["residual_slip_m"] == pytest.approx(abs(exact[-1]), abs=1e-3)
+    assert max(map(abs, found["peak_rotation_rad"].values())) < 1e-5
+    # 47 % of the base: what the footing or the joint still carries is not decided, and the footing is not as wide.
+    assert found["slip_ratio"] == pytest.approx(np.abs(exact).max() / 0.5, rel=5e-3)
+    assert found["off_footing"] == ["block"] and found.verdict.outcome == "open"
+    assert "233 mm" in found.verdict.statement and "limit 25 %" in found.verdict.statement
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_little_sliding_stands_and_the_verdict_says_how_much(solver: dict) -> None:
+    found = run(SQUAT, SINE | {"period": 0.5}, friction=0.3, **solver)
+    exact = np.abs(newmark(0.5 * GRAVITY, 0.5, 0.3)).max()
+    assert found["outcome"] == "slid" and 0.01 * 0.5 < exact < 0.25 * 0.5
+    assert found["peak_slip_m"] == pytest.approx(exact, rel=0.02)
+    assert found.verdict.outcome == "stands" and f"{1e3 * found['peak_slip_m']:.3g} mm" in found.verdict.statement
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize(
+    ("structure", "motion", "friction", "outcome", "criterion"),
+    [
+        (SQUAT, None, 0.2, "at-rest", None),
+        (SQUAT, SINE | {"amplitude": "0.1 g"}, 0.2, "at-rest", None),
+        ({"kind": "block", "width": 0.5, "height": 2.0}, SINE | {"amplitude": "0.4 g", "period": 0.3}, 0.7, "rocked", None),
+        ({"kind": "block", "width": 0.5, "height": 2.0}, SINE, 0.7, "collapse", "rotation"),
+    ],
+    ids=["still", "weak", "rocks", "overturns"],
+)  # fmt: skip
+def test_outcomes(
+    structure: dict, motion: dict | None, friction: float, outcome: str, criterion: str | None, solver: dict
+) -> None:
+    found = run(structure, motion, friction, end_time=2.0, **solver)
+    assert (found["outcome"], found["collapse_criterion"]) == (outcome, criterion), found.answer
+    assert found["governing_block"] == "block"
+    expected = {"collapse": "collapses"}.get(outcome, "stands")
+    assert found.verdict.outcome in (expected, "open") and (found.verdict.outcome == expected or found["still_moving"])
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_block_that_slides_off_its_footing_is_open(solver: dict) -> None:
+    """The footing is of the program's making: the deck names no floor."""
+    long = {"kind": "step-pulse", "amplitude": "0.6 g", "duration": 0.7}
+    found = run(SQUAT, long, 0.1, **solver)
+    assert found["outcome"] == "collapse" and found["collapse_criterion"] == "loss of support"
+    assert found.verdict.outcome == "open" and "footing under block" in found.verdict.violated[0]
+
+
+@pytest.mark.parametrize("solver", SOLVERS[1:])  # plane springs trip where the footing meets the floor
+def test_a_block_that_slides_on_a_named_floor_has_slid(solver: dict) -> None:
+    long = {"kind": "step-pulse", "amplitude": "0.6 g", "duration": 0.7}
+    on = run(SQUAT, long, 0.1, floor=0.0, **solver)
+    assert on["outcome"] == "slid" and on["off_footing"] == []
+    assert on["peak_slip_m"] == pytest.approx(step_slip(0.6, 0.7, 0.1), rel=0.01)
+
+
+def test_the_upper_block_of_a_stack_governs() -> None:
+    """The upper block overturns; the lower one does not turn, and is not the block that is named."""
+    stack = {"kind": "blocks", "block": [
+        {"name": "lower", "points": [[0, 0], [1.5, 0], [1.5, 1], [0, 1]]},
+        {"name": "upper", "points": [[0.6, 1], [0.9, 1], [0.9, 2.5], [0.6, 2.5]]},
+    ]}  # fmt: skip
+    found = run(stack, SINE, 0.7)
+    assert found["outcome"] == "collapse" and found["governing_block"] == "upper" and found["stopped_by"] == ["upper"]
+    assert abs(found["peak_rotation_rad"]["upper"]) > 0.1 > 1e3 * abs(found["peak_rotation_rad"]["lower"])
+    assert "upper collapses" in found.verdict.statement
+
+
+@pytest.mark.parametrize("solver", [{}, {"direction": 0.0}], ids=["plane", "space"])
+def test_no_pulse_of_a_domain_fails_by_sliding(solver: dict) -> None:
+    """These pulses slide the squat block and cannot overturn it: the slenderness of its base exceeds the friction."""
+    keys = {"kind": "dem-domain", "pulse": "sine", "amplitudes": ["0.5 g"], "durations": [0.5, 1.0], "floor": 0.0}
+    deck = {"structure": SQUAT, "joints": {"friction": 0.2}, "analysis": [keys | solver]}
+    assert extrados.run(deck).results[0]["shortest_durations_s"] == [None]
+
+
+def test_a_tilt_test_ends_where_blocks_slide_on() -> None:
+    """Under a sustained push sliding goes on: that is collapse, at the coefficient of friction."""
+    found = run(SQUAT, test="tilt")
+    assert found["collapse_acceleration_g"] == pytest.approx(0.2, abs=2e-3)
+
+
+@pytest.mark.parametrize("stop", [True, False])
+def test_the_criterion_does_not_hang_on_where_the_run_ends(stop: bool) -> None:
+    """Stopped by the core, or seen in the histories of a run that goes on."""
+    tall = {"kind": "block", "width": 0.5, "height": 2.0}
+    found = run(tall, SINE, 0.7, stop_at_collapse=stop, end_time=1.5, output_step=1e-3)
+    assert (found["outcome"], found["collapse_criterion"]) == ("collapse", "rotation")
+    assert found["collapse_time_s"] == pytest.approx(run(tall, SINE, 0.7)["collapse_time_s"], abs=2e-3)
