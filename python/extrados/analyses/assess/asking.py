@@ -128,31 +128,29 @@ def row_of(
         return no_row(strategy, status, result.reason, words)
     r = result.results
     outcome, margin, low, high = None, None, None, None
-    verdict = r.judged(demand)
-    bound, violated = verdict.bound, verdict.violated
+    verdict, said = r.judged(demand), ""
+    if isinstance(r, Tilt) and wall is not None:
+        verdict, said = r.judged_towards(demand, (wall == "right",)), "Pushed away from the wall"
+    elif isinstance(r, Tilt) and (cracked := _cracked(r)) is not None and cracked < (verdict.capacity or 0.0):
+        judged = judge_dilatant if r.fracture.dilating else judge_acceleration
+        verdict, said = judged(cracked, demand), "With the leeward buttress cracked"
     wanted, borne, unit, statement = verdict.demand, verdict.capacity, verdict.unit, verdict.statement
+    if said:
+        statement = f"{said}: {statement[:1].lower()}{statement[1:]}"
     if isinstance(r, Ensemble | OverLevels):
         wanted, borne, unit, outcome, statement, low, high = _probability(r, acceptable)
-    elif isinstance(r, Tilt) and wall is not None:
-        judged = r.judged_towards(demand, (wall == "right",))
-        borne, outcome, margin = judged.capacity, judged.outcome, judged.ratio
-        statement = f"Pushed away from the wall: {judged.statement[:1].lower()}{judged.statement[1:]}"
-    elif isinstance(r, Tilt) and (cracked := _cracked(r)) is not None and cracked < (borne or 0.0):
-        broken = (judge_dilatant if r.fracture.dilating else judge_acceleration)(cracked, demand)
-        borne, outcome, margin = cracked, broken.outcome, broken.ratio
-        statement = f"With the leeward buttress cracked: {broken.statement[:1].lower()}{broken.statement[1:]}"
     elif isinstance(r, Sla | Pushover) and any(c.peak_load_N is None for c in (r, r.minus) if c is not None):
         low = verdict.ratio  # it bears so much at least
         if verdict.outcome == "stands":
             statement = f"The run passed no peak, what it bears in the end is not known. {statement}"
     elif strategy.axis in ("acceleration", "pulse", "check") or isinstance(r, SelfWeight):
         margin = verdict.ratio
-    if violated and outcome in ("stands", "collapses"):
-        outcome = "open"
+    if verdict.violated and outcome in ("stands", "collapses"):
+        outcome, statement = "open", f"{statement} {' '.join(verdict.violated)}"
     return StrategyVerdict(
         strategy=strategy.name, label=strategy.label, part=None, status="ok", reason="", axis=strategy.axis, demand=wanted,
-        capacity=borne, unit=unit, outcome=outcome or verdict.outcome, bound=bound, violated=violated, margin=margin, margin_at_least=low, margin_below=high,
-        parameters=words, assumes=strategy.assumes, statement=statement,
+        capacity=borne, unit=unit, outcome=outcome or verdict.outcome, bound=verdict.bound, violated=verdict.violated,
+        margin=margin, margin_at_least=low, margin_below=high, parameters=words, assumes=strategy.assumes, statement=statement,
     )  # fmt: skip
 
 

@@ -43,13 +43,14 @@ class EnsembleJob:
     """Member k is motion k // L at level k % L, L the number of levels; without levels motions stay as they are.
 
     measure: what is scaled to the level or, without levels, told as the intensity of a motion, in SI; an intensity of 1
-    means `unit` of it. bodies and starts hold one entry, or one for each motion; a text is why a building is none. astray: see
-    rocking.conditions.
+    means `unit` of it. bodies, starts and fallen hold one entry, or one for each motion; a text is why a building is none, and
+    one that is fallen cannot stand, so that every motion finds it collapsed. astray: see rocking.conditions.
     """
 
     source: Source
     bodies: list[Body | str]
     starts: np.ndarray
+    fallen: np.ndarray
     measure: str
     unit: float
     levels: np.ndarray | None
@@ -111,6 +112,12 @@ class EnsembleJob:
                 rows[name][good] = getattr(e, name)
             for name, values in rows_of(e.joints, e.half_cycles, self.astray).items():
                 rows[name][good] = values
+            down = good[self.fallen[whose[good]]]
+            rows["outcome"][down], rows["half_cycles"][down] = COLLAPSE, 0
+            rows["peak_ratio"][down], rows["stop_time"][down] = 1.0, 0.0
+            for name in ("peak", "friction"):
+                rows[name][down] = np.nan
+            rows["slips"][down] = rows["strays"][down] = 0
             rows["scale"][good] = scale
             for name, power in (("pga", 1), ("pgv", 1), ("arias", 2)):
                 rows[name][good] = own[name][index] * np.abs(scale) ** power
@@ -151,7 +158,7 @@ def _job(context: Context, options: Fragility, base: Rocker, duration: float | N
     made = (
         sampled(context, options, base, motions)
         if options.uncertain
-        else Bodies([base.body], np.array([base.start_rotation]))
+        else Bodies([base.body], np.array([base.start_rotation]), np.zeros(1, bool))
     )
     levels = np.array(options.levels) if options.levels else None
     measure, unit = options.intensity, INTENSITIES[options.intensity][1]
@@ -162,8 +169,22 @@ def _job(context: Context, options: Fragility, base: Rocker, duration: float | N
     sa = (options.sa_period, options.sa_damping) if options.sa_period and (options.levels or options.cloud) else None
     settle = 40.0 * base.time_unit if options.settle is None else options.settle
     job = EnsembleJob(
-        source, made.bodies, made.starts, measure, unit, levels, sa, settle, options.tolerance, astray_of(base)
+        source,
+        made.bodies,
+        made.starts,
+        made.fallen,
+        measure,
+        unit,
+        levels,
+        sa,
+        settle,
+        options.tolerance,
+        astray_of(base),
     )
+    if made.fallen.any():
+        context.warnings.append(
+            f"{int(made.fallen.sum())} of {len(made.fallen)} sampled buildings cannot stand under their own weight: they count as collapsed"
+        )
     return job, motions * (1 if levels is None else len(levels)), motions
 
 
@@ -324,7 +345,7 @@ def _histories(job: EnsembleJob, base: Rocker, count: int, result: Result) -> No
     for k in range(count):
         (ground,) = job.source.grounds(k, 1, 1)
         body = job.bodies[k % len(job.bodies)]
-        if isinstance(ground, str) or isinstance(body, str):
+        if isinstance(ground, str) or isinstance(body, str) or job.fallen[k % len(job.fallen)]:
             continue
         start, end = float(job.starts[k % len(job.starts)]), ground.end + AFTER * base.time_unit
         h = _response(body, ground, end, start, job.tolerance)

@@ -55,7 +55,7 @@ def sensitivity(
     # The points at which only the motion differs share their structures
     structures, body = np.unique(points[:, : len(names)], axis=0, return_inverse=True)
     made = models(structures)
-    without = [body for body in made.bodies if isinstance(body, str)]
+    without = [body for body in made.bodies if isinstance(body, str)] + ["cannot stand"] * int(made.fallen.sum())
     if without:
         raise Refused(
             f"{len(without)} of {len(made.bodies)} buildings of the sample do not rock ({without[0]}): the indices of the "

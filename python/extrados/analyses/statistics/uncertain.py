@@ -22,6 +22,10 @@ from extrados.limit.errors import CannotStand
 BY_STONE = ("density", "imperfection")
 
 
+#: In place of the kind of a body: the building cannot stand
+FALLEN = -2
+
+
 @dataclass(frozen=True)
 class Sample:
     """Member k is the rocker of a building at the point draws[k] of the unit cube, by the names of `uncertain` in order.
@@ -59,7 +63,7 @@ class Sample:
         except BadGeometry as error:
             reason = str(error)
         except CannotStand as error:
-            reason = f"cannot stand: {error}"
+            kind, reason = FALLEN, str(error)
         return {"kind": np.array(kind), "body": values, "start": np.array(start), "reason": np.array(reason)}
 
     def wide(self, base: Rocker) -> "Sample":
@@ -74,10 +78,12 @@ class Sample:
 
 @dataclass(frozen=True)
 class Bodies:
-    """Structures of a sample, or the texts why one is none; rotations from which they start [rad]."""
+    """Structures of a sample, or the texts why one is none; rotations from which they start [rad]. fallen: which of them
+    cannot stand; another of the sample is put in their place, as no motion is needed to know how they end."""
 
     bodies: list[Body | str]
     starts: np.ndarray
+    fallen: np.ndarray
 
 
 def sampled(context: Context, options: Fragility, base: Rocker, count: int) -> Bodies:
@@ -96,7 +102,11 @@ def bodies_at(context: Context, options: Fragility, base: Rocker, draws: np.ndar
         str(reason) if kind < 0 else Body(int(kind), values)
         for kind, values, reason in zip(rows["kind"], rows["body"], rows["reason"], strict=True)
     ]
-    return Bodies(bodies, rows["start"])
+    fallen = rows["kind"] == FALLEN
+    stand_in = next((body for body in bodies if isinstance(body, Body)), base.body)
+    return Bodies(
+        [stand_in if down else body for body, down in zip(bodies, fallen, strict=True)], rows["start"], fallen
+    )
 
 
 def refuse_unknown(building: Building, names: list[str]) -> None:
