@@ -21,7 +21,8 @@
   ENTRY(2, block, "block") \
   ENTRY(3, table, "table") \
   ENTRY(4, restrained, "restrained") \
-  ENTRY(5, soft_base, "soft-base")
+  ENTRY(5, soft_base, "soft-base") \
+  ENTRY(6, watched, "watched")
 
 #define EXTRADOS_ROCKING_OUTCOME_LIST(ENTRY) \
   ENTRY(0, no_hinging, "no-hinging") \

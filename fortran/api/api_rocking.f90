@@ -83,8 +83,9 @@ contains
       integer(c_int), intent(in) :: restraints              !! that the structure has
       !> outcome, half cycles, impacts, steps, rejected, settled, output times reached, events (may exceed room)
       integer(c_int), intent(out) :: counts(8)
-      !> peak [rad], peak ratio, stop time [s], work, loss, spent in restraints [J]
-      real(c_double), intent(out) :: measures(6)
+      !> peak [rad], peak ratio, stop time [s], work, loss, spent in restraints [J], the demand on the joints
+      !> (see joint_demand)
+      real(c_double), intent(out) :: measures(12)
       real(c_double), intent(out) :: state(9 + restraints, nt)  !! see response_history
       real(c_double), intent(out) :: kept(3, restraints)    !! of each: least, greatest force, path that stays
       integer(c_int), intent(out) :: event_kind(room)
@@ -132,7 +133,8 @@ contains
                record)
             counts = [answer%outcome, answer%half_cycles, answer%impacts, answer%steps, answer%rejected, &
                merge(1_c_int, 0_c_int, answer%settled), int(record%points, c_int), int(record%events, c_int)]
-            measures = [answer%peak, answer%peak_ratio, answer%stop_time, record%work, record%loss, record%spent]
+            measures = [answer%peak, answer%peak_ratio, answer%stop_time, record%work, record%loss, record%spent, &
+               answer%joints%flat()]
             if (allocated(record%memory)) then
                if (size(record%memory) == restraints) then
                   held(1, :) = record%memory%least
@@ -148,7 +150,7 @@ contains
 
    !> Many runs without histories; run_status tells each member's fate
    subroutine ensemble(bodies, motions, nrun, run_body, run_motion, run_scale, end_time, start_q, &
-                       tolerance, stop_when_safe, threads, outcome, peak, stop_time, run_status, status)
+                       tolerance, stop_when_safe, threads, outcome, peak, stop_time, demand, run_status, status)
       use common_handles, only : handle_leave
       use common_motion_set, only : motion_set, motion_set_take
       use common_status, only : status_ok, status_out_of_memory
@@ -170,6 +172,7 @@ contains
       integer(c_int), intent(out) :: outcome(5, nrun)       !! outcome, half cycles, impacts, steps, settled
       real(c_double), intent(out) :: peak(2, nrun)          !! rotation [rad], ratio to the critical
       real(c_double), intent(out) :: stop_time(nrun)        !! [s]
+      real(c_double), intent(out) :: demand(6, nrun)        !! on the joints, see joint_demand
       integer(c_int), intent(out) :: run_status(nrun)
       integer(c_int), intent(out) :: status
       type(response), allocatable :: answers(:)
@@ -181,6 +184,7 @@ contains
       outcome = 0
       peak = 0.0_c_double
       stop_time = 0.0_c_double
+      demand = 0.0_c_double
       run_status = 0
       status = status_out_of_memory
       allocate (answers(nrun), options(nrun), stat=failed)
@@ -203,6 +207,7 @@ contains
                merge(1_c_int, 0_c_int, answers(k)%settled)]
             peak(:, k) = [answers(k)%peak, answers(k)%peak_ratio]
             stop_time(k) = answers(k)%stop_time
+            demand(:, k) = answers(k)%joints%flat()
          end do
          call handle_leave(motions)
       end if

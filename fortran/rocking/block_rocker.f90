@@ -8,6 +8,7 @@ module rocking_block_rocker
    use common_kinds, only : wp, gravity, pi
    use common_status, only : status_ok, status_invalid_argument
    use rocking_rocker, only : rocker, series_short, side_index
+   use rocking_watch, only : joint_demand
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -158,7 +159,7 @@ contains
 
    !> Sample after sample by the same series, with no more than the comparisons that tell where to stop
    pure subroutine glide(model, side, start, spacing, scale, samples, first, last, tolerance, q, v, passed, &
-                         step, stopped)
+                         step, stopped, demand)
       class(block_rocker), intent(in) :: model
       integer, intent(in) :: side
       real(wp), intent(in) :: start
@@ -173,12 +174,15 @@ contains
       integer, intent(out) :: passed
       type(dense_step), intent(inout) :: step
       logical, intent(out) :: stopped
+      type(joint_demand), intent(inout) :: demand
       type(power_series) :: series
       real(wp) :: value(2), slope(2), begin, h, q_end, v_end, sigma
       integer :: c, i, k
+      logical :: watched
 
       passed = 0
       stopped = .false.
+      watched = allocated(model%watch)
       i = side_index(side)
       sigma = real(side, wp)
       value = 0.0_wp
@@ -204,6 +208,8 @@ contains
          q = q_end
          v = v_end
          passed = passed + 1
+         if (watched) call model%watch%look(i, q, v, value(1) + slope(1) * spacing, value(2) + slope(2) * spacing, &
+            begin + h, demand)
       end do
    end subroutine glide
 

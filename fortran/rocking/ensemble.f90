@@ -4,7 +4,7 @@ module rocking_ensemble
    use common_cancel, only : cancel_requested
    use common_lists, only : body_arch => rocking_body_arch, body_block => rocking_body_block, &
       body_restrained => rocking_body_restrained, body_soft_base => rocking_body_soft_base, &
-      body_table => rocking_body_table
+      body_table => rocking_body_table, body_watched => rocking_body_watched
    use common_motion_set, only : motion_set, motion_signal
    use common_signal, only : signal
    use common_status, only : status_ok, status_bad_index, status_cancelled, status_invalid_argument, &
@@ -16,6 +16,7 @@ module rocking_ensemble
    use rocking_rocker, only : rocker
    use rocking_soft_base_response, only : soft_base_body, soft_base_body_new, soft_base_respond
    use rocking_table_rocker, only : table_rocker, table_rocker_new
+   use rocking_watch, only : joint_watch_new
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -85,6 +86,18 @@ contains
          if (last < 2 .or. last > size(parameters)) return
          call make_body(nint(parameters(1), c_int), parameters(3:last), body, status)
          if (status == status_ok) call restrain(body, parameters(last + 1:), status)
+      case (body_watched)
+         ! kind and number of the parameters of what is watched, these, and what its joints carry
+         status = status_invalid_argument
+         if (size(parameters) < 2) return
+         if (nint(parameters(1)) == body_watched) return
+         last = 2 + nint(parameters(2))
+         if (last < 2 .or. last > size(parameters)) return
+         call make_body(nint(parameters(1), c_int), parameters(3:last), body, status)
+         if (status /= status_ok) return
+         allocate (body%watch, stat=stat)
+         status = status_out_of_memory
+         if (stat == 0) call joint_watch_new(parameters(last + 1:), body%watch, status)
       case default
          status = status_invalid_argument
       end select

@@ -20,6 +20,7 @@ module rocking_response
    use rocking_record, only : cannot_reach, energy_of, response_history
    use rocking_rocker, only : rocker, side_index
    use rocking_uplift, only : find_uplift, last_calm
+   use rocking_watch, only : joint_demand
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -48,6 +49,7 @@ module rocking_response
       integer(c_int) :: rejected = 0
       !> False where the run ended while the structure could still come to rest or to fall
       logical :: settled = .true.
+      type(joint_demand) :: joints              !! of a structure that is watched
    end type response
 
    !> Where a run stands: the state of the structure and of the integrator, and the answer so far
@@ -65,6 +67,7 @@ module rocking_response
       real(wp) :: h_next = 0.0_wp          !! length of the next step [s]
       real(wp) :: atol_q = 0.0_wp
       real(wp) :: atol_v = 0.0_wp
+      real(wp) :: look_every = huge(1.0_wp)  !! longest time between two looks at the joints [s]
       integer :: attempts = 0
       integer :: last_whole = 0            !! last segment of the ground motion that ends within the run
       integer(c_int) :: status = status_ok
@@ -94,9 +97,14 @@ module rocking_response
       procedure :: note_turning
       procedure :: leave_mode
       procedure :: hold_at_rest
+      procedure :: look
+      procedure :: look_within
+      procedure :: look_at_rest
    end type run_state
 
    integer, parameter :: poll_every = 2000
+   !> Looks at the joints within the natural time of the structure, sqrt(M q_cr / V')
+   real(wp), parameter :: looks = 50.0_wp
 
 contains
 
@@ -183,6 +191,8 @@ contains
       do i = 1, 2
          call body%coefficients(3 - 2 * i, 0.0_wp, m, half_dm, state%problem%rest_dv(i), &
             state%problem%rest_dh(i), closed)
+         if (allocated(body%watch)) state%look_every = min(state%look_every, &
+            sqrt(m * body%critical(i) / state%problem%rest_dv(i)) / looks)
       end do
       i = side_index(options%start_side)
       state%atol_q = 0.01_wp * options%tolerance * maxval(body%critical)
@@ -238,6 +248,7 @@ contains
       ! Long sines are searched in pieces, so that the loop answers a request to stop.
       window = min(t_next, state%t + 64.0_wp * state%problem%ground%shortest_period(state%problem%segment))
       call find_uplift(state%problem, state%t, window, lifts, found_side)
+      if (allocated(state%problem%body%watch)) call state%look_at_rest(lifts)
       if (found_side == 0) then
          state%t = window
          if (associated(state%history)) call state%history%rest(state%problem, state%t)
@@ -253,6 +264,7 @@ contains
       state%q = 0.0_wp
       state%v = 0.0_wp
       state%renew = .true.
+      call state%look()
       state%answer%half_cycles = state%answer%half_cycles + 1
       if (associated(state%history)) call state%history%note(event_uplift, state%t, real(found_side, wp))
    end subroutine wait
@@ -263,6 +275,9 @@ contains
       integer :: calm
       associate (problem => state%problem)
          if (.not. associated(problem%ground%samples) .or. problem%segment < 1) return
+         if (allocated(problem%body%watch)) then
+            if (any(problem%body%watch%slides < huge(1.0_wp)) .and. state%answer%joints%slips_at < 0.0_wp) return
+         end if
          calm = last_calm(problem, problem%segment, state%options%end_time)
          if (calm < problem%segment) return
          state%t = problem%ground%break_time(calm + 1)
@@ -292,7 +307,7 @@ contains
          last = min(state%last_whole, problem%segment - 1 + state%options%max_steps - state%attempts)
          call problem%body%glide(problem%side, ground%start, ground%step, ground%scale, ground%samples, &
             problem%segment, last, [state%atol_q, state%atol_v, state%options%tolerance], state%q, state%v, passed, &
-            state%step, state%at_hand)
+            state%step, state%at_hand, state%answer%joints)
          if (passed == 0) return
          problem%segment = problem%segment + passed
          state%t = ground%break_time(problem%segment)
@@ -378,10 +393,14 @@ contains
       call polish_impact(state%problem, state%q, state%v, state%a, state%atol_q, state%atol_v, &
          state%options%tolerance, fraction, state%step)
       call state%note_turning()
+      call state%look_within(1.0_wp)
       if (associated(state%history)) call state%history%cover(state%problem, state%step, 1.0_wp)
       state%from_rest = .false.
       state%t = state%step%t + state%step%h
       v_before = min(state%step%v, 0.0_wp)
+      state%q = 0.0_wp
+      state%v = v_before
+      call state%look()
       if (associated(state%history)) then
          call state%history%note(event_impact, state%t, real(state%problem%side, wp) * v_before)
          call state%history%lose(state%problem, -v_before, 1.0_wp)
@@ -408,6 +427,7 @@ contains
          if (state%over) return
       else
          state%answer%half_cycles = state%answer%half_cycles + 1
+         call state%look()
       end if
       state%renew = .true.
       call state%advance_segment()
@@ -419,6 +439,7 @@ contains
       real(wp), intent(in) :: fraction  !! of the step
       real(wp) :: limit
       limit = state%problem%body%limit(side_index(state%problem%side))
+      call state%look_within(fraction)
       if (associated(state%history)) call state%history%cover(state%problem, state%step, fraction)
       state%t = state%step%t + fraction * state%step%h
       state%answer%outcome = outcome_collapse
@@ -436,6 +457,7 @@ contains
       real(wp), intent(in) :: t_next
       logical :: was_quiet, whole
       call state%note_turning()
+      call state%look_within(1.0_wp)
       if (associated(state%history)) call state%history%cover(state%problem, state%step, 1.0_wp)
       state%from_rest = .false.
       whole = state%step%h >= t_next - state%t
@@ -447,8 +469,10 @@ contains
       call state%note_peak(state%q)
       if (allocated(state%problem%memory)) call state%problem%body%held%note_forces(side_index(state%problem%side), &
          state%q, state%v, state%problem%memory)
+      call state%look()
       was_quiet = state%quiet()
       call state%advance_segment()
+      if (state%renew) call state%look()  ! the ground jumps here
       if (.not. (state%options%stop_when_safe .and. was_quiet .and. state%v <= 0.0_wp)) return
       if (state%q >= state%problem%body%critical(side_index(state%problem%side))) return
       state%over = cannot_reach(state%problem, state%q, state%v, 1.0_wp)
@@ -558,6 +582,52 @@ contains
          state%problem%rest_hold(i) = state%problem%body%held%moment(i, 0.0_wp, 0.0_wp, state%problem%memory)
       end do
    end subroutine hold_at_rest
+
+   !> What the joints must carry in this state
+   subroutine look(state)
+      class(run_state), intent(inout) :: state
+      real(wp) :: horizontal, vertical
+      if (.not. allocated(state%problem%body%watch)) return
+      call state%problem%ground%value_at(state%problem%segment, state%t, horizontal, vertical)
+      call state%problem%body%watch%look(side_index(state%problem%side), state%q, state%v, horizontal, vertical, &
+         state%t, state%answer%joints)
+   end subroutine look
+
+   !> What they must carry within the first part of the last step, where it is long
+   subroutine look_within(state, part)
+      class(run_state), intent(inout) :: state
+      real(wp), intent(in) :: part  !! of the step
+      real(wp) :: x, t, horizontal, vertical
+      integer :: k, count
+      if (.not. allocated(state%problem%body%watch)) return
+      count = min(1000, ceiling(part * state%step%h / state%look_every))
+      do k = 1, count - 1
+         x = part * real(k, wp) / real(count, wp)
+         t = state%step%t + x * state%step%h
+         call state%problem%ground%value_at(state%problem%segment, t, horizontal, vertical)
+         call state%problem%body%watch%look(side_index(state%problem%side), state%step%coordinate(x), &
+            state%step%rate(x), horizontal, vertical, t, state%answer%joints)
+      end do
+   end subroutine look_within
+
+   !> Does the resting structure slide before a time? It does so as another mechanism would rise
+   subroutine look_at_rest(state, until)
+      class(run_state), intent(inout) :: state
+      real(wp), intent(in) :: until  !! [s]
+      type(equation_of_motion) :: slide
+      real(wp) :: when
+      integer :: side
+      associate (limit => state%problem%body%watch%slides)
+         if (all(limit >= huge(1.0_wp)) .or. state%answer%joints%slips_at >= 0.0_wp) return
+         slide%body => state%problem%body
+         slide%ground = state%problem%ground
+         slide%segment = state%problem%segment
+         slide%rest_dv = limit
+         slide%rest_dh = 1.0_wp
+      end associate
+      call find_uplift(slide, state%t, until, when, side)
+      if (side /= 0) state%answer%joints%slips_at = when
+   end subroutine look_at_rest
 
    !> Keep the rotation of greatest size
    subroutine note_peak(state, rotation)

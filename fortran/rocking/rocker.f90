@@ -10,6 +10,7 @@ module rocking_rocker
    use common_dense_step, only : dense_step
    use common_kinds, only : wp
    use rocking_restraint, only : restraint_set
+   use rocking_watch, only : joint_demand, joint_watch
    implicit none
    private
    public :: rocker, side_index, series_short
@@ -29,6 +30,7 @@ module rocking_rocker
       logical :: free(2) = .true.
       real(wp) :: rebound(2) = 0.0_wp      !! rate after over rate before being thrown back to this side
       type(restraint_set), allocatable :: held  !! ties, springs and dampers, where there are any
+      type(joint_watch), allocatable :: watch   !! what the joints must carry, where it is asked for
    contains
       procedure(coefficients), deferred :: coefficients
       procedure(potential), deferred :: potential
@@ -92,7 +94,7 @@ contains
    !> Whole segments of a sampled ground motion in which the structure neither turns nor touches the ground nor
    !> falls, each by one series; the state is that after the last of them. Here none: the general way takes them.
    pure subroutine glide(model, side, start, spacing, scale, samples, first, last, tolerance, q, v, passed, &
-                         step, stopped)
+                         step, stopped, demand)
       class(rocker), intent(in) :: model
       integer, intent(in) :: side            !! +1 or -1
       real(wp), intent(in) :: start          !! time of the first sample [s]
@@ -107,10 +109,11 @@ contains
       integer, intent(out) :: passed         !! segments
       type(dense_step), intent(inout) :: step  !! where it stopped: the segment in which something happens
       logical, intent(out) :: stopped        !! before the end of `last`
+      type(joint_demand), intent(inout) :: demand  !! of a structure that is watched
       passed = 0
       stopped = .false.
       if (.false.) step%q = q + v + start + spacing + scale + samples(1, first) + samples(1, last) + tolerance(1) &
-         + model%critical(side_index(side))
+         + model%critical(side_index(side)) + demand%friction
    end subroutine glide
 
    !> Rest where the kinetic energy after an impact is below 1e-6 of the energy barrier.

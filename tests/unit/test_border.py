@@ -165,6 +165,20 @@ ABUSES = {
     "ensemble of unlike lengths": ("rocking.ensemble([block], [one], [0, 0], [0], 1.0, 1.0)", "ValueError"),
     "body without parameters": ("rocking.history(rocking.Body(2, np.ones(2)), one, 1.0, 0.1)", "CoreError"),
     "body of no kind": ("rocking.history(rocking.Body(77, np.ones(9)), one, 1.0, 0.1)", "CoreError"),
+    "watched body of itself": ("rocking.history(rocking.Body(6, np.array([6.0, 2.0, 6.0, 0.0])), one, 1.0, 0.1)", "CoreError"),
+    "watched body of too few numbers": (
+        "rocking.history(rocking.Body(6, np.append([2.0, 9.0], [0, 1, 1, 2, 1, 1, 1, 1, 0, .01, 1, 1, 3, 16, .2, .2, .7, 1])), one, 1.0, 0.1)",
+        "CoreError",
+    ),
+    "watched body of 1e300 joints": (
+        "rocking.history(rocking.Body(6, np.append([2.0, 9.0], [0, 1, 1, 2, 1, 1, 1, 1, 0, .01, 1, 1, 1e300, 16, .2, .2])), one, 1.0, 0.1)",
+        "CoreError",
+    ),
+    "watch of unlike sides": (
+        "rocking.watched_body(rocking.block_body(1., 1., 1., .2, .2, (1., 1.)), (np.zeros((5, 1, 3, 3)), np.zeros((5, 2, 3, 3))), (.2, .2), "
+        "np.ones(1), .01)",
+        "ValueError",
+    ),
     "history without end": ("rocking.history(block, one, 1e300, 1e-9)", "ValueError"),
     "history of room below zero": ("rocking.history(block, one, 1.0, 0.1, room=-1)", "ValueError"),
     "threads of the whole world": ("rocking.ensemble([block], [one], [0], [0], 1.0, 1.0, threads=10**9)", ""),

@@ -135,7 +135,8 @@ def test_uncertain_values_are_sampled_evenly() -> None:
         )
     )
     made = sampled(context, context.deck.analyses[0], context.building.rocker(), 256)
-    tangent = np.array([body.parameters[4] / body.parameters[3] for body in made.bodies])
+    # kind and number of the parameters of the block stand before them
+    tangent = np.array([body.parameters[6] / body.parameters[5] for body in made.bodies])
     assert tangent.mean() == pytest.approx(0.25, rel=2e-3) and tangent.std() == pytest.approx(0.025, rel=0.03)
 
 

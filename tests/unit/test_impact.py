@@ -167,8 +167,8 @@ def test_where_the_blow_loses_too_much_the_answer_says_so() -> None:
     assert not quiet and outcomes["inelastic"] == "recovery"
     for analysis in ({"kind": "harmonic-map", "frequencies": [6.0], "amplitudes": 2, "cycles": 2},
                      {"kind": "failure-curves", "cycles": [1, 6], "durations": [0.1, 0.2], "amplitudes": 3, "accuracy": 0.05}):  # fmt: skip
-        (warning,) = extrados.run({"structure": arch1, "analysis": [analysis]}).results[0].warnings
-        assert "above 5 Hz" in warning
+        warnings = extrados.run({"structure": arch1, "analysis": [analysis]}).results[0].warnings
+        assert sum("above 5 Hz" in warning for warning in warnings) == 1
     stocky = {"kind": "arch", "radius": 1.0, "thickness": 0.2, "embrace": 140.0, "voussoirs": 13}
     (general, special), outcomes = told(stocky, {"kind": "step-pulse", "amplitude": "1.0 g", "duration": 0.1})
     assert "stocky" in general and "with 0.587 the outcome is recovery" in special and outcomes["0.587"] == "recovery"
@@ -189,7 +189,7 @@ def test_a_run_on_the_edge_says_so() -> None:
         low, high = (low, middle) if fell else (middle, high)
     edge = extrados.run(deck(0.15, 157.5, high))
     assert edge["rocking"].decided_by_last_digits
-    assert any("last digits" in text for text in edge.results[0].warnings)
+    assert any("Chaotic" in text for text in edge.results[0].warnings) and edge.results[0].verdict.outcome == "open"
     assert not extrados.run(deck(0.15, 157.5, 1.2 * high))["rocking"].decided_by_last_digits
 
 

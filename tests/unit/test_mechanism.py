@@ -20,6 +20,7 @@ from extrados.core import mechanism as core_mechanism
 from extrados.core import rocking
 from extrados.core.errors import CoreError
 from extrados.decks.reader import make_deck, read_deck
+from extrados.limit.errors import CannotStand
 from extrados.limit.linkage import CannotRock, linkage
 from extrados.limit.programme import LimitAnalysis
 from extrados.motions import pulses
@@ -266,7 +267,7 @@ def test_an_ensemble_does_not_depend_on_threads() -> None:
 
 
 def test_what_cannot_rock_says_why() -> None:
-    with pytest.raises(NoView, match="does not stand"):
+    with pytest.raises(CannotStand, match="no thrust line stays inside"):
         _ = MechanismModel(make_arch(10.0, 0.6, 180.0, 15)).body
     wall = of_case("dem/wall.toml")
     _, slides = LimitAnalysis(wall, 0.3).collapse(1)

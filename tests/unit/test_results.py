@@ -16,7 +16,7 @@ from extrados.results.assumptions import spoken
 from extrados.results.dem import DemDomain
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.model import Array, Result
-from extrados.results.rocking import FailureDomain, between
+from extrados.results.rocking import FailureDomain, RuleCurve, between
 from extrados.results.statistics import RockingSpectrum
 from extrados.results.typed import shapes, typed
 from extrados.results.verdict import Verdict, judge
@@ -140,7 +140,8 @@ def test_verdicts_of_one_deck() -> None:
     tilt, rocking, thrust = (run.analysis(name)["verdict"] for name in ("tilt", "rocking", "thrust"))
     assert tilt["outcome"] == "collapses" and tilt["demand"] == pytest.approx(0.5) and tilt["unit"] == "g"
     assert tilt["ratio"] == pytest.approx(run["tilt"].collapse_acceleration_g / 0.5)
-    assert rocking["outcome"] == "stands" and rocking["demand"] == run["rocking"].peak_rotation_ratio
+    assert rocking["outcome"] == "open" and rocking["demand"] == run["rocking"].peak_rotation_ratio
+    assert run["rocking"].outcome == "recovery" and "thrust line leaves" in rocking["violated"][0]
     assert thrust["ratio"] == pytest.approx(run["thrust"].geometric_safety_factor)
     assert all(v["statement"].endswith(".") for v in (tilt, rocking, thrust))
     calm = extrados.run({"structure": ARCH, "analysis": {"kind": "tilt"}}).analysis("tilt")["verdict"]
@@ -155,8 +156,27 @@ def test_a_pulse_against_failure_curves() -> None:
     curve = {"durations_s": [0.2, 0.4], "amplitudes_g": [1.0, 0.5]}
     domain = FailureDomain(
         pulse="step", mode_I=curve, mode_II=curve, pocket_begins_g=[None, None], uplift_acceleration_g=0.3,
-        restitution=0.9, natural_time_s=1.0, safe_pockets=0,
+        restitution=0.9, natural_time_s=1.0, safe_pockets=0, sliding_from_g=[None, 0.9], hinges_elsewhere_from_g=[0.95, None],
+        conditions={"not_checked": "", "violated": []},
     )  # fmt: skip
+    slides = domain.judged(Asked(pulse="step", duration_s=0.4, amplitude_g=0.92))
+    assert slides.outcome == "open" and slides.violated == [
+        "Blocks slide from 0.9 g on at this duration. Use dem, or check the friction."
+    ]
+    elsewhere = domain.judged(Asked(pulse="step", duration_s=0.3, amplitude_g=0.96))
+    assert elsewhere.outcome == "open" and len(elsewhere.violated) == 2
+    rules = domain.model_copy(
+        update={
+            "amplitudes_by_rule": [
+                RuleCurve(rule=rule, restitution=0.5, amplitudes_g=a)
+                for rule, a in (("thesis", [1.0, 0.5]), ("inelastic", [2.0, 1.0]))
+            ]
+        }
+    )
+    between_rules = rules.judged(Asked(pulse="step", duration_s=0.3, amplitude_g=0.8))
+    assert between_rules.outcome == "open"
+    assert between_rules.violated == ['The impact rule decides the outcome: "thesis" collapses, "inelastic" stands.']
+    assert rules.judged(Asked(pulse="step", duration_s=0.3, amplitude_g=0.7)).outcome == "stands"
     assert domain.judged(Asked(pulse="step", duration_s=0.3, amplitude_g=0.7)).outcome == "stands"
     assert domain.judged(Asked(pulse="step", duration_s=0.3, amplitude_g=0.8)).outcome == "collapses"
     assert domain.judged(Asked(pulse="sine", duration_s=0.3, amplitude_g=0.8)).outcome == "not-applicable"
@@ -189,7 +209,8 @@ def test_assumptions_tell_who_set_them() -> None:
     assert spoken({}) == ""
     rocking = extrados.run({"structure": ARCH, "motion": PULSE, "analysis": {"kind": "rocking"}}).analysis("rocking")
     assert (
-        rocking["assumptions"]["joints.friction"]["from"] == "method" and " No sliding (method), " in rocking["answer"]
+        rocking["assumptions"]["joints.friction"]["from"] == "default"
+        and " Friction 0.7 (default), " in rocking["answer"]
     )
     typed_joints = {
         **deck,
@@ -211,7 +232,8 @@ def test_stored_results_of_another_version_are_told(tmp_path) -> None:
 
 def test_series_of_arrays_keep_their_order(tmp_path) -> None:
     values = RockingSpectrum(
-        family=["x"], overturned=[0], longest_overturning_period_s=[None], size_m=[1.0], peak_ground_acceleration_g=0.1
+        family=["x"], overturned=[0], longest_overturning_period_s=[None], size_m=[1.0], peak_ground_acceleration_g=0.1,
+        conditions=[{"not_checked": "", "violated": []}],
     )  # fmt: skip
     result = Result("rocking-spectrum", results=values)
     result.arrays = {f"part_{k}": Array(np.full(2, k), (f"n_{k}",), series="part") for k in range(12)}

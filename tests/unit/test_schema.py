@@ -137,3 +137,12 @@ def test_definitions_of_different_tables_do_not_collide() -> None:
         for kind in there:
             for name, definition in kinds.table(section, kind).model_json_schema().get("$defs", {}).items():
                 assert seen.setdefault(name, definition) == definition, name
+
+
+def test_coordinates_within_the_rounding_of_zero_are_zero() -> None:
+    """Scripts that rotate points write 2.2e-16 for 0; a size of 2.2e-16 stays an error."""
+    points = [[0.0, 2.2e-16], [1.0, -1.1e-16], [1.0, 3.0], [0.0, 3.0]]
+    deck = make_deck({"structure": {"kind": "blocks", "block": [{"points": points}]}, "analysis": {"kind": "tilt"}})
+    assert deck.structure.block[0].points[0] == [0.0, 0.0] and deck.structure.block[0].points[1] == [1.0, 0.0]
+    with pytest.raises(DeckError, match="beyond reason"):
+        make_deck({"structure": {"kind": "block", "width": 2.2e-16, "height": 1.0}, "analysis": {"kind": "tilt"}})

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from extrados.analyses.rocking.conditions import rows_of
 from extrados.core import rocking as core_rocking
 from extrados.core.errors import Cancelled, CoreError, status_code
 from extrados.core.rocking import Body, Ground
@@ -13,7 +14,8 @@ from extrados.core.rocking import Body, Ground
 class RunsJob:
     """Member k: body[k] under motion[k] times scale[k], from start[k] [rad] until end[k] [s].
 
-    A member that fails has outcome -1 and its reason; with `strict` it stops the whole sweep.
+    A member that fails has outcome -1 and its reason; with `strict` it stops the whole sweep. astray: share of the energy after an
+    impact that the mechanism does not hold, see rocking.conditions.
     """
 
     bodies: list[Body]
@@ -25,6 +27,7 @@ class RunsJob:
     start: np.ndarray
     tolerance: float = 1e-8
     strict: bool = True
+    astray: float = 0.0
 
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
         part = slice(first, first + count)
@@ -42,7 +45,7 @@ class RunsJob:
         reason[list(e.failed)] = list(e.failed.values())
         return {
             "outcome": e.outcome.astype(np.int8), "half_cycles": e.half_cycles, "peak": e.peak, "peak_ratio": e.peak_ratio,
-            "stop_time": e.stop_time, "reason": reason.astype(str),
+            "stop_time": e.stop_time, "reason": reason.astype(str), **rows_of(e.joints, e.half_cycles, self.astray),
         }  # fmt: skip
 
 
@@ -57,6 +60,7 @@ def runs_job(
     *,
     tolerance: float = 1e-8,
     strict: bool = True,
+    astray: float = 0.0,
 ) -> RunsJob:
     """The job of these runs; numbers are spread over all members."""
     n = max(np.size(v) for v in (body, motion, scale, end, start))
@@ -66,5 +70,5 @@ def runs_job(
 
     return RunsJob(
         bodies, grounds, spread(body, int), spread(motion, int), spread(scale, float), spread(end, float), spread(start, float),
-        tolerance, strict,
+        tolerance, strict, astray,
     )  # fmt: skip

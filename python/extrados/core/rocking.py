@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,8 +16,22 @@ from extrados.core.ground import Ground, MotionSet, as_motion_set
 from extrados.core.handles import Owner
 
 __all__ = [
-    "EVENTS", "FAILED", "OUTCOMES", "Body", "BodyList", "Ensemble", "Ground", "MotionSet", "Response", "arch_body", "block_body",
-    "ensemble", "history", "limits",
+    "EVENTS",
+    "FAILED",
+    "OUTCOMES",
+    "Body",
+    "BodyList",
+    "Ensemble",
+    "Ground",
+    "JointDemand",
+    "MotionSet",
+    "Response",
+    "arch_body",
+    "block_body",
+    "ensemble",
+    "history",
+    "limits",
+    "watched_body",
 ]  # fmt: skip
 
 #: Outcomes by their number, from 0; events by theirs.
@@ -66,6 +81,59 @@ def block_body(
     if not all(0.0 <= c <= 1.0 for c in restitution):
         raise ValueError(f"restitution is {restitution}, expected 0 to 1")
     return Body(lists.number("rocking_body", "block"), np.array(values))
+
+
+@dataclass(frozen=True)
+class JointDemand:
+    """What runs demanded of the joints of a watched structure, up to its critical rotation; of one run or one entry for each.
+
+    friction: greatest coefficient needed while it rocks, infinite in tension; outside: how far the thrust line left a joint
+    over its length, below 0 where it stayed inside. slips_at, leaves_at: first time [s] at which the joints lack friction
+    (also at rest), at which the line leaves by more than the tolerance; -1: never. slips, leaves: place of that joint among
+    those watched, -1 where it slides at rest, or never.
+    """
+
+    friction: Any
+    outside: Any
+    slips_at: Any
+    leaves_at: Any
+    slips: Any
+    leaves: Any
+
+
+def _demand(numbers: np.ndarray) -> JointDemand:
+    """From the core's list (6) or (6, runs)."""
+    huge = 0.5 * np.finfo(float).max
+    friction, outside = (np.where(x > huge, np.inf, x) for x in numbers[:2])
+    slips, leaves = (x.astype(int) - 1 for x in numbers[4:])
+    return JointDemand(friction, outside, numbers[2], numbers[3], slips, leaves)
+
+
+def watched_body(
+    bare: Body, values: tuple[np.ndarray, np.ndarray], critical: tuple[float, float], friction: np.ndarray, tolerance: float,
+    slides: tuple[float, float] = (np.inf, np.inf),
+) -> Body:  # fmt: skip
+    """A structure whose joints are watched while it rocks (fortran/rocking/watch.f90).
+
+    values (steps + 1, joints, 3, 3), rocking to +x and to -x, at equal steps from rest to the `critical` rotation [rad]: forces
+    at each joint by input (1 + a_v/g; side a_h [m/s^2]; squared rate [rad^2/s^2]) and quantity (compression [N]; shear [N]; moment
+    about the joint's first end over its length [N]). friction (joints): coefficient that they have; tolerance: how far the thrust
+    line may leave a joint, over its length; slides: ground acceleration that slides the resting structure the way it would
+    rock to +x, to -x [m/s^2].
+    """
+    steps, joints = values[0].shape[0] - 1, values[0].shape[1]
+    if values[1].shape != values[0].shape or values[0].shape[2:] != (3, 3) or steps < 4:
+        raise ValueError(f"values have shapes {values[0].shape} and {values[1].shape}")
+    most = np.finfo(float).max
+    numbers = [
+        [bare.kind, len(bare.parameters)], bare.parameters,
+        np.minimum([tolerance, *slides, joints, steps, *critical, *friction], most), *(v.transpose(0, 2, 3, 1).ravel() for v in values),
+    ]  # fmt: skip
+    return Body(
+        lists.number("rocking_body", "watched"),
+        np.concatenate([np.asarray(x, dtype=float) for x in numbers]),
+        bare.restraints,
+    )
 
 
 class BodyList(Owner):
@@ -144,6 +212,7 @@ class Response:
     permanent: np.ndarray
     settled: bool  # it rests, has fallen, or can no longer fall
     interrupted: bool = False
+    joints: JointDemand | None = None  # of a watched structure
 
 
 def history(
@@ -194,7 +263,7 @@ def history(
     state = state[:, :points]
     if not (np.isfinite(state).all() and np.isfinite(measures).all()):
         check(status_code("not_finite"), "rocking response")
-    peak, peak_ratio, stop_time, work, loss, spent = (float(x) for x in measures)
+    peak, peak_ratio, stop_time, work, loss, spent = (float(x) for x in measures[:6])
     rotation, rate, acceleration, shaking, vertical, kinetic, potential, ledger, stored = state[:9]
     return Response(
         outcome=OUTCOMES[outcome],
@@ -226,6 +295,7 @@ def history(
         permanent=kept[2],
         settled=bool(settled),
         interrupted=interrupted,
+        joints=_demand(measures[6:]) if body.kind == lists.number("rocking_body", "watched") else None,
     )
 
 
@@ -241,6 +311,7 @@ class Ensemble:
     stop_time: np.ndarray  # [s]
     steps: np.ndarray
     settled: np.ndarray  # False where end_time came before rest or fall
+    joints: JointDemand  # of the structures that are watched
     interrupted: bool = False
     failed: dict[int, str] = field(default_factory=dict)
 
@@ -289,7 +360,7 @@ def ensemble(
         int(stop_when_safe),
         thread_count(threads),
     )
-    outcome, peak, stop_time, run_status, status = out
+    outcome, peak, stop_time, demand, run_status, status = out
     cancelled = status_code("cancelled")
     if status != cancelled:
         check(status, "rocking ensemble")
@@ -307,6 +378,7 @@ def ensemble(
         stop_time * gone,
         outcome[3],
         outcome[4] != 0,
+        _demand(demand),
         status == cancelled,
         failed,
     )

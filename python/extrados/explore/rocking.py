@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.rocking.conditions import Counted, astray_of, of_many, of_one, told
 from extrados.analyses.rocking.failure_domain import MODE_I, Mapper, natural_durations
 from extrados.analyses.rocking.history import answer, rest_time, run_history
 from extrados.analyses.rocking.shapes import States, shapes
@@ -50,7 +51,7 @@ def history(
         "critical_rad": list(rocker.critical), "uplift_g": rocker.uplift, "restitution": rocker.restitution,
         "peak_ground_g": motion.peak / GRAVITY, "stop_time_s": response.stop_time, "end_time_s": end, "word": rocker.word,
         "answer": answer(context, response, f"The {rocker.word}", "comes down", rocker.uplift),
-        "warnings": [*rocker.warnings, *motion.notes],
+        "warnings": [*told(of_one(rocker, response)["conditions"]), *rocker.warnings, *motion.notes],
     }  # fmt: skip
     moving = np.flatnonzero(response.rotation)
     last = float(response.time[moving[-1]]) if len(moving) else 0.0
@@ -154,10 +155,14 @@ def domain(
     unit = float(np.sqrt(rocker.scale / GRAVITY))
     durations = np.array(options.durations) if options.durations else natural_durations(unit, options.pulse)
     amplitudes = np.linspace(0.0, options.max_amplitude, options.amplitudes + 1)[1:]
-    mapper = Mapper(rocker.body, options.pulse, durations.tolist(), 40.0 * unit, context.threads, rocker.start_rotation)
+    mapper = Mapper(
+        rocker.body, options.pulse, durations.tolist(), 40.0 * unit, context.threads, rocker.start_rotation,
+        astray=astray_of(rocker),
+    )  # fmt: skip
+    seen: list[dict[str, np.ndarray]] = []
     codes = np.full((len(durations), len(amplitudes)), 255, dtype=np.uint8)
-    words = {
-        "pulse": options.pulse, "uplift_g": rocker.uplift, "mode_I": MODE_I, "word": rocker.word,
+    words: dict[str, Any] = {
+        "pulse": options.pulse, "conditions": [], "uplift_g": rocker.uplift, "mode_I": MODE_I, "word": rocker.word,
         "outcomes": ["does not rock", "recovers", "collapses after an impact (Mode I)", "collapses at once (Mode II)"],
     }  # fmt: skip
     axes = {"duration": durations, "amplitude": amplitudes / GRAVITY}
@@ -173,13 +178,15 @@ def domain(
         done = 0
         while done < len(i):
             begin, part = time.perf_counter(), slice(done, done + count)
-            codes[i[part], k[part]] = mapper.codes(i[part], amplitudes[k[part]])
+            seen.append(mapper.rows(i[part], amplitudes[k[part]]))
+            codes[i[part], k[part]] = seen[-1]["code"]
             done += count
             now = time.perf_counter()
             count = max(1, int(count * min(GROWTH, PATIENCE / max(now - begin, 1e-9))))
             if now - last > PATIENCE and done < len(i):
                 yield {**words, "stride": drawn[0], "whole": False, "part": True}, {**axes, "codes": drawn[1].copy()}
                 last = time.perf_counter()
+        words["conditions"] = told(of_many(rocker, Counted.of(seen), "pulses of the map")["conditions"])
         drawn = stride, codes.copy()
         yield {**words, "stride": stride, "whole": stride == 1, "part": False}, {**axes, "codes": drawn[1]}
         last = time.perf_counter()

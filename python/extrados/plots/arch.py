@@ -225,6 +225,15 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
         mark = "o" if len(d) == 1 else ""
         ax.plot(d, run.array(name, "mode_I")[order], f"k-{mark}", label="Mode I (governs)")
         ax.plot(d, run.array(name, "mode_II")[order], f"k--{mark}", label="Mode II")
+        for one in r.amplitudes_by_rule or []:
+            curve = np.array(one.amplitudes_g, dtype=float)[order]
+            ax.plot(d, curve, linewidth=1.2, linestyle="-.", label=f"rule {one.rule}, $c_v$ {one.restitution:.2f}")
+        for values, text in (
+            (r.sliding_from_g, "blocks slide from"),
+            (r.hinges_elsewhere_from_g, "hinges elsewhere from"),
+        ):
+            if any(value is not None for value in values):
+                ax.plot(d, np.array(values, dtype=float)[order], ".", markersize=3.0, label=text)
         ax.axhline(r.uplift_acceleration_g, color=style.EDGE, linewidth=0.8, linestyle=":")
         for code, text in enumerate(
             ("no rocking", "recovery", "collapse after impact (Mode I)", "collapse without impact (Mode II)")

@@ -15,7 +15,7 @@ def draw_local_mechanism(run: Stored, name: str, folder: Path) -> list[tuple[str
             run.array(name, "displacement"),
             run.array(name, "acceleration"),
             color=style.EDGE,
-            label="capacity, finite rotation",
+            label="capacity at finite rotations",
         )
         if r.zero_displacement_m is not None:
             ax.plot(
@@ -30,12 +30,12 @@ def draw_local_mechanism(run: Stored, name: str, folder: Path) -> list[tuple[str
             )
         check = r.checks.get("NTC nonlinear")
         if check is not None and check.demand is not None:
-            ax.axvline(check.demand, color="#d98200", linewidth=1.2, label="asked: S_D(T_SLV)")
+            ax.axvline(check.demand, color="#d98200", linewidth=1.2, label="demand S_D(T_SLV)")
         ax.set_xlim(0.0, None)
         ax.set_ylim(0.0, None)
         ax.set_xlabel("displacement d* [m]")
         ax.set_ylabel("acceleration a* [g]")
-        ax.set_title(f"Capacity of the {r.mechanism}")
+        ax.set_title("Capacity of the mechanism" if r.mechanism == "building" else f"Capacity of the {r.mechanism}")
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-capacity")
     caption = "Capacity curve of the equivalent oscillator, with the confidence factor; the straight line is that of the code."

@@ -443,7 +443,7 @@ def draw_code_checks(run: Stored, name: str, folder: Path) -> list[tuple[str, st
     rows = [
         (rule, c.demand / c.capacity, c.code)
         for rule, c in run[name].checks.items()
-        if c.demand is not None and c.capacity > 0.0
+        if c.verdict in ("holds", "fails") and c.capacity > 0.0
     ]
     if not rows:
         return []
@@ -456,6 +456,6 @@ def draw_code_checks(run: Stored, name: str, folder: Path) -> list[tuple[str, st
         ax.invert_yaxis()
         ax.set_xlabel("demand over capacity")
         return [(style.save(fig, folder, name), (
-            "Demand over capacity of each rule; above 1 it fails. Of several checks of one code any that holds suffices; "
-            f"pale bars are formulas for comparison. {run[name].overall().statement}"
+            "Demand over capacity of each rule that applies; above 1 it fails. The checks of NTC at SLV are alternatives, of which one that "
+            f"holds suffices, and so are Ishiyama's; pale bars are formulas for comparison. {run[name].overall().statement}"
         ))]  # fmt: skip

@@ -89,17 +89,21 @@ def write(fig: Figure, target: Path, name: str) -> str:
 def legend_below(fig: Figure, ax: Axes) -> None:
     """The legend of `ax` below the whole figure, where a drawing has no room for it."""
     handles, labels = ax.get_legend_handles_labels()
-    fig.legend(handles, labels, loc="outside lower center", ncols=len(labels))
+    fig.legend(handles, labels, loc="outside lower center", ncols=_columns(fig, labels))
+
+
+def _columns(fig: Figure, labels: list[str]) -> int:
+    """How many entries of a legend fit side by side."""
+    entry = LEGEND_LINE + LEGEND_LETTER * max(map(len, labels), default=0)
+    return max(1, min(len(labels), int(fig.get_figwidth() / entry)))
 
 
 def legend_above(ax: Axes, handles: list | None = None, labels: list[str] | None = None) -> None:
     """The legend of `ax` over its upper right corner, in rows of up to four, where curves fill all of it."""
     if handles is None or labels is None:
         handles, labels = ax.get_legend_handles_labels()
-    entry = LEGEND_LINE + LEGEND_LETTER * max(map(len, labels), default=0)
-    fitting = int(ax.get_figure(root=True).get_figwidth() / entry)
     ax.legend(
-        handles, labels, ncols=max(1, min(len(labels), fitting, 4)), loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.0,
+        handles, labels, ncols=min(_columns(ax.get_figure(root=True), labels), 4), loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.0,
         borderpad=0.1,
     )  # fmt: skip
 

@@ -239,10 +239,10 @@ def _own_tables(run: Stored) -> list[tuple[str, str, Table]]:
                 (
                     n,
                     cell(c.demand, ""),
-                    cell(c.capacity),
+                    cell(c.capacity, ""),
                     c.unit,
                     c.verdict,
-                    f"{c.source}{f'. {c.note}' if c.note else ''}",
+                    f"{f'Not applicable: {c.reason}. ' if c.reason else ''}{c.source}{f'. {c.note}' if c.note else ''}. For: {c.scope}",
                 )
                 for n, c in checks.items()
             ]

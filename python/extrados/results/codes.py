@@ -4,71 +4,102 @@ from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.rocking import RockingOutcome
-from extrados.results.verdict import Demand, KindResults, Verdict, judge
+from extrados.results.verdict import Bound, Demand, KindResults, Verdict, judge
+
+Applied = Literal["holds", "fails", "not-applicable", ""]
 
 
 class Check(ResultModel):
     """One rule of a code."""
 
-    capacity: float = fact("what the rule allows, in `unit`")
-    demand: float | None = fact("what is asked, in `unit`; null where nothing is known")
+    capacity: float | None = fact("capacity by the rule, in `unit`; null where the rule gives none for this element")
+    demand: float | None = fact("demand, in `unit`; null where it is not known")
     unit: str = fact("unit of capacity and demand")
-    verdict: Literal["holds", "fails", ""] = fact("the rule's verdict; empty without a demand")
-    source: str = fact("where the rule comes from")
-    note: str = fact("what to know of it")
-    code: str = fact(
-        "whose check it is: of several checks of one code any that holds suffices; empty for a formula or a strength"
+    verdict: Applied = fact("verdict of the rule; not-applicable outside its scope; empty without a demand")
+    source: str = fact("source of the rule")
+    note: str = fact("values on which capacity and demand rest")
+    code: str = fact("code whose check it is; empty for a formula for comparison or a strength")
+    scope: str = fact("element, restraint and height that the rule is for")
+    alternative: str = fact(
+        "checks of one code with the same word are alternatives: one that holds suffices; empty: must hold by itself"
     )
+    reason: str = fact("why the rule does not apply; empty where it does")
+
+
+Row = tuple[float, str, Check]
 
 
 class Checked(KindResults):
     """Rules of codes, by name, and one verdict for all."""
 
     checks: dict[str, Check] = fact("the rules by name")
+    confidence_factor: float = maybe("FC by which the capacity of the checks of NTC is divided")
+    behaviour_factor: float = maybe("q of the linear check of NTC")
+    bound: Bound = maybe("which side of the exact capacity the checks lie on")
+    violated: list[str] = maybe(
+        "assumptions on the unsafe side that were checked and do not hold: what holds is then open"
+    )
 
     def judged(self, demand: Demand) -> Verdict:
         """The overall verdict; the deck's motion is no demand of a code."""
         return self.overall()
 
-    def _best(self) -> tuple[list[tuple[float, str, Check]], list[str]]:
-        """Of each code that is decided the check that allows most, as margin, name and check, the worst first; the codes that
-        are not: one of their checks fails while another has no demand."""
-        margins: dict[str, tuple[float, str, Check]] = {}
-        open_codes = set()
+    def _groups(self) -> list[tuple[str, Row | None, bool]]:
+        """Of the checks that apply, each group of alternatives: its code; margin, name and check of that which allows most, None without
+        a demand; whether it is decided: one holds, or all fail."""
+        groups: dict[tuple[str, str], list[tuple[str, Check]]] = {}
         for name, check in self.checks.items():
-            if not check.code:
-                continue
-            if check.demand is None:
-                open_codes.add(check.code)
-            elif check.demand > 0.0:
-                row = (check.capacity / check.demand, name, check)
-                margins[check.code] = max(margins.get(check.code, row), row, key=lambda r: r[0])
-        undecided = {c for c in open_codes if c not in margins or margins[c][2].verdict == "fails"}
-        decided = [row for code, row in margins.items() if code not in undecided]
-        return sorted(decided, key=lambda row: row[0]), sorted(undecided)
+            if check.code and check.verdict != "not-applicable":
+                groups.setdefault((check.code, check.alternative or name), []).append((name, check))
+        found = []
+        for (code, _), rows in groups.items():
+            margins = [(c.capacity / c.demand, n, c) for n, c in rows if c.demand and c.capacity is not None]
+            best = max(margins, key=lambda r: r[0], default=None)
+            known = best is not None and (best[2].verdict == "holds" or all(c.demand is not None for _, c in rows))
+            found.append((code, best, known))
+        return found
 
-    def governing(self) -> list[tuple[float, str, Check]]:
-        """Margin, name and check by which each code that is decided says what it says, the code that allows least first."""
-        return self._best()[0]
+    def least(self) -> float | None:
+        """Least margin of what is known, also of codes that are not decided; None without a demand."""
+        return min((best[0] for _, best, _ in self._groups() if best is not None), default=None)
+
+    def governing(self) -> list[Row]:
+        """Margin, name and check by which each code that is decided says what it says, the one that allows least first."""
+        return sorted((best for _, best, known in self._groups() if known and best is not None), key=lambda row: row[0])
 
     def overall(self) -> Verdict:
-        """One verdict for all: of each code the check that allows most, of the codes the one that allows least. Formulas for
+        """One verdict for all: the most unfavourable check that applies, of alternatives the one that allows most. Formulas for
         comparison and the computed rocking do not count; without a demand the weakest strength of a pier [N]."""
-        decided, undecided = self._best()
-        left = f" Left open for want of a demand: {', '.join(undecided)}." if undecided else ""
+        decided, undecided = self.governing(), sorted({code for code, _, known in self._groups() if not known})
+        remarks = f" Open for want of a demand: {', '.join(undecided)}." if undecided else ""
+        if self.confidence_factor == 1.0:
+            remarks += " All partial and confidence factors are 1: the capacity holds no margin for what is not known of the masonry."
         if decided:
             _, name, worst = decided[0]
+            holds = (
+                worst.verdict == "holds"
+            )  # what is violated errs on the unsafe side: a check that fails, fails all the same
             unit = f" {worst.unit}" if worst.unit else ""
             return judge(
-                f"{worst.code} governs and {worst.verdict}, by {name}: {worst.demand:.3g} against "
-                f"{worst.capacity:.3g}{unit}.{left}",
-                worst.demand, worst.capacity, worst.unit, "collapses" if worst.verdict == "fails" else "stands",
+                f"{worst.code} governs and {worst.verdict}, by {name}: demand {worst.demand:.3g}, capacity {worst.capacity:.3g}{unit}."
+                f"{remarks}",
+                worst.demand, worst.capacity, worst.unit, "stands" if holds and self.bound != "upper" else None, self.bound,
+                (self.violated or ()) if holds else (),
             )  # fmt: skip
-        strengths = {name: c for name, c in self.checks.items() if c.unit == "N"}
-        if not strengths:
-            return judge("The deck holds no demand of a code: give its spectrum.")
-        name, weakest = min(strengths.items(), key=lambda item: item[1].capacity)
-        return judge(f"{name} gives the least strength, {weakest.capacity / 1e3:.4g} kN.", None, weakest.capacity, "N")
+        strengths = {name: c.capacity for name, c in self.checks.items() if c.unit == "N" and c.capacity is not None}
+        if strengths:
+            name, least = min(strengths.items(), key=lambda item: item[1])
+            return judge(
+                f"{name} gives the least strength, {least / 1e3:.4g} kN, with all partial factors at 1.",
+                None,
+                least,
+                "N",
+            )
+        barred = {c.code: c.reason for c in self.checks.values() if c.code and c.verdict == "not-applicable"}
+        if undecided or not barred:
+            return judge("The deck holds no demand for the checks that apply: give the spectrum of the code.")
+        told = "; ".join(f"{code}: {reason}" for code, reason in barred.items())
+        return judge(f"No check of a code applies. {told[:1].upper()}{told[1:]}.")
 
 
 class CodeChecks(Checked):
@@ -100,15 +131,28 @@ class LocalMechanism(Checked):
         "alpha_0, the horizontal multiplier of the weights that starts it", source="Circ. 7/2019 C8.7.1.2.1"
     )
     participating_mass_kg: float = fact("M*, of the equivalent oscillator", "kg", source="Circ. 7/2019 C8.7.1.2.1")
-    participating_part: float = fact("e* = g M* over the weights that sway")
+    participating_part: float = fact(
+        "e* = g M* over the weight of the kinematic chain", source="Circ. 7/2019 [C8.7.1.5]"
+    )
     activation_acceleration_g: float = fact("a_0* = alpha_0 g/(e* FC)", "g", source="Circ. 7/2019 C8.7.1.2.1")
-    zero_displacement_m: float | None = fact("d_0*, at which the multiplier vanishes; null: at none", "m")
+    zero_displacement_m: float | None = fact(
+        "d_0*, at which the multiplier vanishes, by the horizontal displacement of the centre of what moves; null: at none",
+        "m",
+        source="Circ. 7/2019 [C8.7.1.4]",
+    )
     ultimate_displacement_m: float | None = fact("d_SLV = 0.4 d_0*", "m", source="Circ. 7/2019 C8.7.1.2.1.6")
     collapse_displacement_m: float | None = fact("d_SLC = 0.6 d_0*", "m", source="Circ. 7/2019 C8.7.1.2.1.6")
     equivalent_period_s: float | None = fact(
         "T_SLV = 1.68 pi sqrt(d_SLV/a(d_SLV)) on the straight capacity curve", "s", source="Circ. 7/2019 C8.7.1.2.1.8"
     )
-    swaying_weight_N: float = fact("weights that sway", "N")
+    swaying_weight_N: float = fact(
+        "weight of the kinematic chain: what moves in the mechanism, with what rests on it and sways, and what pushes it",
+        "N",
+    )
+    base_height_m: float = fact(
+        "z, height of the mechanism above the foundation: at 0 the demand is that of the ground", "m"
+    )
+    building_height_m: float = maybe("H, of a mechanism above the ground: the height of the building", "m")
     floor_acceleration_g: float = maybe(
         "of a place above the ground: a_Z, the acceleration there, the demand of the linear check",
         "g",

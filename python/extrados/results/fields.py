@@ -67,19 +67,26 @@ class ResultModel(BaseModel):
         return ((key, self[key]) for key in self.keys())
 
     def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
-        """What was given, long lists by their length."""
+        """What was given, long lists by their length, models within it by their number of values."""
         for name in type(self).model_fields:
             if name in self.model_fields_set:
                 value = getattr(self, name)
-                yield name, _Long(len(value)) if isinstance(value, list) and len(value) > _SHOWN else value
+                if isinstance(value, ResultModel):
+                    yield name, _Long(len(value.model_fields_set))
+                else:
+                    yield name, _Long(len(value)) if isinstance(value, list) and _is_long(value) else value
 
     def as_json(self) -> dict[str, Any]:
         """What summary.json holds."""
         return self.model_dump(by_alias=True, exclude_unset=True)
 
 
-#: Values of a list that the representation of a model shows
-_SHOWN = 8
+#: Values of a list that the representation of a model shows, and letters of texts in it
+_SHOWN, _LETTERS = 8, 60
+
+
+def _is_long(values: list[Any]) -> bool:
+    return len(values) > _SHOWN or sum(len(one) for one in values if isinstance(one, str)) > _LETTERS
 
 
 class _Long(int):

@@ -14,8 +14,8 @@ LIMITS: dict[str, tuple[str, str]] = {
     "rocking": (
         "The building moves as one mechanism, that of limit analysis, without sliding; impacts lose energy by the rule of "
         "[joints] restitution.",
-        "Hinges do not move along the building, stones do not slide, bounce or crush. Where rules of impact differ, or the run is "
-        "decided by its last digits, ask for a probability.",
+        "Hinges do not move along the building, blocks do not slide, bounce or crush: sliding and other hinges are checked along the "
+        "motion. Where impact rules disagree, or the run is chaotic, use fragility.",
     ),
     "failure-domain": (
         "Single pulses on a mechanism at rest.",
@@ -35,8 +35,8 @@ LIMITS: dict[str, tuple[str, str]] = {
     ),
     "local-mechanism": (
         "A part of the building turns as rigid bodies about hinges, by the kinematic analysis of codes.",
-        "It holds for the mechanism that was named; others may be weaker. Clauses marked `verify clause` were not read in the "
-        "standard.",
+        "The result holds for this mechanism; others may be weaker. A rule outside its scope does not apply, which its row says. Clauses "
+        "marked `verify clause` were not read in the standard.",
     ),
     "sla": (
         "Elastic stones or walls whose joints or elements crack one after the other under a growing load, in the plane.",

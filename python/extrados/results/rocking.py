@@ -20,6 +20,40 @@ class RockingHinge(ResultModel):
     y_m: float = fact("y of the hinge", "m")
 
 
+class JointTime(ResultModel):
+    """Where and when a condition of rocking first fails."""
+
+    joint: str = fact("name of the joint; empty where the resting structure slides")
+    time_s: float = fact("first time", "s")
+
+
+class Conditions(ResultModel):
+    """Conditions of rocking by fixed hinges, checked along the motion up to the critical rotation: joints do not slide, and the
+    thrust line stays within them."""
+
+    friction: float | None = maybe("least coefficient of friction of the joints; null excludes sliding")
+    required_friction: float | None = maybe(
+        "greatest coefficient of friction that the joints need while it rocks; null where a joint comes under tension"
+    )
+    slides_first: JointTime = maybe("of one run: where and when the joints first lack friction")
+    leaves_first: JointTime = maybe(
+        "of one run: where and when the thrust line first leaves a joint by more than 1 % of it"
+    )
+    thrust_line_outside: float | None = maybe(
+        "of one run: how far the thrust line leaves a joint, over its length; below 0 inside; null under tension"
+    )
+    sliding: int = maybe("of many runs: those in which blocks slide")
+    sliding_share: float = maybe("of many runs: share in which blocks slide")
+    hinges_elsewhere: int = maybe("of many runs: those in which hinges form elsewhere")
+    hinges_elsewhere_share: float = maybe("of many runs: share in which hinges form elsewhere")
+    energy_astray: float = maybe(
+        "share of the kinetic energy after an impact without rebound at all joints that lies outside the mechanism that rocks on; "
+        "above 0.2 hinges form elsewhere at impacts", source="Moreau 1988",
+    )  # fmt: skip
+    not_checked: str = fact("conditions that are not checked, and why; empty where all are")
+    violated: list[str] = fact("conditions that do not hold, a sentence each")
+
+
 class RuleOutcome(ResultModel):
     """What the motion does under an impact rule."""
 
@@ -123,7 +157,16 @@ class Rocking(KindResults):
     outcomes_by_rule: list[RuleOutcome] = maybe(
         "under each impact rule, where their c_v differ by more than 1.3, and by what discrete elements keep where the blow is unsafe"
     )
-    decided_by_last_digits: bool = fact("whether the motion scaled by 1 +- 1e-6 ends in another outcome")
+    decided_by_last_digits: bool = fact(
+        "whether the run is chaotic: sensitive to perturbations of 1e-6 of the motion, which end in another outcome or grow beyond 1e4"
+    )
+    perturbation_growth: float = fact(
+        "greatest separation of histories, over the critical rotation, under a motion scaled by 1 +- 1e-6, over that perturbation"
+    )
+    conditions: Conditions = maybe("whether joints slide or hinges form elsewhere")
+    violated: list[str] = fact(
+        "further assumptions that were checked and do not hold: chaos, impact rules, a sentence each"
+    )
     stack: StackRocking = maybe("of two stacked blocks")
     soft_base: SoftBaseRocking = maybe("on a base that gives way ([supports] stiffness)")
     thrust_line_residual_m: float = maybe("of an arch: greatest error of the closing thrust line", "m")
@@ -137,7 +180,8 @@ class Rocking(KindResults):
             "and stays up",
             "open": "The run ended before it came to rest",
         }[outcome]
-        return judge(f"{text}.", self.peak_rotation_ratio, 1.0, "", outcome)
+        broken = [] if self.conditions is None else self.conditions.violated
+        return judge(f"{text}.", self.peak_rotation_ratio, 1.0, "", outcome, violated=[*broken, *self.violated])
 
 
 class ModeCurve(ResultModel):
@@ -162,9 +206,30 @@ class AtAmplitudes(ResultModel):
     )
 
 
+class RuleCurve(ResultModel):
+    """The failure curve by an impact rule."""
+
+    rule: str = fact("word of [joints] restitution")
+    restitution: float = fact("rate after over before an impact, held between 0 and 1; of a mechanism to +x")
+    amplitudes_g: list[float | None] = fact("lowest failing amplitude at each duration; null: none below the cap", "g")
+
+
 class FailureDomain(KindResults):
     """failure-domain: which pulses bring an arch or a block down."""
 
+    sliding_from_g: list[float | None] = fact(
+        "at each duration: lowest amplitude of the map at which blocks slide; null: at none", "g"
+    )
+    hinges_elsewhere_from_g: list[float | None] = fact(
+        "at each duration: lowest amplitude of the map at which hinges form elsewhere; null: at none", "g"
+    )
+    conditions: Conditions = fact("over the map: whether blocks slide or hinges form elsewhere")
+    amplitudes_by_rule: list[RuleCurve] = maybe(
+        "failure curve by each impact rule, where their c_v differ by more than 1.3"
+    )
+    rule_ratio: float | None = maybe(
+        "greatest ratio of the failing amplitudes of two impact rules at one duration; null: no duration at which two fail"
+    )
     pulse: Pulse = fact("shape of the pulses")
     mode_I: ModeCurve = fact("lowest amplitudes that bring it down in either mode, Mode I after an impact")
     mode_II: ModeCurve = fact("lowest amplitudes that bring it down in the first half cycle, without an impact")
@@ -180,6 +245,23 @@ class FailureDomain(KindResults):
     )
     mode_names: str = maybe("of a block: how the modes are called elsewhere")
 
+    def _violated(self, duration: float, amplitude: float) -> list[str]:
+        """What does not hold of the assumptions for a pulse [s, g]: conditions at the neighbouring durations of the map, and impact
+        rules between whose curves it lies."""
+        places, found = self.mode_I.durations_s, []
+        slides = _least(places, self.sliding_from_g, duration)
+        if slides is not None and amplitude >= slides:
+            found.append(f"Blocks slide from {slides:.3g} g on at this duration. Use dem, or check the friction.")
+        elsewhere = _least(places, self.hinges_elsewhere_from_g, duration)
+        if elsewhere is not None and amplitude >= elsewhere:
+            found.append(f"Hinges form elsewhere from {elsewhere:.3g} g on at this duration. Use dem.")
+        curves = [(one.rule, between(places, one.amplitudes_g, duration)) for one in self.amplitudes_by_rule or []]
+        fails = {rule: capacity is not None and amplitude >= capacity for rule, capacity in curves}
+        if len(set(fails.values())) > 1:
+            told = ", ".join(f'"{rule}" {"collapses" if one else "stands"}' for rule, one in fails.items())
+            found.append(f"The impact rule decides the outcome: {told}.")
+        return found
+
     def judged(self, demand: Demand) -> Verdict:
         """A motion that is such a pulse [g] against the curve between its durations; without one the lowest failing
         amplitude of all is told."""
@@ -191,15 +273,23 @@ class FailureDomain(KindResults):
                 word = "stays below" if amplitude < capacity else "reaches"
                 return judge(
                     f"The motion, {amplitude:.3g} g for {duration:.3g} s, {word} the failure curve ({capacity:.3g} g there).",
-                    amplitude, capacity, "g",
+                    amplitude, capacity, "g", violated=self._violated(duration, amplitude),
                 )  # fmt: skip
         failing = [a for a in curve if a is not None]
         if not failing:
-            return judge("None of the pulses tried brings it down.", None, None, "g")
+            return judge("None of the pulses tried brings it down.", None, None, "g", violated=self.conditions.violated)
         return judge(
             f"Over the {self.pulse} pulses tried the lowest amplitude that brings it down is {min(failing):.3g} g.",
-            None, min(failing), "g",
+            None, min(failing), "g", violated=self.conditions.violated,
         )  # fmt: skip
+
+
+def _least(places: list[float], values: list[float | None], place: float) -> float | None:
+    """The least value at the neighbours of a place; None where both have none."""
+    order = sorted(zip(places, values, strict=True), key=lambda pair: abs(pair[0] - place))
+    low = [pair for pair in order if pair[0] <= place][:1]
+    high = [pair for pair in order if pair[0] >= place][:1]
+    return min((value for _, value in low + high if value is not None), default=None)
 
 
 def between(places: list[float], values: list[float | None], place: float) -> float | None:
@@ -237,6 +327,21 @@ class FailureCurve(ResultModel):
         "of each motion: its primary impulse against the curve; null: its period lies outside the curve"
     )
     run_outcomes: list[RockingOutcome | None] = fact("of each motion: what it does, run through; null: no answer")
+    sliding_from_g: list[float | None] = fact(
+        "at each duration: lowest amplitude tried up to the curve at which blocks slide; null: at none", "g"
+    )
+    hinges_elsewhere_from_g: list[float | None] = fact(
+        "at each duration: lowest amplitude tried up to the curve at which hinges form elsewhere; null: at none", "g"
+    )
+    conditions: Conditions = fact(
+        "over the points of the curve: below how many of them blocks slide or hinges form elsewhere"
+    )
+    amplitudes_by_rule: list[RuleCurve] = maybe(
+        "the curve by each impact rule, where their c_v differ by more than 1.3"
+    )
+    rule_ratio: float | None = maybe(
+        "greatest ratio of the failing amplitudes of two impact rules at one duration; null: no duration at which two fail"
+    )
 
 
 class FailureCurves(KindResults):
@@ -259,10 +364,12 @@ class FailureCurves(KindResults):
             (min(failing), c.label) for c in self.curves if (failing := [a for a in c.amplitudes_g if a is not None])
         ]
         if not lowest:
-            return judge("None of the pulses tried brings any of them down.", None, None, "g")
+            every = [f"{c.label}: {text}" for c in self.curves for text in c.conditions.violated]
+            return judge("None of the pulses tried brings any of them down.", None, None, "g", violated=every)
         least, label = min(lowest)
+        violated = next(c.conditions.violated for c in self.curves if c.label == label)
         return judge(
-            f"Of the {len(self.curves)} curves that of {label} goes lowest: {least:.3g} g.", None, least, "g"
+            f"Of the {len(self.curves)} curves that of {label} goes lowest: {least:.3g} g.", None, least, "g", violated=violated
         )  # fmt: skip
 
 
@@ -309,6 +416,11 @@ class Assessment(KindResults):
     verdict: Literal["stands", "fails"] = fact("whether one of them brings it down by the criterion")
     run_outcome: RockingOutcome | None = fact("what the whole motion does by the equation of motion")
     margin: float | None = fact("least failing amplitude over amplitude; null where no impulse can do harm")
+    conditions: Conditions = fact("under the whole motion: whether blocks slide or hinges form elsewhere")
+    margins_by_rule: dict[str, float | None] = maybe(
+        "margin by each impact rule, from a curve fitted by it, where their c_v differ by more than 1.3; null: no impulse can do harm"
+    )
+    violated: list[str] = fact("further assumptions that were checked and do not hold, a sentence each")
     primary_impulse: PrimaryImpulse | None = fact("the strongest impulse; null where the motion has none")
 
     def judged(self, demand: Demand) -> Verdict:
@@ -319,11 +431,13 @@ class Assessment(KindResults):
             if i.margin is not None and i.failing_amplitude_g is not None
         ]
         if not harmful:
-            return judge("No impulse of the motion is long enough to bring it down.", None, None, "g", "stands")
+            return judge(
+                "No impulse of the motion is long enough to bring it down.", None, None, "g", "stands", violated=[*self.conditions.violated, *self.violated]
+            )  # fmt: skip
         _, failing, worst = min(harmful, key=lambda row: row[0])
         size = abs(worst.amplitude_g)
         word = "below" if size < failing else "at or above"
         return judge(
             f"The motion's impulse of {size:.3g} g over {worst.period_s:.3g} s is {word} the failing amplitude of "
-            f"{failing:.3g} g.", size, failing, "g",
+            f"{failing:.3g} g.", size, failing, "g", violated=[*self.conditions.violated, *self.violated],
         )  # fmt: skip

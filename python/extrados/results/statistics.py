@@ -1,7 +1,7 @@
 """Results of the rocking statistics: fragility, resonance, rocking-spectrum, harmonic-map."""
 
 from extrados.results.fields import ResultModel, fact, maybe
-from extrados.results.rocking import RockingOutcome
+from extrados.results.rocking import Conditions, RockingOutcome
 from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judge
 
 
@@ -37,20 +37,20 @@ class Annual(KindResults):
     decisive_intensity: float = maybe("intensity whose surroundings add most to the rate, in intensity_unit")
     acceptable_annual_rate: float | None = maybe("rate that the deck accepts", "1/year")
 
-    def judged_by_rate(self) -> Verdict | None:
+    def judged_by_rate(self, violated: list[str]) -> Verdict | None:
         """The annual rate against the accepted one; open where the interval holds both. None without a hazard."""
         rate, accepted = self.annual_collapse_rate, self.acceptable_annual_rate
         if rate is None:
             return None
         text = f"The annual rate of collapse is {rate:.3g}"
         if accepted is None:
-            return judge(f"{text}; the deck accepts no rate to compare with.", rate, None, "1/year", "not-applicable")
+            return judge(f"{text}; the deck accepts no rate to compare with.", rate, None, "1/year", violated=violated)
         low, high = self.annual_collapse_rate_interval
         outcome: Outcome = "stands" if rate < accepted else "collapses"
         if low is not None and high is not None and low < accepted <= high:
             outcome = "open"
             text += f", between {low:.2g} and {high:.2g}"
-        return judge(f"{text}; {accepted:.3g} is accepted.", rate, accepted, "1/year", outcome)
+        return judge(f"{text}; {accepted:.3g} is accepted.", rate, accepted, "1/year", outcome, violated=violated)
 
 
 class RotationLimit(ResultModel):
@@ -84,6 +84,10 @@ class Ensemble(Annual):
     critical_rotation_rad: float = fact("rotation from which gravity takes it down", "rad")
     initial_rotation_ratio: float = fact("rotation at the start over the critical one")
     motions: int = fact("number of motions")
+    conditions: Conditions = fact("over the runs: whether blocks slide or hinges form elsewhere")
+    collapse_probability_by_rule: dict[str, float] = maybe(
+        "share of the runs that collapse by each impact rule, where their c_v differ by more than 1.3"
+    )
     median_pga_g: float | None = fact("median peak acceleration of the runs", "g")
     median_pgv_m_s: float | None = fact("median peak velocity of the runs", "m/s")
     median_arias_m_s: float | None = fact("median Arias intensity of the runs", "m/s")
@@ -113,11 +117,16 @@ class Ensemble(Annual):
         """The share of motions that bring it down; open unless all agree."""
         if self.collapse_probability is None:
             return judge("No motion could be run.", outcome="open")
-        if (by_rate := self.judged_by_rate()) is not None:
+        if (by_rate := self.judged_by_rate(self.conditions.violated)) is not None:
             return by_rate
         outcome: Outcome = "stands" if not self.collapsed else "collapses" if self.collapsed == self.count else "open"
         text = f"{100.0 * self.collapse_probability:.3g} % of {self.count} motions bring it down."
-        return judge(text, self.collapse_probability, None, "probability", outcome)
+        violated = list(self.conditions.violated)
+        if by_rule := self.collapse_probability_by_rule:
+            told = ", ".join(f'"{rule}" {100.0 * share:.3g} %' for rule, share in by_rule.items())
+            if min(by_rule.values()) < max(by_rule.values()):
+                violated.append(f"The impact rule decides: {told}.")
+        return judge(text, self.collapse_probability, None, "probability", outcome, violated=violated)
 
 
 class OverLevels(Annual):
@@ -127,6 +136,9 @@ class OverLevels(Annual):
     intensity_unit: str = fact("unit of the levels and medians")
     levels: list[float] = fact("the levels, ascending, in intensity_unit")
     motions: int = fact("number of motions")
+    conditions: Conditions = fact("over all runs: whether blocks slide or hinges form elsewhere")
+    sliding_share: list[float | None] = fact("share of the motions in which blocks slide, at each level")
+    hinges_elsewhere_share: list[float | None] = fact("share in which hinges form elsewhere, at each level")
     count: list[int] = fact("motions with a result, at each level")
     failed: int = fact("runs without a result")
     collapsed: list[int] = fact("motions that bring it down, at each level")
@@ -198,18 +210,18 @@ class OverLevels(Annual):
         """The fitted median is the capacity; levels are questions, not a demand."""
         if not any(self.count):
             return judge("No motion could be run.", outcome="open")
-        if (by_rate := self.judged_by_rate()) is not None:
+        if (by_rate := self.judged_by_rate(self.conditions.violated)) is not None:
             return by_rate
         unit = f" {self.intensity_unit}" if self.intensity_unit else ""
         if self.median is None:
             share = [p for p in self.collapse_probability if p is not None]
             return judge(
                 f"{100.0 * share[-1]:.3g} % of the motions bring it down at the highest level of {self.intensity}; no curve "
-                "could be fitted.", None, None, self.intensity_unit, "not-applicable",
+                "could be fitted.", None, None, self.intensity_unit, "not-applicable", violated=self.conditions.violated,
             )  # fmt: skip
         return judge(
             f"Half of the motions bring it down at {self.intensity} {self.median:.3g}{unit}.",
-            None, self.median, self.intensity_unit, "not-applicable",
+            None, self.median, self.intensity_unit, "not-applicable", violated=self.conditions.violated,
         )  # fmt: skip
 
 
@@ -231,6 +243,7 @@ class OverDurations(KindResults):
     critical_rotation_rad: float = fact("rotation from which gravity takes it down", "rad")
     initial_rotation_ratio: float = fact("rotation at the start over the critical one")
     median_pga_g: list[float | None] = fact("median peak acceleration at each duration", "g")
+    conditions: Conditions = fact("over all runs: whether blocks slide or hinges form elsewhere")
 
     def judged(self, demand: Demand) -> Verdict:
         """The least and greatest share of motions that bring it down; open unless all runs agree."""
@@ -242,7 +255,7 @@ class OverDurations(KindResults):
         text = f"{100.0 * least:.3g} % of the motions of {short:g} s"
         if len(known) > 1:
             text += f" and {100.0 * most:.3g} % of those of {long:g} s"
-        return judge(f"{text} bring it down.", None, None, "probability", outcome)
+        return judge(f"{text} bring it down.", None, None, "probability", outcome, violated=self.conditions.violated)
 
 
 Fragility = Ensemble | OverLevels | OverDurations
@@ -264,6 +277,7 @@ class Resonance(KindResults):
     energy_supplied_J: float = fact("work of the ground", "J")
     energy_lost_at_impacts_J: float = fact("energy lost at impacts", "J")
     restitution: float | None = fact("rate after over before an impact; null on a base that gives way")
+    conditions: Conditions = fact("under that motion: whether blocks slide or hinges form elsewhere")
     cap_ratio_for_collapse_within: dict[str, float] = maybe(
         "of a block: least cap over uplift that brings it down within so many half cycles"
     )
@@ -291,7 +305,10 @@ class Resonance(KindResults):
             outcome = "stands" if least is not None and self.cap_g < least else "open"
             does = f"does not bring it down within {self.half_cycles} half cycles"
         known = "" if least is None else f"; above {least:.3g} g its rotation grows"
-        return judge(f"The worst motion under {self.cap_g:.3g} g {does}{known}.", self.cap_g, least, "g", outcome)
+        return judge(
+            f"The worst motion under {self.cap_g:.3g} g {does}{known}.", self.cap_g, least, "g", outcome,
+            violated=self.conditions.violated,
+        )  # fmt: skip
 
 
 class RockingSpectrum(KindResults):
@@ -302,11 +319,17 @@ class RockingSpectrum(KindResults):
     longest_overturning_period_s: list[float | None] = fact("longest 2 pi/p among them; null: none", "s")
     size_m: list[float] = fact("sizes: half-diagonal of the blocks, radius of the arches", "m")
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
+    conditions: list[Conditions] = fact("of each family: in how many sizes blocks slide or hinges form elsewhere")
 
     def judged(self, demand: Demand) -> Verdict:
         """How many come down; a spectrum is about no one building."""
         total = len(self.family) * len(self.size_m)
-        return judge(f"The motion overturns {sum(self.overturned)} of the {total} sizes and shapes tried.")
+        violated = [
+            f"{name}: {text}" for name, one in zip(self.family, self.conditions, strict=True) for text in one.violated
+        ]
+        return judge(
+            f"The motion overturns {sum(self.overturned)} of the {total} sizes and shapes tried.", violated=violated
+        )  # fmt: skip
 
 
 class HarmonicMap(KindResults):
@@ -319,12 +342,16 @@ class HarmonicMap(KindResults):
     lowest_overturning_amplitude_g: list[float | None] = fact("at each frequency; null where none overturns", "g")
     safe_pocket_cells: int = fact("cells of the map above a failing amplitude that are safe")
     restitution: float | None = fact("rate after over before an impact; null on a base that gives way")
+    conditions: Conditions = fact("over the map: whether blocks slide or hinges form elsewhere")
 
     def judged(self, demand: Demand) -> Verdict:
         """The lowest amplitude of all that brings it down [g]; the map asks for no demand."""
         failing = [a for a in self.lowest_overturning_amplitude_g if a is not None]
         if not failing:
-            return judge("No harmonic motion of the map brings it down.", None, None, "g")
+            return judge(
+                "No harmonic motion of the map brings it down.", None, None, "g", violated=self.conditions.violated
+            )
         return judge(
-            f"The lowest harmonic amplitude that brings it down is {min(failing):.3g} g.", None, min(failing), "g"
+            f"The lowest harmonic amplitude that brings it down is {min(failing):.3g} g.", None, min(failing), "g",
+            violated=self.conditions.violated,
         )  # fmt: skip

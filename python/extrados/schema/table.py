@@ -8,14 +8,14 @@ from pydantic import BaseModel, ConfigDict, Field, create_model, field_validator
 LARGEST, SMALLEST = 1e15, 1e-15
 
 
-def refuse_absurd(value: Any) -> None:
-    """ValueError for a number that is beyond reason, also within lists: products of such numbers are infinite or zero."""
-    if isinstance(value, float):
-        if value != 0.0 and not SMALLEST <= abs(value) <= LARGEST:
-            raise ValueError(f"{value:g} is beyond reason; expected 0 or a size from {SMALLEST:g} to {LARGEST:g}")
-    elif isinstance(value, list):
-        for item in value:
-            refuse_absurd(item)
+def within_reason(value: Any) -> Any:
+    """The value; ValueError for a number that is beyond reason, also within lists: products of such numbers are infinite or
+    zero. In a list, of coordinates, a number below SMALLEST is the rounding of 0, and becomes 0."""
+    if isinstance(value, list):
+        return [0.0 if isinstance(item, float) and abs(item) < SMALLEST else within_reason(item) for item in value]
+    if isinstance(value, float) and value != 0.0 and not SMALLEST <= abs(value) <= LARGEST:
+        raise ValueError(f"{value:g} is beyond reason; expected 0 or a size from {SMALLEST:g} to {LARGEST:g}")
+    return value
 
 
 class Table(BaseModel):
@@ -29,8 +29,7 @@ class Table(BaseModel):
     @field_validator("*")
     @classmethod
     def _within_reason(cls, value: Any) -> Any:
-        refuse_absurd(value)
-        return value
+        return within_reason(value)
 
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True, defer_build=True)
 

@@ -319,14 +319,14 @@ def sine_for_record(facts: Facts, pairs: list[Pair]) -> Reason | None:
 
 
 def last_digits(facts: Facts, pairs: list[Pair]) -> Reason | None:
-    """The run is decided by its last digits."""
+    """The run is chaotic."""
     r = facts.of("rocking")
     mine = dynamic(pairs, "rocking")
     if not mine or not isinstance(r, Rocking) or not r.decided_by_last_digits:
         return None
     return reason(
-        "last-digits", mine, "Rocking under this motion is decided by its last digits: a motion stronger or weaker by a millionth "
-        f"ends in another outcome. It turned by {100 * r.peak_rotation_ratio:.0f} % of the critical rotation.",
+        "last-digits", mine, "Rocking under this motion is chaotic: sensitive to perturbations of 1e-6. One run is one sample. Its greatest "
+        f"rotation is {100 * r.peak_rotation_ratio:.0f} % of the critical one.",
         rotation_ratio=r.peak_rotation_ratio,
     )  # fmt: skip
 
@@ -476,50 +476,64 @@ def mortar(facts: Facts, pairs: list[Pair]) -> Reason | None:
     )  # fmt: skip
 
 
+#: Checks of NTC that compare the multiplier, by the start of their names
+BY_MULTIPLIER = ("NTC linear", "NTC activation")
+
+
 def code_factors(facts: Facts, pairs: list[Pair]) -> Reason | None:
-    """Codes reduce the demand by q and the capacity by FC; without both the code would say as statics does."""
+    """The code divides the multiplier of statics by FC and by e* of what moves, and multiplies it by q: only where that product is the
+    capacity of its check do these factors explain what differs."""
     found = _governing(facts, pairs)
     tilt = facts.of("tilt")
-    if found is None or not isinstance(tilt, Tilt) or not found[1][0][1].startswith("NTC linear"):
+    if found is None or not isinstance(tilt, Tilt) or not found[1][0][1].startswith(BY_MULTIPLIER):
         return None
-    r, ((_, _, check), *_), mine = found
+    r, ((_, name, check), *_), mine = found
     least = _unstopped(facts, tilt)
-    if check.demand is None or abs(check.capacity / least - 1.0) < 0.05:
+    fc, q = r.confidence_factor, r.behaviour_factor if name.startswith("NTC linear") else 1.0
+    if (
+        check.demand is None
+        or check.capacity is None
+        or fc is None
+        or q is None
+        or abs(check.capacity / least - 1.0) < 0.05
+    ):
         return None
-    if abs(getattr(r, "multiplier", least) - least) > 0.02 * least:
-        return None  # the code turns another mechanism: its factors are not what differs
+    part = r.participating_part if isinstance(r, LocalMechanism) else 1.0
+    if abs(check.capacity * part * fc / (q * least) - 1.0) > 0.02:
+        return None  # another mechanism, or a weight that these factors do not hold
     other = [p for p in mine if "tilt" in p or "sla" in p] or mine
-    part = getattr(r, "participating_part", 1.0)
-    taking = "" if abs(part - 1.0) < 0.005 else f" over the part e* = {part:.3g} of the weight that takes part"
-    factor = check.capacity * part / least
+    taking = "" if abs(part - 1.0) < 0.005 else f" over e* = {part:.3g}, the part of the moving weight that takes part"
+    reserve = " The factor q stands for the reserve of rocking beyond uplift." if q != 1.0 else ""
     return reason(
         "code-factors", other,
-        f"The linear check of the code compares {check.demand:.3g} g with {check.capacity:.3g} g: the {least:.3g} g of statics{taking}, "
-        f"times {factor:.3g}, the behaviour factor q over the confidence factor FC. q stands for what rocking bears beyond its uplift.",
-        code_capacity=check.capacity, static_capacity=least, demand=check.demand, factor=factor,
+        f"{name} of the code compares a demand of {check.demand:.3g} g with {check.capacity:.3g} g: the {least:.3g} g of statics{taking}, "
+        f"times {q / fc:.3g}, {'one' if q == 1.0 else f'the behaviour factor q = {q:g}'} over the confidence factor FC = {fc:g}.{reserve}",
+        code_capacity=check.capacity, static_capacity=least, demand=check.demand, factor=q / fc, participating_part=part,
     )  # fmt: skip
 
 
 def code_check(facts: Facts, pairs: list[Pair]) -> Reason | None:
-    """Another check than the linear one governs, and by that one, or by the next code, the codes would say otherwise."""
+    """Another check than that of the multiplier governs, and by that one, or by the next code, the codes would say otherwise."""
     found = _governing(facts, pairs)
     if found is None:
         return None
     r, ((margin, name, check), *others), mine = found
-    if name.startswith("NTC linear") or check.demand is None:
+    if name.startswith(BY_MULTIPLIER) or check.demand is None or check.capacity is None:
         return None
-    linear = next(((n, c) for n, c in r.checks.items() if n.startswith("NTC linear") and c.code == check.code), None)
-    if linear is not None and linear[1].demand:
-        other, what = (
-            linear[1].capacity / linear[1].demand,
-            f"its linear check, {linear[1].demand:.3g} against {linear[1].capacity:.3g} g,",
-        )
+    starts = next((
+        (n, c.capacity, c.demand) for n, c in r.checks.items()
+        if n.startswith(BY_MULTIPLIER) and c.code == check.code and c.verdict in ("holds", "fails") and c.capacity is not None and c.demand
+    ), None)  # fmt: skip
+    if starts is not None:
+        other, what = starts[1] / starts[2], f"{starts[0]}, {starts[2]:.3g} against {starts[1]:.3g} g,"
     elif others:
         other, what = others[0][0], f"{others[0][2].code}, the next code ({others[0][1]}),"
     else:
         return None
-    if (other > 1.0) == (margin > 1.0) and max(other, margin) < facts.apart * min(other, margin):
-        return None
+    if (other > 1.0) == (margin > 1.0):  # which check governs turns no verdict, and may yet set margins apart
+        mine = [p for p in mine if facts.relation(*p) != "disagree"]
+        if not mine or max(other, margin) < facts.apart * min(other, margin):
+            return None
     moves = ", a displacement, which statics does not know" if check.unit == "m" else ""
     return reason(
         "code-check", mine,

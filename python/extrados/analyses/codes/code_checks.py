@@ -6,9 +6,10 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.codes import ntc
-from extrados.analyses.codes.code_rules import Line, asce43, housner, ishiyama, more_piers, piers, west
+from extrados.analyses.codes.code_rules import Line, asce43, housner, ishiyama, more_piers, piers, table, west
 from extrados.analyses.codes.tables import CodeChecks
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.rocking.conditions import of_one, told
 from extrados.building.templates.block import BlockAssembly
 from extrados.core import motion as core_motion
 from extrados.core import rocking as core_rocking
@@ -17,7 +18,7 @@ from extrados.motions.from_deck import code_spectrum
 from extrados.motions.motion import Motion
 from extrados.motions.tables import Compatible
 from extrados.results import codes as out
-from extrados.results.model import Array, Result, TableData
+from extrados.results.model import Array, Result
 from extrados.schema.constants import GRAVITY
 from extrados.schema.spectrum import CodeSpectrum
 
@@ -35,36 +36,30 @@ def run(context: Context, options: CodeChecks) -> Result:
         if options.axial_load is not None:
             lines += _pier(context, options, block.toe_right + block.toe_left, 2.0 * block.centre_height,
                            options.thickness or block.depth, float(block.mass[0]) * GRAVITY)  # fmt: skip
-    checks = {
-        line.rule: out.Check(
-            capacity=line.capacity, demand=line.demand, unit=line.unit, verdict=line.verdict, source=line.source,
-            note=line.note, code=line.code,
-        ) for line in lines
-    }  # fmt: skip
-    r = out.CodeChecks(checks=checks, **demands)
+    r = out.CodeChecks(checks={line.rule: line.check() for line in lines}, **demands)
     result.results = r
-    demand = np.array([np.nan if x.demand is None else x.demand for x in lines])
-    capacity = np.array([x.capacity for x in lines])
-    result.tables["code_checks"] = TableData({
-        "rule": [x.rule for x in lines], "quantity": [x.quantity for x in lines], "capacity": capacity, "demand": demand,
-        "unit": [x.unit for x in lines], "verdict": [x.verdict for x in lines], "source": [x.source for x in lines],
-        "note": [x.note for x in lines], "code": [x.code for x in lines],
-    })  # fmt: skip
+    rows = result.tables["code_checks"] = table(lines)
     result.arrays = {
-        "capacity": Array(capacity, ("rule",), "", "each in its unit, see code_checks.csv"),
-        "demand": Array(demand, ("rule",)),
+        "capacity": Array(np.array(rows.columns["capacity"]), ("rule",), "", "each in its unit, see code_checks.csv"),
+        "demand": Array(np.array(rows.columns["demand"]), ("rule",)),
     }
-    said = [f"{x.rule} {x.verdict} ({x.demand:.3g} against {x.capacity:.3g} {x.unit})" for x in lines if x.verdict]
+    said = [
+        f"{x.rule} {x.verdict} ({x.demand:.3g} against {x.capacity:.3g} {x.unit})"
+        for x in lines
+        if x.verdict in ("holds", "fails")
+    ]
     words = [r.overall().statement, f"In detail: {'; '.join(said)}."] if said else []
     if r.dynamic_outcome:
         ratio = r.dynamic_peak_rotation_ratio
         spoken = {"collapse": "overturns", "recovery": f"rocks to {100 * ratio:.0f} % of its critical rotation and stays up",
                   "no-hinging": "does not rock"}[r.dynamic_outcome]  # fmt: skip
         words.append(f"Computed under the motion itself, the block {spoken}.")
-    strengths = [x for x in lines if x.unit == "N"]
+    strengths = {x.rule: x.capacity for x in lines if x.unit == "N" and x.capacity is not None}
     if strengths:
-        weakest = min(strengths, key=lambda x: x.capacity)
-        words.append(f"As a pier its least strength is {weakest.capacity / 1e3:.4g} kN ({weakest.rule}).")
+        weakest = min(strengths, key=lambda rule: strengths[rule])
+        words.append(
+            f"As a pier its least strength is {strengths[weakest] / 1e3:.4g} kN ({weakest}), with all partial factors at 1."
+        )
     if not said:
         words.insert(0, "Capacities without a demand: give spectrum or peak_acceleration, the values of the code.")
     result.answer = " ".join(words)
@@ -89,15 +84,29 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
 
     if options.peak_acceleration is not None:
         pga = options.peak_acceleration / GRAVITY
-    beside: dict[str, Any] = {"peak_ground_acceleration_g": pga, "peak_ground_velocity_m_s": pgv}
+    beside: dict[str, Any] = {
+        "peak_ground_acceleration_g": pga, "peak_ground_velocity_m_s": pgv, "confidence_factor": options.confidence_factor,
+        "behaviour_factor": options.behaviour_factor,
+    }  # fmt: skip
+    violated, friction = [], context.building.joints.coefficient
+    if options.confidence_factor < ntc.LC1 and context.building.material.compressive_strength is None:
+        violated.append(ntc.below_lc1(options.confidence_factor))
+    if friction is not None and friction < np.tan(model.alpha.min()):
+        violated.append(
+            f"Friction {friction:g} is below the {np.tan(model.alpha.min()):.3g} that rocking needs: the block slides first, which these "
+            "rules do not consider."
+        )
+    if violated:
+        beside["violated"] = violated
     if context.deck.motion is not None:
         motion = context.motion
         context.warnings += motion.notes
         start = rocker.start_rotation
         dynamic = core_rocking.history(
-            model.body, motion.ground, motion.end + 30.0 / float(model.frequency.min()), 0.01,
+            rocker.body, motion.ground, motion.end + 30.0 / float(model.frequency.min()), 0.01,
             start_side=1 if start >= 0.0 else -1, start_rotation=abs(start),
         )  # fmt: skip
+        context.warnings += told(of_one(rocker, dynamic)["conditions"])
         beside |= {"dynamic_outcome": dynamic.outcome, "dynamic_peak_rotation_ratio": dynamic.peak_ratio}
     alpha = float(model.alpha.min())
     # one body: all its mass takes part (e* = 1); d* is the displacement of the centre of mass
@@ -106,7 +115,7 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
     lines = [
         west(alpha0, pga), *ishiyama(width, height, pga, pgv),
         *ntc.checks(a0, block.centre_height * alpha0, options.behaviour_factor, None if pga is None else pga * GRAVITY, spectrum,
-                    f"alpha_0 {alpha0:.4g}, e* 1, q {options.behaviour_factor:g}"),
+                    f"alpha_0 {alpha0:.4g}, e* 1"),
         asce43(width, height, sa),
     ]  # fmt: skip
     if options.pulse_period is not None:

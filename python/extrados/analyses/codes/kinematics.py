@@ -7,16 +7,21 @@ from scipy.optimize import brentq
 
 from extrados.schema.constants import GRAVITY
 
+#: Of the fastest block: what moves less is at rest, its motion is rounding
+MOVES = 1e-5
+
 
 @dataclass(frozen=True)
 class Weight:
-    """A weight [N] of a body that turns about the hinge: arm, how far [m] its centre lies behind the hinge, height [m]
-    above it; sways: whether its mass is accelerated with it (a floor that another wall holds back is not)."""
+    """A weight [N] at a body that turns about the hinge: arm, how far [m] its centre lies behind the hinge, height [m]
+    above it. rests: whether it bears on the body (P_k); one that does not only pushes it by its mass (Q_k). sways: whether its
+    mass is accelerated with the body (a floor that another wall holds back is not)."""
 
     weight: float
     arm: float
     height: float
     sways: bool = True
+    rests: bool = True
 
 
 @dataclass(frozen=True)
@@ -41,16 +46,27 @@ class Overturning:
         return Overturning(self.weights, tuple(p for p in self.pushes if p.force > 0.0))
 
     def multiplier(self, rotation: float = 0.0) -> float:
-        """alpha at a rotation [rad], by the work of all forces in a further small one; at rest alpha_0."""
+        """alpha at a rotation [rad], by the work of all forces in a further small one; at rest alpha_0 [C8.7.1.1]."""
         c, s = np.cos(rotation), np.sin(rotation)
-        back = sum(w.weight * (w.arm * c - w.height * s) for w in self.weights)
-        out = sum(p.force * p.height * c for p in self.pushes)
         sway = sum(w.weight * (w.height * c + w.arm * s) for w in self.weights if w.sways)
-        return float((back - out) / sway)
+        return float(self.work(rotation) / sway)
+
+    def work(self, rotation: float = 0.0) -> float:
+        """Work [N m] per further rotation that weights and pushes take from the body at a rotation [rad]; below 0 they drive it."""
+        c, s = np.cos(rotation), np.sin(rotation)
+        back = sum(w.weight * (w.arm * c - w.height * s) for w in self.weights if w.rests)
+        return float(back - sum(p.force * p.height * c for p in self.pushes))
+
+    def travel(self, rotation: float | np.ndarray) -> float | np.ndarray:
+        """Horizontal displacement d_C of the control point over its virtual displacement delta_Cx per unit rotation, at a rotation
+        [rad]: the control point is the centre of the weights that rest on the body."""
+        height = sum(w.weight * w.height for w in self.weights if w.rests)
+        arm = sum(w.weight * w.arm for w in self.weights if w.rests)
+        return np.sin(rotation) + arm / height * (1.0 - np.cos(rotation))
 
     @property
     def swaying(self) -> tuple[np.ndarray, np.ndarray]:
-        """Weights that sway [N], and their virtual displacements for a unit rotation [m]."""
+        """Weights P + Q that sway [N], and their horizontal virtual displacements for a unit rotation [m]."""
         rows = [(w.weight, w.height) for w in self.weights if w.sways]
         weight, height = np.array(rows).T
         return weight, height
@@ -68,7 +84,8 @@ class Overturning:
 @dataclass(frozen=True)
 class Capacity:
     """alpha0; mass M* [kg]; part e*; acceleration a0* [m/s^2] before the confidence factor; d0 [m]: d0* at which the
-    multiplier vanishes, None where it does not; alone: a0* without what holds it back, from which the curve falls to d0."""
+    multiplier vanishes, None where it does not; alone: a0* without what holds it back, from which the curve falls to d0;
+    weight [N] of the chain."""
 
     alpha0: float
     mass: float
@@ -76,18 +93,34 @@ class Capacity:
     acceleration: float
     d0: float | None
     alone: float
+    weight: float
+
+
+def in_chain(velocity: np.ndarray, size: float) -> np.ndarray:
+    """Which blocks move in a mechanism (blocks), from their velocities x, y and rotations (blocks, 3) and a length [m]."""
+    speed = np.maximum(np.hypot(velocity[:, 0], velocity[:, 1]), size * np.abs(velocity[:, 2]))
+    return np.asarray(speed > MOVES * speed.max())
+
+
+def spectral(weight: np.ndarray, displacement: np.ndarray, travel: float | np.ndarray) -> float | np.ndarray:
+    """d* [m] of the equivalent oscillator [C8.7.1.4], from the weights [N] of the chain, their horizontal virtual displacements
+    and d_C/delta_Cx of the control point."""
+    return travel * float(weight @ displacement**2) / float(weight @ displacement)
 
 
 def capacity(
-    alpha0: float, weight: np.ndarray, displacement: np.ndarray, ultimate: float | None, alone: float | None = None
-) -> Capacity:  # fmt: skip
-    """Of a mechanism whose swaying weights [N] move sideways by `displacement` in a unit of its coordinate, and which
-    vanishes at `ultimate` of it: M* = (sum P d)^2 / (g sum P d^2), e* = g M*/sum P, a0* = alpha0 g/e*,
-    d* = d sum P d^2 / sum P d over the same unit; alone: its multiplier without what holds it back, where that is another."""
-    first, second = float(weight @ displacement), float(weight @ displacement**2)
-    mass = first**2 / (GRAVITY * second)
-    part = GRAVITY * mass / float(weight.sum())
+    alpha0: float, weight: np.ndarray, displacement: np.ndarray, travel: float | None, alone: float | None = None
+) -> Capacity:
+    """Of a mechanism by the weights [N] of its kinematic chain, P and Q, and their horizontal virtual displacements (with sign).
+
+    e* = (sum P d)^2/(sum P sum P d^2) [C8.7.1.5], M* = e* sum P/g, a0* = alpha0 g/e* [C8.7.1.3] without FC. Weights that do not
+    move have no place in it. travel: d_C/delta_Cx at which the multiplier vanishes, None where it does not; alone: its multiplier
+    without what holds it back, where that is another.
+    """
+    first, second, total = float(weight @ displacement), float(weight @ displacement**2), float(weight.sum())
+    part = first**2 / (total * second)
     return Capacity(
-        alpha0, mass, part, alpha0 * GRAVITY / part, abs(ultimate * second / first) if ultimate else None,
-        (alpha0 if alone is None else alone) * GRAVITY / part,
+        alpha0, part * total / GRAVITY, part, alpha0 * GRAVITY / part,
+        float(spectral(weight, displacement, travel)) if travel else None,
+        (alpha0 if alone is None else alone) * GRAVITY / part, total,
     )  # fmt: skip

@@ -1,10 +1,13 @@
 """The local mechanisms that engineers meet, as one body that turns about a hinge: from their table to weights and pushes."""
 
 import math
+from dataclasses import replace
 
 from extrados.analyses.codes.kinematics import Overturning, Push, Weight
-from extrados.analyses.codes.tables import LocalMechanism
+from extrados.analyses.codes.ntc import toothed_edge
+from extrados.analyses.codes.tables import Floor, LocalMechanism
 from extrados.analyses.context import Refused
+from extrados.limit.errors import CannotStand
 from extrados.schema.constants import GRAVITY
 
 #: What each mechanism needs beyond density and height
@@ -44,6 +47,13 @@ def _refuse_sizes(options: LocalMechanism) -> None:
                 )
     if options.mechanism == "corner" and options.side_walls is not None:
         raise Refused("both walls of a corner turn with it: leave side_walls out", ("analysis", "side_walls"))
+    if options.interlocking is not None and (options.mechanism != "facade" or options.side_walls is not None):
+        raise Refused(
+            "teeth hold a facade that leaves its side walls behind: leave interlocking, or side_walls, out",
+            ("analysis", "interlocking"),
+        )
+    if options.interlocking is not None and options.interlocking.unit_height > top - options.hinge_height:
+        raise Refused("a course is higher than the wall that turns", ("analysis", "interlocking", "unit_height"))
 
 
 def _upright(options: LocalMechanism, density: float, strength: float | None) -> Overturning:
@@ -60,14 +70,17 @@ def _upright(options: LocalMechanism, density: float, strength: float | None) ->
         level = floor.height - options.hinge_height
         if level < 0.0:
             continue  # what lies below the hinge does not move
-        if floor.load > 0.0:
-            arm = thickness / 2.0 if floor.arm is None else floor.arm
-            weights.append(Weight(floor.load, arm, level, floor.sways))
+        weights += _of_floor(floor, thickness / 2.0, level)
         if floor.thrust:
             pushes.append(Push(floor.thrust, level))
     for tie in options.ties:
         if tie.height > options.hinge_height:
             pushes.append(Push(-tie.force, tie.height - options.hinge_height))
+    if options.interlocking is not None:
+        teeth = options.interlocking
+        courses = int(height / teeth.unit_height * (1.0 + 1e-9))
+        force, below = toothed_edge(courses, teeth.unit_height, teeth.overlap, teeth.thickness, density * GRAVITY)
+        pushes.append(Push(-teeth.count * force, height - below))
     if options.side_walls is not None:
         weights, pushes = _with_side_walls(options, density, height, weights, pushes)
     if strength is not None:
@@ -75,13 +88,31 @@ def _upright(options: LocalMechanism, density: float, strength: float | None) ->
     return Overturning(tuple(weights), tuple(pushes))
 
 
+def _of_floor(floor: Floor, middle: float, level: float) -> list[Weight]:
+    """What a floor lays on the wall, and what only pushes it; middle: how far behind the hinge the wall's own middle is [m]."""
+    arm = middle if floor.arm is None else floor.arm
+    found = [Weight(floor.load, arm, level, floor.sways), Weight(floor.pushing, arm, level, rests=False)]
+    return [w for w in found if w.weight > 0.0]
+
+
 def set_back(weights: list[Weight], strength: float, width: float, thickness: float) -> list[Weight]:
     """Weights about a hinge that lies within the wall by 2 P/(3 f_d w), for a strength f_d [Pa] and a width w [m]; Refused where
-    that is the middle of the thickness [m]."""
-    setback = 2.0 * sum(w.weight for w in weights) / (3.0 * strength * width)
+    that is the middle of the thickness [m], CannotStand where no stress within the strength carries the weight."""
+    weight, most = sum(w.weight for w in weights if w.rests), strength * width * thickness
+    if weight > most:
+        raise CannotStand(
+            f"the weight crushes the wall at the hinge; proof: {weight / 1e3:.3g} kN rest on a section that carries {most / 1e3:.3g} kN at "
+            "most",
+            neglects=(),
+        )
+    setback = 2.0 * weight / (3.0 * strength * width)
     if setback >= thickness / 2.0:
-        raise Refused("the weight alone crushes the wall at the hinge", ("material", "compressive_strength"))
-    return [Weight(w.weight, w.arm - setback, w.height, w.sways) for w in weights]
+        raise Refused(
+            "the triangle of stress under the weight is wider than the wall at the hinge: more than 0.75 of the compressive strength is "
+            "used at rest",
+            ("material", "compressive_strength"),
+        )
+    return [replace(w, arm=w.arm - setback) for w in weights]
 
 
 def _with_side_walls(
@@ -109,8 +140,8 @@ def _corner(options: LocalMechanism, density: float) -> Overturning:
     pushes = []
     for floor in options.floors:
         level = floor.height - options.hinge_height
-        if level >= 0.0 and floor.load > 0.0:
-            weights.append(Weight(floor.load, arm if floor.arm is None else floor.arm, level, floor.sways))
+        if level >= 0.0:
+            weights += _of_floor(floor, arm, level)
         if level >= 0.0 and floor.thrust:
             pushes.append(Push(floor.thrust, level))
     pushes += [Push(-t.force, t.height - options.hinge_height) for t in options.ties if t.height > options.hinge_height]

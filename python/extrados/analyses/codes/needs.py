@@ -14,7 +14,17 @@ from extrados.building.errors import Key
 from extrados.building.templates.plan import Plan
 
 #: What of the table describes a body by itself; and where on a building it stands, which a plan says of each of its walls
-OF_A_BODY = ("height", "thickness", "width", "hinge_height", "crack_angle", "floors", "ties", "side_walls")
+OF_A_BODY = (
+    "height",
+    "thickness",
+    "width",
+    "hinge_height",
+    "crack_angle",
+    "floors",
+    "ties",
+    "side_walls",
+    "interlocking",
+)
 OF_A_PLACE = ("base_height", "building_height", "storeys")
 
 

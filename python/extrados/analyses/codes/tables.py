@@ -17,7 +17,9 @@ class CodeChecks(BuildingAnalysis):
     """Rules for rocking bodies, and for walls as piers, beside the dynamics; each with its source."""
 
     kind: Literal["code-checks"]
-    uses: ClassVar = ("material.density", "material.compressive_strength", "joints.cohesion", "joints.restitution")
+    uses: ClassVar = (
+        "material.density", "material.compressive_strength", "joints.friction", "joints.cohesion", "joints.restitution",
+    )  # fmt: skip
     beside: ClassVar = ("joints.energy_ratio", "initial.rotation_ratio", "supports.abutting_wall", "supports.stiffness")
     view: ClassVar = ""
     structures: ClassVar = ("block", "column", "panel", "brickwork")
@@ -31,7 +33,13 @@ class CodeChecks(BuildingAnalysis):
         "where there is no spectrum of a code, take the response spectrum of the deck's motion, and its peak velocity",
     )
     pulse_period: Time | None = key(None, "period of the sine whose half Housner's formula takes; asks for it", gt=0)
-    behaviour_factor: float = key(2.0, "q of the linear check", ge=1, le=6, source="Circ. 7/2019, C8.7.1.2.1.7")
+    behaviour_factor: float = key(
+        2.0,
+        "q of the linear check, which is for mechanisms without a displacement check",
+        ge=1,
+        le=6,
+        source="Circ. 7/2019, C8.7.1.2.1.7",
+    )
     confidence_factor: float = key(1.35, "FC", ge=1, le=2, source="Circ. 7/2019, Table C8.5.IV")
     axial_load: Force | None = key(None, "vertical load on top of the wall; asks for the pier rules", ge=0)
     thickness: Length | None = key(None, "thickness of the pier; default the depth of the block", gt=0)
@@ -49,7 +57,13 @@ class CodeChecks(BuildingAnalysis):
         if self.axial_load is None:
             found -= {"material.compressive_strength", "joints.cohesion"}
         if building.structure is not None and building.structure.rocks_as == "piers":
-            found -= {"joints.restitution", "joints.energy_ratio", "initial.rotation_ratio", "supports.stiffness"}
+            found -= {
+                "joints.friction",
+                "joints.restitution",
+                "joints.energy_ratio",
+                "initial.rotation_ratio",
+                "supports.stiffness",
+            }
         return found
 
 
@@ -57,7 +71,13 @@ class Floor(Table):
     """A floor, roof or vault that rests on the wall."""
 
     height: Length = key(about="height at which it acts, above the foot of the wall", ge=0)
-    load: Force = key(0.0, "its weight on the mechanism", ge=0)
+    load: Force = key(0.0, "weight that rests on the wall (P)", ge=0, source="Circ. 7/2019 [C8.7.1.1]")
+    pushing: Force = key(
+        0.0,
+        "weight that does not rest on the wall and whose mass pushes it (Q): it drives the mechanism and does not hold it down",
+        ge=0,
+        source="Circ. 7/2019 [C8.7.1.1]",
+    )
     arm: Length | None = key(None, "how far behind the hinge it rests; default the middle of the wall", ge=0)
     sways: bool = key(True, "whether its mass is accelerated with the wall; false where other walls hold it")
     thrust: Force = key(0.0, "its horizontal thrust at rest, outward")
@@ -76,6 +96,15 @@ class SideWalls(Table):
     thickness: Length = key(about="of each", gt=0)
     crack_angle: Angle = key(about="of the crack from the vertical", gt=0, lt=80)
     count: int = key(2, "how many", ge=1, le=4)
+
+
+class Interlocking(Table):
+    """Teeth by which side walls hold the whole height of a wall that turns; they slip out before collapse."""
+
+    unit_height: Length = key(about="height h_b of the units, one course", gt=0)
+    overlap: Length = key(about="overlap l of the units, the length of a tooth", gt=0)
+    thickness: Length = key(about="thickness t_s of each side wall", gt=0)
+    count: int = key(2, "number of toothed edges", ge=1, le=4)
 
 
 class LocalMechanism(BuildingAnalysis):
@@ -102,6 +131,9 @@ class LocalMechanism(BuildingAnalysis):
     floors: list[Floor] = key([], "floors, roofs and vaults on it", max_length=50)
     ties: list[WallTie] = key([], "ties that hold it", max_length=50)
     side_walls: SideWalls | None = key(None, "wedges of side walls that go with it")
+    interlocking: Interlocking | None = key(
+        None, "teeth of side walls that hold a facade by friction", source="Circ. 7/2019 [C8.7.1.2]"
+    )
     spectrum: CodeSpectrum | None = key(
         None,
         "elastic spectrum of the site; default that of a `compatible` motion",
@@ -116,22 +148,43 @@ class LocalMechanism(BuildingAnalysis):
     motion_spectrum: bool = key(
         False, "where there is no spectrum of a code, take the response spectrum of the deck's motion"
     )
-    behaviour_factor: float = key(2.0, "q of the linear checks", ge=1, le=6, source="Circ. 7/2019, C8.7.1.2.1.7")
-    confidence_factor: float = key(1.35, "FC", ge=1, le=2, source="Circ. 7/2019, Table C8.5.IV")
-    base_height: Length = key(
-        0.0, "height z of the hinge's place above the foundation: above 0 the floor amplifies", ge=0
+    behaviour_factor: float = key(
+        2.0,
+        "q of the linear check, which is for mechanisms without a displacement check",
+        ge=1,
+        le=6,
+        source="Circ. 7/2019, C8.7.1.2.1.7",
     )
-    building_height: Length | None = key(None, "height H of the building, where base_height is above 0", gt=0)
+    confidence_factor: float = key(
+        1.35,
+        "FC; where compression strength is neglected that of LC1, 1.35",
+        ge=1,
+        le=2,
+        source="Circ. 7/2019, C8.7.1.2.1.3, Table C8.5.IV",
+    )
+    base_height: Length | None = key(
+        None,
+        "height z of the mechanism above the foundation: above 0 the floor amplifies; default from the geometry, the lowest hinge "
+        "between what moves and what does not, of a table `hinge_height`",
+        ge=0,
+    )
+    building_height: Length | None = key(
+        None,
+        "height H of the building, where z is above 0; default from the geometry, the top of all, of a table `height`",
+        gt=0,
+    )
     building_period: Time | None = key(
         None, "first period T_1 of the building; default 0.05 H^0.75", gt=0, source="EN 1998-1 Eq. 4.6"
     )
     storeys: int = key(1, "storeys N of the building, for the modal participation", ge=1, le=50)
-    one_second_acceleration: Acceleration | None = key(None, "S_X1; asks for the slenderness limits of ASCE 41", gt=0)
+    one_second_acceleration: Acceleration | None = key(
+        None, "S_X1; asks for the slenderness limits of ASCE 41, which are for walls anchored at their top", gt=0
+    )
     storey: Literal["one-story", "first", "top", "other"] = key("one-story", "where the wall stands, for ASCE 41")
 
     @model_validator(mode="after")
     def _elevated(self) -> "LocalMechanism":
-        if self.base_height > 0.0 and self.building_height is None:
+        if self.base_height and self.mechanism != "building" and self.building_height is None:
             raise ValueError("base_height above 0 needs building_height")
         return self
 

@@ -1,10 +1,14 @@
 """assessment: the primary impulse of the motion against the failure curve of the arch (thesis 5.4.2, Fig. 5-15)."""
 
+from typing import Any
+
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking.common import rocker_of
+from extrados.analyses.rocking.conditions import Counted, astray_of, of_many, rows_of, told
 from extrados.analyses.rocking.criterion import CAP, Fit, fit_own, interpolated
+from extrados.analyses.rocking.doubts import DIFFER
 from extrados.analyses.rocking.tables import Assessment
 from extrados.building.errors import WHOLE
 from extrados.building.rockers.arch import ArchModel
@@ -48,7 +52,8 @@ def run(context: Context, options: Assessment) -> Result:
         )
     fit = table or own
     rows = [_row(k + 1, impulse, fit, own, scale) for k, impulse in enumerate(impulses)]
-    run_outcome = _run_through(context, rocker)
+    run_outcome, conditions = _run_through(context, rocker)
+    by_rule = _by_rule(context, rocker, impulses)
     worst = min(rows, key=lambda r: np.inf if r.margin is None else r.margin, default=None)
     r = out.Assessment(
         uplift_acceleration_g=gamma,
@@ -62,11 +67,15 @@ def run(context: Context, options: Assessment) -> Result:
         verdict="fails" if any(row.verdict == "fails" for row in rows) else "stands",
         run_outcome=run_outcome,
         margin=worst.margin if worst else None,
+        **conditions,
+        **({"margins_by_rule": by_rule} if by_rule else {}),
+        violated=_undecided(by_rule),
         primary_impulse=out.PrimaryImpulse(**{k: rows[0][k] for k in out.PrimaryImpulse.model_fields})
         if rows
         else None,
     )
     result.results = r
+    result.warnings += [*told(r.conditions), *_undecided(by_rule)]
     beyond = [row for row in rows if row.verdict == "stands" and abs(row.amplitude_g) > CAP * gamma]
     if beyond:
         result.warnings.append(
@@ -115,12 +124,37 @@ def run(context: Context, options: Assessment) -> Result:
     return result
 
 
-def _run_through(context: Context, rocker: Rocker) -> str | None:
-    """Outcome of the whole motion by the equation of motion; None where the run gave none."""
+def _run_through(context: Context, rocker: Rocker) -> tuple[str | None, dict[str, Any]]:
+    """Outcome of the whole motion by the equation of motion, None where the run gave none; the conditions under it."""
     end = context.motion.end + SETTLE * rocker.time_unit
     found = ensemble([rocker.body], [context.motion.ground], [0], [0], 1.0, end, start_rotation=rocker.start_rotation)
     place = int(found.outcome[0])
-    return None if found.interrupted or place == FAILED else OUTCOMES[place]
+    rows = {"outcome": found.outcome, **rows_of(found.joints, found.half_cycles, astray_of(rocker))}
+    conditions = of_many(rocker, Counted.of([rows]), "motions")
+    return None if found.interrupted or place == FAILED else OUTCOMES[place], conditions
+
+
+def _by_rule(context: Context, rocker: Rocker, impulses: list[Impulse]) -> dict[str, float | None]:
+    """Least margin by each impact rule, where their c_v differ by more than DIFFER; a rule whose curve cannot be fitted is left out."""
+    found: dict[str, float | None] = {}
+    for rule, (_, body) in rocker.rivals(DIFFER).items():
+        try:
+            own, _, _ = fit_own(rocker.held(body), rocker.uplift, rocker.scale, context.threads, context=context)
+        except ValueError:
+            continue
+        margins = [float(own.amplitude(i.period, rocker.scale)) * GRAVITY / abs(i.amplitude) for i in impulses]
+        least = min(margins, default=np.inf)
+        found[rule] = least if np.isfinite(least) else None
+    return found
+
+
+def _undecided(margins: dict[str, float | None]) -> list[str]:
+    """The sentence where impact rules lead to different verdicts."""
+    falls = {margin is not None and margin <= 1.0 for margin in margins.values()}
+    if len(falls) < 2:
+        return []
+    each = ", ".join(f'"{rule}" {"no harm" if margin is None else f"{margin:.3g}"}' for rule, margin in margins.items())
+    return [f"The impact rule decides: margin by rule {each}."]
 
 
 def _row(rank: int, impulse: Impulse, fit: Fit, own: Fit, radius: float) -> out.AssessedImpulse:

@@ -34,6 +34,8 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     flying = across <= 0.0
     c_v = model.restitution
     needed = float(friction[~flying].max(initial=0.0))
+    if response.joints is not None and np.isfinite(response.joints.friction):
+        needed = float(response.joints.friction)
     result = rocking_result(
         context,
         response,

@@ -9,14 +9,15 @@ import numpy as np
 from extrados.analyses.batches import computed
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.motion_source import source_of
-from extrados.analyses.rocking.doubts import OFTEN, too_fast
-from extrados.analyses.rocking.failure_domain import LowestAmplitudes, natural_durations
+from extrados.analyses.rocking.conditions import Counted, astray_of, of_many
+from extrados.analyses.rocking.doubts import DIFFER, OFTEN, too_fast
+from extrados.analyses.rocking.failure_domain import LowestAmplitudes, curves_by_rule, natural_durations, warned
 from extrados.analyses.rocking.needs import structures_of
 from extrados.analyses.rocking.tables import FailureCurves
 from extrados.building.errors import BadGeometry
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.rocker import Rocker
-from extrados.core.rocking import FAILED, OUTCOMES, ensemble
+from extrados.core.rocking import FAILED, OUTCOMES, Body, ensemble
 from extrados.limit.errors import CannotStand
 from extrados.motions.impulse import Impulse, primary_impulses
 from extrados.motions.motion import Motion
@@ -83,14 +84,14 @@ def run(context: Context, options: FailureCurves) -> Result:
             for s in shaken
         ],
         agreement=float(np.mean(pairs)) if pairs else None,
-        scaling_misfit=_misfit(variants, curves),
+        scaling_misfit=_misfit(variants, [(d, a) for d, a, _ in curves]),
     )  # fmt: skip
     if r.agreement is not None and r.agreement < 1.0:
         result.warnings.append(
             f"{pairs.count(False)} of {len(pairs)} verdicts by the curves are not what the whole motion does: a curve knows "
             "single impulses without what comes before and after them; the runs are the better witness"
         )
-    longest = max(len(d) for d, _ in curves)
+    longest = max(len(d) for d, _, _ in curves)
     padded = [np.array([np.append(c[k], np.full(longest - len(c[k]), np.nan)) for c in curves]) for k in (0, 1)]
     result.arrays = {
         "duration": Array(padded[0], ("curve", "point"), "s", "t_p of step and rectangular pulses, else the period T_p"),
@@ -100,9 +101,9 @@ def run(context: Context, options: FailureCurves) -> Result:
     }  # fmt: skip
     result.tables["failure_curves"] = TableData(
         {
-            "curve": np.repeat([v.label for v in variants], [len(d) for d, _ in curves]),
-            "duration": np.concatenate([d for d, _ in curves]),
-            "amplitude": np.concatenate([a for _, a in curves]),
+            "curve": np.repeat([v.label for v in variants], [len(d) for d, _, _ in curves]),
+            "duration": np.concatenate([d for d, _, _ in curves]),
+            "amplitude": np.concatenate([a for _, a, _ in curves]),
         },
         {"duration": "s", "amplitude": "g"},
     )
@@ -121,6 +122,9 @@ def run(context: Context, options: FailureCurves) -> Result:
             {"amplitude": "g", "period": "s"},
         )
     result.answer = _answer(r)
+    for row in rows:
+        told = f"{row.label}: " if len(rows) > 1 else ""
+        result.warnings += [told + text for text in warned(row)]
     return result
 
 
@@ -166,20 +170,37 @@ def _said(structure: Table, path: str) -> str:
     return f"{last.replace('_', ' ')} {number} {unit_of(type(place), last)}".rstrip()
 
 
-def _curve(context: Context, options: FailureCurves, variant: Variant) -> tuple[np.ndarray, np.ndarray]:
-    """Durations [s], ascending, and the lowest failing amplitudes [g]; NaN: none below the cap."""
+def _curve(context: Context, options: FailureCurves, variant: Variant) -> tuple[np.ndarray, np.ndarray, dict[str, Any]]:
+    """Durations [s], ascending, the lowest failing amplitudes [g], NaN where none below the cap, and what holds of them."""
     given = options.durations
     durations = np.sort(given) if given else natural_durations(variant.natural, options.pulse, options.count)
     amplitudes = np.linspace(0.0, options.max_amplitude, options.amplitudes + 1)[1:]
     rocker = variant.rocker
-    job = LowestAmplitudes(
-        rocker.body, options.pulse, durations, amplitudes, variant.settle, options.accuracy * GRAVITY,
-        rocker.start_rotation, variant.cycles,
-    )  # fmt: skip
+
+    def job(body: Body) -> LowestAmplitudes:
+        return LowestAmplitudes(
+            body, options.pulse, durations, amplitudes, variant.settle, options.accuracy * GRAVITY, rocker.start_rotation,
+            variant.cycles, astray_of(rocker),
+        )  # fmt: skip
+
     found = computed(
-        context, "failure-curves", job, len(durations), f"failure curve of {variant.label}", context.threads
+        context,
+        "failure-curves",
+        job(rocker.body),
+        len(durations),
+        f"failure curve of {variant.label}",
+        context.threads,
     )
-    return durations, found["amplitude"] / GRAVITY
+    slides, strays = (found[name] / GRAVITY for name in ("slides_from", "strays_from"))
+    counted = Counted(
+        len(durations), int(np.isfinite(slides).sum()), int(np.isfinite(strays).sum()), float(found["friction"].max())
+    )
+    rivals = {rule: (c_v, job(rocker.held(body))) for rule, (c_v, body) in rocker.rivals(DIFFER).items()}
+    holds = {
+        "sliding_from_g": slides, "hinges_elsewhere_from_g": strays, **of_many(rocker, counted, "durations"),
+        **curves_by_rule(context, rivals, len(durations)),
+    }  # fmt: skip
+    return durations, found["amplitude"] / GRAVITY, holds
 
 
 def _motions(context: Context, options: FailureCurves) -> list[Shaken]:
@@ -201,7 +222,9 @@ def _motions(context: Context, options: FailureCurves) -> list[Shaken]:
     return found
 
 
-def _row(variant: Variant, durations: np.ndarray, amplitudes: np.ndarray, shaken: list[Shaken]) -> out.FailureCurve:
+def _row(
+    variant: Variant, durations: np.ndarray, amplitudes: np.ndarray, holds: dict[str, Any], shaken: list[Shaken]
+) -> out.FailureCurve:  # fmt: skip
     rocker = variant.rocker
     outcomes: list[str | None] = []
     if shaken:
@@ -222,6 +245,7 @@ def _row(variant: Variant, durations: np.ndarray, amplitudes: np.ndarray, shaken
         static_verdicts=["fails" if s.motion.peak > rocker.uplift * GRAVITY else "stands" for s in shaken],
         curve_verdicts=[_against(durations, amplitudes, s.impulse) for s in shaken],
         run_outcomes=outcomes,
+        **holds,
     )
 
 

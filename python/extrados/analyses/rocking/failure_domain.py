@@ -13,6 +13,8 @@ import numpy as np
 from extrados.analyses.batches import computed, sweep
 from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
+from extrados.analyses.rocking.conditions import ROWS, Counted, astray_of, of_many, told
+from extrados.analyses.rocking.doubts import DIFFER
 from extrados.analyses.rocking.tables import FailureDomain
 from extrados.analyses.runs import RunsJob, runs_job
 from extrados.building.rockers.arch import ArchModel
@@ -54,7 +56,7 @@ class Curves:
     """Lowest failing amplitudes [m/s^2] at each duration (NaN: none below the cap), and the map; pocket: where
     the first safe pocket above the curve begins (NaN: none).
 
-    codes (durations, amplitudes): 0 no hinging, 1 recovery, 2 Mode I, 3 Mode II.
+    codes (durations, amplitudes): 0 no hinging, 1 recovery, 2 Mode I, 3 Mode II; rows (durations, amplitudes): see Mapper.rows.
     """
 
     durations: np.ndarray
@@ -63,6 +65,7 @@ class Curves:
     mode_i: np.ndarray
     mode_ii: np.ndarray
     pocket: np.ndarray
+    rows: dict[str, np.ndarray]
 
 
 def codes_of(outcome: np.ndarray, half_cycles: np.ndarray) -> np.ndarray:
@@ -83,7 +86,9 @@ class Mapper:
         start_rotation: float = 0.0,
         context: Context | None = None,
         cycles: int = 1,
+        astray: float = 0.0,
     ):
+        self.astray = astray
         self.body = body
         self.context = context
         self.motions = [unit_pulse(pulse, t, cycles) for t in durations]
@@ -95,26 +100,33 @@ class Mapper:
         """Pulses `index` of the given amplitudes [m/s^2]."""
         ends = np.array([m.end for m in self.motions]) + self.settle
         return runs_job(
-            [self.body], [m.ground for m in self.motions], 0, index, amplitude, ends[index], self.start_rotation
-        )
+            [self.body], [m.ground for m in self.motions], 0, index, amplitude, ends[index], self.start_rotation,
+            astray=self.astray,
+        )  # fmt: skip
 
-    def codes(self, index: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
-        """Outcome codes for pulses `index` of the given amplitudes [m/s^2]; Unfinished where some are missing."""
+    def rows(self, index: np.ndarray, amplitude: np.ndarray) -> dict[str, np.ndarray]:
+        """Outcome codes, `code`, and what was demanded of the joints (rocking.conditions) for pulses `index` of the given
+        amplitudes [m/s^2]; Unfinished where some are missing."""
         job = self.job(index, amplitude)
         if self.context is not None:
-            swept = sweep(self.context, "failure-domain", job, len(index), "failure domain").whole()
-            return codes_of(swept["outcome"], swept["half_cycles"])
-        parts = []
-        for first in range(0, len(index), BATCH):
-            rows = job.run(first, min(BATCH, len(index) - first), self.threads)
-            parts.append(codes_of(rows["outcome"], rows["half_cycles"]))
-        return np.concatenate(parts)
+            found = [sweep(self.context, "failure-domain", job, len(index), "failure domain").whole()]
+        else:
+            starts = range(0, len(index), BATCH)
+            found = [job.run(first, min(BATCH, len(index) - first), self.threads) for first in starts]
+        rows = {name: np.concatenate([part[name] for part in found]) for name in ("outcome", "half_cycles", *ROWS)}
+        return {**rows, "code": codes_of(rows["outcome"], rows["half_cycles"])}
+
+    def codes(self, index: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+        """Outcome codes alone."""
+        return self.rows(index, amplitude)["code"]
 
 
 def failure_curves(mapper: Mapper, durations: np.ndarray, amplitudes: np.ndarray, accuracy: float) -> Curves:
     """Map and curves; `accuracy` [m/s^2] of the lowest failing amplitudes within their cell of the map."""
     nd, na = len(durations), len(amplitudes)
-    codes = mapper.codes(np.repeat(np.arange(nd), na), np.tile(amplitudes, nd)).reshape(nd, na)
+    rows = mapper.rows(np.repeat(np.arange(nd), na), np.tile(amplitudes, nd))
+    rows = {name: values.reshape(nd, na) for name, values in rows.items()}
+    codes = rows["code"]
     grid = np.broadcast_to(amplitudes, codes.shape)
     refined = [_refine(mapper.codes, codes, grid, wanted, accuracy) for wanted in (MODE_I, MODE_II)]
     # The pocket is the first safe amplitude above a failing one: the same search with the roles exchanged.
@@ -123,7 +135,7 @@ def failure_curves(mapper: Mapper, durations: np.ndarray, amplitudes: np.ndarray
     def safe(index: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
         return np.where(mapper.codes(index, amplitude) < MODE_I, MODE_I, RECOVERY)
 
-    return Curves(durations, amplitudes, codes, *refined, _refine(safe, risen, grid, MODE_I, accuracy))
+    return Curves(durations, amplitudes, codes, *refined, _refine(safe, risen, grid, MODE_I, accuracy), rows)
 
 
 @dataclass(frozen=True)
@@ -141,23 +153,38 @@ class LowestAmplitudes:
     accuracy: float
     start_rotation: float = 0.0
     cycles: int = 1
+    astray: float = 0.0
 
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
         lengths = self.durations[first : first + count].tolist()
-        codes = Mapper(
-            self.body, self.pulse, lengths, self.settle, threads, self.start_rotation, cycles=self.cycles
-        ).codes  # fmt: skip
+        mapper = Mapper(
+            self.body, self.pulse, lengths, self.settle, threads, self.start_rotation, cycles=self.cycles, astray=self.astray
+        )  # fmt: skip
         scanned = np.zeros((count, len(self.amplitudes)), dtype=int)
+        kept = {name: np.zeros(scanned.shape) for name in ROWS}
         rows = np.arange(count)
         for begin in range(0, len(self.amplitudes), SCAN):
             some = self.amplitudes[begin : begin + SCAN]
-            found = codes(np.repeat(rows, len(some)), np.tile(some, len(rows))).reshape(len(rows), len(some))
-            scanned[rows, begin : begin + SCAN] = found
-            rows = rows[(found < MODE_I).all(axis=1)]
+            found = mapper.rows(np.repeat(rows, len(some)), np.tile(some, len(rows)))
+            codes = found["code"].reshape(len(rows), len(some))
+            scanned[rows, begin : begin + SCAN] = codes
+            for name in ROWS:
+                kept[name][rows, begin : begin + SCAN] = found[name].reshape(codes.shape)
+            rows = rows[(codes < MODE_I).all(axis=1)]
             if not len(rows):
                 break
         grid = np.broadcast_to(self.amplitudes, scanned.shape)
-        return {"amplitude": _refine(codes, scanned, grid, MODE_I, self.accuracy)}
+        return {
+            "amplitude": _refine(mapper.codes, scanned, grid, MODE_I, self.accuracy),
+            "slides_from": first_of(kept["slips"], self.amplitudes),
+            "strays_from": first_of(kept["strays"], self.amplitudes),
+            "friction": kept["friction"].max(axis=1),
+        }
+
+
+def first_of(holds: np.ndarray, amplitudes: np.ndarray) -> np.ndarray:
+    """The first amplitude in each row (rows, amplitudes) at which something holds; NaN: at none."""
+    return np.where((holds > 0).any(axis=1), amplitudes[(holds > 0).argmax(axis=1)], np.nan)
 
 
 @dataclass(frozen=True)
@@ -266,7 +293,8 @@ def run(context: Context, options: FailureDomain) -> Result:
     durations = np.array(options.durations) if options.durations else natural_durations(unit, options.pulse)
     amplitudes = np.linspace(0.0, options.max_amplitude, options.amplitudes + 1)[1:]
     mapper = Mapper(
-        model.body, options.pulse, durations, 40.0 * unit, context.threads, model.start_rotation, context
+        model.body, options.pulse, durations, 40.0 * unit, context.threads, model.start_rotation, context,
+        astray=astray_of(model),
     )  # fmt: skip
     with interruptible():  # Ctrl-C between two rounds stops the next one
         curves = failure_curves(mapper, durations, amplitudes, options.accuracy * GRAVITY)
@@ -284,6 +312,10 @@ def run(context: Context, options: FailureDomain) -> Result:
             for name, curve in names.items()
         },
         pocket_begins_g=curves.pocket / GRAVITY,
+        sliding_from_g=first_of(curves.rows["slips"], amplitudes) / GRAVITY,
+        hinges_elsewhere_from_g=first_of(curves.rows["strays"], amplitudes) / GRAVITY,
+        **of_many(model, Counted.of([curves.rows]), "pulses of the map"),
+        **_by_rule(context, options, model, durations, amplitudes, 40.0 * unit),
         uplift_acceleration_g=model.uplift,
         restitution=model.restitution,
         natural_time_s=unit if model.what == "arch" else model.time_unit,
@@ -317,7 +349,67 @@ def run(context: Context, options: FailureDomain) -> Result:
         ),
     }
     result.answer = _answer(model, options, durations, curves, r.safe_pockets)
+    result.warnings += warned(r)
     return result
+
+
+def warned(r: out.FailureDomain | out.FailureCurve) -> list[str]:
+    """Conditions that do not hold or are not checked, and the band of the impact rules."""
+    return [*told(r.conditions), *(text for text in [rule_band(r.amplitudes_by_rule, r.rule_ratio)] if text)]
+
+
+def rule_band(curves: list[out.RuleCurve] | None, ratio: float | None) -> str:
+    """What the impact rules leave open of a failure curve, in words; "" where they agree."""
+    if not curves:
+        return ""
+    each = ", ".join(f'"{one.rule}" {one.restitution:.3f}' for one in curves)
+    band = "" if ratio is None else f"; the failing amplitude differs by up to {ratio:.2f} between them"
+    return f"The impact rules differ by more than {DIFFER:g} for this structure ({each}){band}. Use dem where this decides."
+
+
+def _by_rule(
+    context: Context, options: FailureDomain, model: Rocker, durations: np.ndarray, amplitudes: np.ndarray, settle: float
+) -> dict[str, Any]:  # fmt: skip
+    """The curve by each impact rule, where their c_v differ by more than DIFFER; nothing where they agree."""
+    jobs = {
+        rule: (
+            c_v,
+            LowestAmplitudes(
+                model.held(body),
+                options.pulse,
+                durations,
+                amplitudes,
+                settle,
+                options.accuracy * GRAVITY,
+                model.start_rotation,
+            ),
+        )
+        for rule, (c_v, body) in model.rivals(DIFFER).items()
+    }
+    return curves_by_rule(context, jobs, len(durations))
+
+
+def curves_by_rule(
+    context: Context, jobs: dict[str, tuple[float, LowestAmplitudes]], count: int
+) -> dict[str, Any]:  # fmt: skip
+    """Lowest failing amplitudes by each impact rule, and the greatest ratio between two of them at a duration."""
+    if not jobs:
+        return {}
+    found = {
+        rule: computed(
+            context, "failure-curves", job, count, f"failure curve by the impact rule {rule}", context.threads
+        )["amplitude"]
+        for rule, (_, job) in jobs.items()
+    }
+    every = np.array(list(found.values()))
+    fail = every[:, np.isfinite(every).sum(axis=0) > 1]
+    return {
+        "amplitudes_by_rule": [
+            out.RuleCurve(rule=rule, restitution=jobs[rule][0], amplitudes_g=curve / GRAVITY)
+            for rule, curve in found.items()
+        ],
+        "rule_ratio": float((np.nanmax(fail, axis=0) / np.nanmin(fail, axis=0)).max()) if fail.size else None,
+    }
 
 
 def _at_amplitudes(

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.rocking.conditions import of_one, told
 from extrados.analyses.rocking.doubts import Doubts
 from extrados.analyses.rocking.tables import Rocking
 from extrados.building.rockers.arch import ArchModel
@@ -101,13 +102,16 @@ def rocking_result(
         energy_residual_ratio=float(np.abs(energy - energy[:1] - response.ledger).max(initial=0.0)) / scale,
         steps=response.steps,
         rejected_steps=response.rejected,
-        decided_by_last_digits=doubt.on_the_edge,
+        decided_by_last_digits=doubt.chaotic,
+        perturbation_growth=doubt.growth,
+        **of_one(rocker, response),
+        violated=doubt.violated,
         **({"outcomes_by_rule": doubt.rules} if doubt.rules else {}),
         **_held(rocker, response),
         **further,
     )
     result.results = r
-    result.warnings += doubt.warnings
+    result.warnings += [*told(r.conditions), *r.violated, *doubt.warnings]
     result.tables["rocking"] = TableData(
         {
             "time": response.time, "rotation": response.rotation, "rotation_rate": response.rate,

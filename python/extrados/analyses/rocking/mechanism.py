@@ -28,7 +28,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
         None if rocker.restraints is None else (rocker.restraints, response.forces),
     )  # fmt: skip
     friction = np.where(np.isnan(forces.normal), 0.0, forces.friction)
-    needed = float(friction.max(initial=0.0))
+    needed = float(friction.max(initial=0.0)) if response.joints is None else float(response.joints.friction)
     known = any(one.determinate for one in model.linkages)
     side = 0 if response.peak >= 0.0 else 1
     result = rocking_result(
@@ -43,10 +43,6 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
         hinges_opposite=_hinges(model, 1),
         **({"frequency_parameter_rad_s": model.frequency} if isinstance(model, FrameModel) else {}),
     )  # fmt: skip
-    if not np.isfinite(needed):
-        result.warnings.append(
-            "a hinge comes under tension during the motion: the assumed mechanism does not hold there"
-        )
     index = snapshot_index(response, options, result.warnings)
     result.arrays |= {
         **geometry_arrays(model.assembly),

@@ -4,7 +4,7 @@ import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import geometry_arrays
-from extrados.analyses.rocking.doubts import NUDGE
+from extrados.analyses.rocking.doubts import CHAOTIC, NUDGE, chaos_told, growth
 from extrados.analyses.rocking.history import LARGEST, ROOM, count, drawn_times
 from extrados.analyses.rocking.shapes import film, pictures
 from extrados.analyses.rocking.tables import Rocking
@@ -53,7 +53,11 @@ def run(context: Context, options: Rocking) -> Result:
     if r.events_found > room and not r.interrupted:
         room = r.events_found
         r = rock()
-    edge = not r.interrupted and any(rock(1.0 + sign * NUDGE).outcome != r.outcome for sign in (-1.0, 1.0))
+    grown, chaotic = 0.0, False
+    if not r.interrupted:
+        probes = [rock(1.0 + sign * NUDGE) for sign in (-1.0, 1.0)]
+        grown = growth([one.rotation for one in (r, *probes)], (model.critical(1), -model.critical(-1)))
+        chaotic = grown > CHAOTIC or any(one.outcome != r.outcome for one in probes)
     rigid: tuple[str, float] | None = None
     if not r.interrupted:
         side = 0 if ratio >= 0.0 else 1
@@ -63,11 +67,11 @@ def run(context: Context, options: Rocking) -> Result:
         )  # fmt: skip
         if not same.interrupted and same.outcome[0] != FAILED:
             rigid = OUTCOMES[same.outcome[0]], float(same.peak[0])
-    return _result(context, options, model, r, edge, rigid)
+    return _result(context, options, model, r, (grown, chaotic), rigid)
 
 
 def _result(
-    context: Context, options: Rocking, model: SoftBaseModel, r: SoftBaseResponse, edge: bool,
+    context: Context, options: Rocking, model: SoftBaseModel, r: SoftBaseResponse, chaos: tuple[float, bool],
     rigid: tuple[str, float] | None,
 ) -> Result:  # fmt: skip
     potential = r.potential - model.potential(model.rest)
@@ -98,6 +102,12 @@ def _result(
         "greatest_pressure_Pa": float(r.most.max(initial=0.0)) / model.block.depth
     }  # fmt: skip
     vertical = model.periods
+    violated = [chaos_told(chaos[0])] if chaos[1] else []
+    if flies.any():
+        violated.append(
+            f"The base does not press in {100.0 * flies.mean():.2g} % of the time: the block is airborne, and its sides are assumed not to "
+            "slide. Use dem."
+        )
     result.results = out.Rocking(
         rotation_of="the block", outcome=r.outcome, settled=settled,
         collapse_half_cycle=r.half_cycles if fell else None, collapse_time_s=r.stop_time if fell else None,
@@ -107,7 +117,8 @@ def _result(
         energy_residual_ratio=float(np.abs(energy - energy[:1] - r.ledger).max(initial=0.0)) / scale, steps=r.steps,
         rejected_steps=0, restitution=None, critical_rotation_rad=critical[0], critical_rotation_left_rad=-critical[1],
         frequency_parameter_rad_s=float(model.rigid.frequency[0]), uplift_acceleration_g=uplift,
-        required_friction=float(friction.max(initial=0.0)), decided_by_last_digits=edge,
+        required_friction=float(friction.max(initial=0.0)), decided_by_last_digits=chaos[1],
+        perturbation_growth=chaos[0], violated=violated,
         soft_base=out.SoftBaseRocking(
             foundation="two-spring" if model.core.edges else "winkler", rocking_period_s=vertical[0],
             vertical_period_s=vertical[1], sinking_at_rest_m=model.sinking(model.rest),
@@ -117,18 +128,10 @@ def _result(
             rigid_outcome=rigid[0] if rigid else None, rigid_peak_rotation_rad=rigid[1] if rigid else None, **base,
         ),
     )  # fmt: skip
-    if edge:
-        result.warnings.append(
-            f"a motion {NUDGE:g} stronger or weaker ends in another outcome: this run is decided by its last digits"
-        )
+    result.warnings += violated
     if not settled and not r.interrupted:
         result.warnings.append(
             f"it still moves enough to fall at the end time of {r.stop_time:g} s: the outcome is open, give a longer end_time"
-        )
-    if flies.any():
-        result.warnings.append(
-            f"the base does not press at all in {100.0 * flies.mean():.2g} % of the time: the block flies, which its side that "
-            "does not slide leaves out"
         )
     if rigid is not None and rigid[0] != r.outcome:
         result.warnings.append(f"on a rigid base, with Housner's impact, the outcome is another one: {rigid[0]}")

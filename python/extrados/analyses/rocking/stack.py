@@ -4,7 +4,7 @@ import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import geometry_arrays
-from extrados.analyses.rocking.doubts import NUDGE
+from extrados.analyses.rocking.doubts import CHAOTIC, NUDGE, chaos_told, growth
 from extrados.analyses.rocking.history import LARGEST, count, drawn_times
 from extrados.analyses.rocking.shapes import film, pictures
 from extrados.analyses.rocking.tables import Rocking
@@ -42,8 +42,14 @@ def run(context: Context, options: Rocking) -> Result:
         )  # fmt: skip
 
     r = rock()
-    edge = not r.interrupted and any(rock(1.0 + sign * NUDGE).outcome != r.outcome for sign in (-1.0, 1.0))
-    return _result(context, options, model, r, edge)
+    if r.interrupted:
+        return _result(context, options, model, r, 0.0, False)
+    probes = [rock(1.0 + sign * NUDGE) for sign in (-1.0, 1.0)]
+    lower = [one.rotation[:, 0] for one in (r, *probes)]
+    upper = [one.rotation[:, 1] - one.rotation[:, 0] for one in (r, *probes)]
+    grown = max(growth(lower, (model.whole[0], model.whole[0])), growth(upper, (model.alone[0], model.alone[0])))
+    chaotic = grown > CHAOTIC or any(one.outcome != r.outcome for one in probes)
+    return _result(context, options, model, r, grown, chaotic)
 
 
 def modes(state: np.ndarray) -> np.ndarray:
@@ -54,7 +60,9 @@ def modes(state: np.ndarray) -> np.ndarray:
     )
 
 
-def _result(context: Context, options: Rocking, model: StackModel, r: StackResponse, edge: bool) -> Result:
+def _result(
+    context: Context, options: Rocking, model: StackModel, r: StackResponse, grown: float, chaotic: bool
+) -> Result:  # fmt: skip
     energy = r.kinetic + r.potential
     scale = max(float(np.abs(energy).max(initial=0.0)), abs(r.work), 1e-300)
     normal, shear = _normal_and_shear(r)
@@ -70,6 +78,11 @@ def _result(context: Context, options: Rocking, model: StackModel, r: StackRespo
     result.reason = f"interrupted at {r.stop_time:.3f} s" if r.interrupted else ""
     uplifts = [k for kind, _, k in r.events if kind == "uplift"]
     fell = r.outcome == "collapse"
+    violated = [chaos_told(grown)] if chaotic else []
+    if flies.any():
+        violated.append(
+            f"A joint parts as a whole from {r.time[flies.argmax()]:.3f} s on: rocking without flight is assumed. Use dem."
+        )
     result.results = out.Rocking(
         rotation_of="the lower block", outcome=r.outcome, settled=r.settled,
         collapse_half_cycle=len(uplifts) + len(impacts) if fell else None, collapse_time_s=r.stop_time if fell else None,
@@ -78,7 +91,8 @@ def _result(context: Context, options: Rocking, model: StackModel, r: StackRespo
         peak_ground_acceleration_g=context.motion.peak / GRAVITY, energy_supplied_J=r.work, energy_lost_at_impacts_J=r.loss,
         energy_residual_ratio=float(np.abs(energy - energy[:1] - r.ledger).max(initial=0.0)) / scale, steps=r.steps, rejected_steps=0,
         restitution=_as_one(model), critical_rotation_rad=alpha, frequency_parameter_rad_s=1.0 / unit,
-        uplift_acceleration_g=min(model.uplift), required_friction=float(needed.max(initial=0.0)), decided_by_last_digits=edge,
+        uplift_acceleration_g=min(model.uplift), required_friction=float(needed.max(initial=0.0)), decided_by_last_digits=chaotic,
+        perturbation_growth=grown, violated=violated,
         stack=out.StackRocking(
             peak_rotation_upper_rad=r.peak[1], critical_rotation_upper_rad=model.alone[0], uplift_as_one_g=model.uplift[0],
             uplift_upper_g=model.uplift[1], impacts_on_ground=r.impacts[0], impacts_between=r.impacts[1],
@@ -87,17 +101,10 @@ def _result(context: Context, options: Rocking, model: StackModel, r: StackRespo
             ],
         ),
     )  # fmt: skip
-    if edge:
-        result.warnings.append(
-            f"a motion {NUDGE:g} stronger or weaker ends in another outcome: this run is decided by its last digits"
-        )
+    result.warnings += violated
     if not r.settled and not r.interrupted:
         result.warnings.append(
             f"it still rocks at the end time of {r.stop_time:g} s: the outcome is open, give a longer end_time"
-        )
-    if flies.any():
-        result.warnings.append(
-            f"from {r.time[flies.argmax()]:.3f} s on a joint would part as a whole for a while: rocking without flight is assumed"
         )
     index = drawn_times(r.time, r.rotation.T, options)
     result.tables["rocking"] = TableData(

@@ -23,7 +23,6 @@ class RockingTable(BuildingAnalysis):
 
     view: ClassVar = "rocker"
     uses: ClassVar = ("material.density", "joints.restitution", "joints.friction", "initial.rotation_ratio")
-    method: ClassVar = {"joints.friction": NO_SLIDING}
     beside: ClassVar = (
         "joints.energy_ratio", "initial.movements", "supports.abutting_wall", "supports.rebound", "supports.stiffness",
         "supports.foundation", "supports.damping_ratio",
@@ -38,6 +37,12 @@ class RockingTable(BuildingAnalysis):
         """An energy ratio stands in place of the restitution; on a base that gives way the impact follows from it; a wall
         throws back what falls against it."""
         found = super().rests_on(building)
+        if (
+            building.restraints
+            or building.supports.abutting_wall is not None
+            or building.supports.stiffness is not None
+        ):
+            found["joints.friction"] = NO_SLIDING  # what else acts on the joints is not followed
         if building.supports.abutting_wall is not None:
             found.pop("joints.restitution", None)
             found["supports.rebound"] = "three impacts" if building.supports.rebound is None else None

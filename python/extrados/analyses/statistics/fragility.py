@@ -1,6 +1,6 @@
 """fragility: probability of uplift and collapse over many motions (thesis 6.3, Figs 6-7, 6-8, 6-10)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -9,6 +9,8 @@ from extrados.analyses.batches import Swept, Unfinished, sweep
 from extrados.analyses.context import Context
 from extrados.analyses.motion_source import GeneratedSource, ListSource, Source, measures, source_of
 from extrados.analyses.rocking.common import rocker_of
+from extrados.analyses.rocking.conditions import ROWS, Counted, astray_of, of_many, rows_of, told
+from extrados.analyses.rocking.doubts import DIFFER
 from extrados.analyses.statistics import cloud
 from extrados.analyses.statistics.annual import hazard_curve
 from extrados.analyses.statistics.levels import INTENSITIES, arranged, describe
@@ -16,6 +18,7 @@ from extrados.analyses.statistics.sensitivity import sensitivity, spoken
 from extrados.analyses.statistics.summaries import median, shares, shares_of
 from extrados.analyses.statistics.tables import Fragility
 from extrados.analyses.statistics.uncertain import Bodies, bodies_at, sampled
+from extrados.building.rockers.block import BlockModel
 from extrados.building.rockers.rocker import Rocker
 from extrados.core import rocking as core_rocking
 from extrados.core.errors import Cancelled, status_code
@@ -26,11 +29,13 @@ from extrados.motions.from_deck import is_set
 from extrados.motions.motion import Motion
 from extrados.results import statistics as out
 from extrados.results.model import Array, Result, StreamedTable, TableData
-from extrados.results.rocking import COLLAPSE
+from extrados.results.rocking import COLLAPSE, Conditions
 from extrados.schema.constants import GRAVITY
 
 #: Histories are drawn in so many points, and until so many time units of the building after the motion
 POINTS, AFTER = 3000, 5.0
+#: So many motions are also run by the other impact rules
+MOST_BY_RULE = 2000
 
 
 @dataclass(frozen=True)
@@ -38,7 +43,8 @@ class EnsembleJob:
     """Member k is motion k // L at level k % L, L the number of levels; without levels motions stay as they are.
 
     measure: what is scaled to the level or, without levels, told as the intensity of a motion, in SI; an intensity of 1
-    means `unit` of it. bodies and starts hold one entry, or one for each motion; a text is why a building is none.
+    means `unit` of it. bodies and starts hold one entry, or one for each motion; a text is why a building is none. astray: see
+    rocking.conditions.
     """
 
     source: Source
@@ -50,6 +56,7 @@ class EnsembleJob:
     sa: tuple[float, float] | None
     settle: float
     tolerance: float
+    astray: float = 0.0
 
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
         per_motion = 1 if self.levels is None else len(self.levels)
@@ -65,7 +72,8 @@ class EnsembleJob:
         rows = {
             "outcome": np.full(count, FAILED, np.int8), "half_cycles": np.zeros(count, np.int32),
             **{n: np.full(count, np.nan)
-               for n in ("peak", "peak_ratio", "stop_time", "scale", "pga", "pgv", "arias", "intensity")},
+               for n in ("peak", "peak_ratio", "stop_time", "scale", "pga", "pgv", "arias", "intensity", "friction")},
+            "slips": np.zeros(count, np.int8), "strays": np.zeros(count, np.int8),
         }  # fmt: skip
         whose = member // per_motion if len(self.bodies) > 1 else np.zeros(count, int)
         without = np.array([self.bodies[b] if isinstance(self.bodies[b], str) else "" for b in whose])
@@ -101,6 +109,8 @@ class EnsembleJob:
             rows["half_cycles"][good] = e.half_cycles
             for name in ("peak", "peak_ratio", "stop_time"):
                 rows[name][good] = getattr(e, name)
+            for name, values in rows_of(e.joints, e.half_cycles, self.astray).items():
+                rows[name][good] = values
             rows["scale"][good] = scale
             for name, power in (("pga", 1), ("pgv", 1), ("arias", 2)):
                 rows[name][good] = own[name][index] * np.abs(scale) ** power
@@ -151,7 +161,9 @@ def _job(context: Context, options: Fragility, base: Rocker, duration: float | N
         measure, unit = "pgv", base.unit_acceleration * GRAVITY * base.time_unit
     sa = (options.sa_period, options.sa_damping) if options.sa_period and (options.levels or options.cloud) else None
     settle = 40.0 * base.time_unit if options.settle is None else options.settle
-    job = EnsembleJob(source, made.bodies, made.starts, measure, unit, levels, sa, settle, options.tolerance)
+    job = EnsembleJob(
+        source, made.bodies, made.starts, measure, unit, levels, sa, settle, options.tolerance, astray_of(base)
+    )
     return job, motions * (1 if levels is None else len(levels)), motions
 
 
@@ -179,12 +191,21 @@ def _describe(
         "critical_rotation_rad": base.critical[0],
         "initial_rotation_ratio": initial,
         "motions": motions,
+        **_conditions(options, base, [rows for _, rows in swept.pieces("outcome", *ROWS)]),
     }
+    result.warnings += told(r["conditions"])
     _tell_failures(job, swept, per_motion, result)
     _tables(job, swept, per_motion, options, result)
     hazard = None if options.hazard is None else (hazard_curve(options.hazard, context.deck.folder), options.hazard)
     if job.levels is not None:
         seen = arranged(job.levels, swept.members, motions, swept.arrays)
+        with np.errstate(invalid="ignore"):
+            for name, key in (("slips", "sliding_share"), ("strays", "hinges_elsewhere_share")):
+                where = swept.members % len(job.levels)
+                good = swept["outcome"] != FAILED
+                order = np.argsort(job.levels, kind="stable")
+                hits, runs = (np.bincount(where[good], weight, len(job.levels)) for weight in (swept[name][good], None))
+                r[key] = (hits / runs)[order]
         r |= describe(
             seen,
             options.intensity,
@@ -239,6 +260,8 @@ def _describe(
         f"the mean of the greatest rotation is {r['mean_peak_rotation_ratio']:.2f} of the critical one (collapse counted as 1). "
         f"The {'motions have a median' if many else 'motion has a'} peak acceleration of {r['median_pga_g']:.3f} g; uplift needs {base.uplift:.3f} g."
     ) if p is not None else "No motion could be run."  # fmt: skip
+    if swept.complete and job.levels is None:
+        r |= _by_rule(context, options, base, job, motions, result)
     if options.cloud:
         name, _, unit = INTENSITIES[options.intensity]
         r |= cloud.describe(
@@ -258,6 +281,42 @@ def _describe(
         except Unfinished as stop:
             result.status, result.reason = ("interrupted" if stop.interrupted else "failed"), str(stop)
     result.results = out.Ensemble(**r)
+
+
+def _conditions(options: Fragility, base: Rocker, rows: list[dict[str, np.ndarray]]) -> dict[str, Any]:
+    """Whether blocks slide or hinges form elsewhere; of sampled buildings of several stones not checked."""
+    if options.uncertain and base.watch is not None and not isinstance(base.model, BlockModel):
+        why = "Friction and thrust line are not checked: the forces at the joints are those of the nominal building, not of the sampled ones."
+        return {"conditions": Conditions(not_checked=why, violated=[])}
+    return of_many(base, Counted.of(rows), "motions")
+
+
+def _by_rule(
+    context: Context, options: Fragility, base: Rocker, job: EnsembleJob, count: int, result: Result
+) -> dict[str, Any]:  # fmt: skip
+    """Share of the runs that collapse by each impact rule, where their c_v differ by more than DIFFER and the runs are few enough."""
+    rivals = base.rivals(DIFFER)
+    if not rivals or options.uncertain:
+        return {}
+    each = ", ".join(f'"{rule}" {c_v:.3f}' for rule, (c_v, _) in rivals.items())
+    if count > MOST_BY_RULE:
+        result.warnings.append(
+            f"The impact rules differ by more than {DIFFER:g} for this structure ({each}). With {count} motions the probability is given "
+            f"by one rule alone; at most {MOST_BY_RULE} motions are run by each."
+        )
+        return {}
+    found = {}
+    for rule, (_, body) in rivals.items():
+        swept = sweep(
+            context, "fragility", replace(job, bodies=[base.held(body)]), count, f"fragility by the rule {rule}"
+        ).whole()
+        good = swept["outcome"] != FAILED
+        found[rule] = float((swept["outcome"] == COLLAPSE).sum() / max(int(good.sum()), 1))
+    shares = ", ".join(f'"{rule}" {100.0 * share:.3g} %' for rule, share in found.items())
+    result.warnings.append(
+        f"The impact rules differ by more than {DIFFER:g} for this structure ({each}). Probability of collapse by rule: {shares}."
+    )
+    return {"collapse_probability_by_rule": found}
 
 
 def _histories(job: EnsembleJob, base: Rocker, count: int, result: Result) -> None:
@@ -382,8 +441,11 @@ def _describe_durations(options: Fragility, base: Rocker, parts: list[tuple[floa
     durations = np.array([d for d, _ in parts])
     keys = ("mean_peak_rotation_ratio", "deviation_peak_rotation_ratio", "collapse_probability", "uplift_probability")
     values = {k: np.array([np.nan if row[k] is None else row[k] for row in rows], dtype=float) for k in keys}
+    conditions = _conditions(options, base, [s.arrays for _, s in parts])
+    result.warnings += told(conditions["conditions"])
     result.results = out.OverDurations(
         durations_s=durations,
+        **conditions,
         **values,
         **{k: [row[k] for row in rows] for k in ("confidence_interval", "count", "collapsed", "uplifted")},
         failed=sum(int((s["outcome"] == FAILED).sum()) for _, s in parts),

@@ -5,6 +5,7 @@ import numpy as np
 from extrados.analyses.batches import sweep
 from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
+from extrados.analyses.rocking.conditions import Counted, astray_of, of_many, told
 from extrados.analyses.rocking.doubts import too_fast
 from extrados.analyses.runs import runs_job
 from extrados.analyses.statistics.tables import HarmonicMap
@@ -30,7 +31,7 @@ def run(context: Context, options: HarmonicMap) -> Result:
     motion = np.repeat(np.arange(len(frequency)), len(amplitude))
     job = runs_job(
         [model.body], grounds, 0, motion, np.tile(amplitude, len(frequency)), np.array([g.end for g in grounds])[motion],
-        model.start_rotation,
+        model.start_rotation, astray=astray_of(model),
     )  # fmt: skip
     swept = sweep(context, "harmonic-map", job, len(motion), "harmonic map")
     result = Result("harmonic-map")
@@ -51,7 +52,9 @@ def run(context: Context, options: HarmonicMap) -> Result:
         lowest_overturning_amplitude_g=lowest,
         safe_pocket_cells=pockets,
         restitution=model.restitution,
+        **of_many(model, Counted.of([swept.arrays]), "motions of the map"),
     )
+    result.warnings += told(result.results.conditions)
     result.tables["harmonic_map"] = TableData(
         {
             "frequency": np.repeat(frequency, len(amplitude)), "amplitude": np.tile(amplitude, len(frequency)) / GRAVITY,

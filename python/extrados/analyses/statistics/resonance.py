@@ -7,6 +7,7 @@ import numpy as np
 
 from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
+from extrados.analyses.rocking.conditions import of_one, told
 from extrados.analyses.statistics.tables import Resonance
 from extrados.building.rockers.block import BlockModel
 from extrados.building.rockers.rocker import Rocker
@@ -144,6 +145,7 @@ def run(context: Context, options: Resonance) -> Result:
         "energy_supplied_J": r.work,
         "energy_lost_at_impacts_J": r.loss,
         "restitution": model.restitution,
+        **of_one(model, r),
     }
     keep = slice(None, None, max(1, len(r.time) // 20000))
     result.arrays = {
@@ -172,6 +174,7 @@ def run(context: Context, options: Resonance) -> Result:
     if isinstance(model.model, BlockModel):
         numbers |= _block_figures(context, options, model, result)
     result.results = out.Resonance(**numbers)
+    result.warnings += told(result.results.conditions)
     return result
 
 

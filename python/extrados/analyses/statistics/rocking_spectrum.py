@@ -8,23 +8,26 @@ import numpy as np
 from extrados.analyses.batches import sweep
 from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
+from extrados.analyses.rocking.conditions import ROWS, Counted, astray_of, of_many, told
 from extrados.analyses.runs import runs_job
 from extrados.analyses.statistics.tables import RockingSpectrum
-from extrados.building.rockers.rocker import make_rocker
-from extrados.core.rocking import Body, block_body
+from extrados.building.building import Building
+from extrados.building.properties import Initial
+from extrados.building.rockers.rocker import Rocker, make_rocker
+from extrados.building.templates.block import Block
 from extrados.results import statistics as out
 from extrados.results.model import Array, Result, TableData
-from extrados.results.rocking import COLLAPSE
+from extrados.results.rocking import COLLAPSE, Conditions
 from extrados.schema.constants import GRAVITY
 
 
-def block_of(period: float, alpha: float, restitution: str | float, linear: bool) -> Body:
-    """The rectangle of frequency parameter p = 2 pi/period [rad/s] and slenderness alpha [rad]; its mass does not matter."""
+def block_of(period: float, alpha: float, building: Building, linear: bool) -> Rocker:
+    """The rectangle of frequency parameter p = 2 pi/period [rad/s] and slenderness alpha [rad], of 1 m depth, with the joints of a
+    building."""
     p = 2.0 * np.pi / period
     radius = 0.75 * GRAVITY / p**2
-    c_v = max(0.0, 1.0 - 1.5 * np.sin(alpha) ** 2) if isinstance(restitution, str) else float(restitution)
-    half, height = radius * np.sin(alpha), radius * np.cos(alpha)
-    return block_body(1.0, radius**2 / 3.0, height, half, half, (c_v, c_v), linear)
+    block = Block(kind="block", width=2.0 * radius * np.sin(alpha), height=2.0 * radius * np.cos(alpha))
+    return make_rocker(building.having(structure=block).apart(), linear)
 
 
 def run(context: Context, options: RockingSpectrum) -> Result:
@@ -34,19 +37,25 @@ def run(context: Context, options: RockingSpectrum) -> Result:
     periods = np.array(options.periods) if options.periods else np.linspace(0.2, 8.0, 60)
     structure = context.deck.structure
     if structure is not None and structure.kind == "arch":
-        family, sizes, bodies = _arches(context, options, periods)
+        family, sizes, rockers = _arches(context, options, periods)
     else:
         alphas = np.radians(options.slenderness)
-        bodies = [
-            block_of(t, a, context.building.joints.restitution, options.form == "linear")
-            for a in alphas
-            for t in periods
+        rockers = [
+            block_of(t, a, _at_rest(context.building), options.form == "linear") for a in alphas for t in periods
         ]
         family = [f"alpha {a:g} deg" for a in options.slenderness]
         sizes = 0.75 * GRAVITY * (periods / (2.0 * np.pi)) ** 2
-    n = len(bodies)
+    n = len(rockers)
     settle = np.tile(periods, len(family)) * 6.0
-    job = runs_job(bodies, [motion.ground], np.arange(n), 0, 1.0, motion.end + settle)
+    job = runs_job(
+        [one.body for one in rockers],
+        [motion.ground],
+        np.arange(n),
+        0,
+        1.0,
+        motion.end + settle,
+        astray=astray_of(rockers[0]),
+    )
     swept = sweep(context, "rocking-spectrum", job, n, "rocking spectrum")
     result = Result("rocking-spectrum")
     if not swept.complete:
@@ -63,7 +72,10 @@ def run(context: Context, options: RockingSpectrum) -> Result:
         longest_overturning_period_s=longest,
         size_m=sizes,
         peak_ground_acceleration_g=motion.peak / GRAVITY,
+        conditions=_conditions(rockers, swept.arrays, len(periods)),
     )
+    for name, one in zip(family, result.results.conditions, strict=True):
+        result.warnings += [f"{name}: {text}" for text in told(one)]
     result.tables["rocking_spectrum"] = TableData(
         {
             "family": np.repeat(family, len(periods)), "period": np.tile(periods, len(family)), "size": np.tile(sizes, len(family)),
@@ -87,15 +99,29 @@ def run(context: Context, options: RockingSpectrum) -> Result:
     return result
 
 
+def _conditions(rockers: list[Rocker], rows: dict[str, np.ndarray], sizes: int) -> list[Conditions]:
+    """Of each family whether blocks slide or hinges form elsewhere."""
+    found = []
+    for first in range(0, len(rockers), sizes):
+        part = {name: rows[name][first : first + sizes] for name in ("outcome", *ROWS)}
+        found.append(of_many(rockers[first], Counted.of([part]), "sizes")["conditions"])
+    return found
+
+
+def _at_rest(building: Building) -> Building:
+    """The building that starts from rest, with joints all alike."""
+    return building.having(initial=Initial(), joints=building.joints.model_copy(update={"types": []}))
+
+
 def _arches(
     context: Context, options: RockingSpectrum, periods: np.ndarray
-) -> tuple[list[str], np.ndarray, list[Body]]:
+) -> tuple[list[str], np.ndarray, list[Rocker]]:
     """The deck's arch in the sizes whose natural time is period / 2 pi: it grows with the root of the size (Eq. 5.7)."""
     structure = context.deck.structure
     base = rocker_of(context, options)
     factors = (periods / (2.0 * np.pi * base.time_unit)) ** 2
-    bodies = []
+    rockers = []
     for factor in factors.tolist():
         update = {"radius": structure.radius * factor, "thickness": structure.thickness * factor}
-        bodies.append(make_rocker(context.building.having(structure=structure.model_copy(update=update))).body)
-    return ["arches of this shape"], structure.radius * factors, bodies
+        rockers.append(make_rocker(context.building.having(structure=structure.model_copy(update=update))))
+    return ["arches of this shape"], structure.radius * factors, rockers

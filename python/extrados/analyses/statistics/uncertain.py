@@ -13,6 +13,7 @@ from extrados.building.building import Building
 from extrados.building.errors import BadGeometry, NoView
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.deviation import resurveyed
+from extrados.building.rockers.block import BlockModel
 from extrados.building.rockers.rocker import Rocker, make_rocker
 from extrados.core.rocking import Body
 from extrados.limit.errors import CannotStand
@@ -145,6 +146,8 @@ def _model(building: Building, options: Fragility, factor: dict[str, float], see
     ).apart()
     stones = _stones(changed.blocks(), options, seeds) if seeds else None
     rocker = make_rocker(changed, options.form == "linear", stones, options.soft_base)
+    if not isinstance(rocker.model, BlockModel):
+        rocker = rocker.unwatched()  # tables of the joints of many stones are long
     return rocker.rebounding(factor["restitution"]) if "restitution" in factor else rocker
 
 

@@ -14,7 +14,7 @@ from extrados.core import mechanism as core_mechanism
 from extrados.core.rocking import Body, arch_body
 from extrados.limit.answer import cannot_stand
 from extrados.limit.errors import CannotStand
-from extrados.limit.linkage import linkage
+from extrados.limit.linkage import Linkage, linkage
 from extrados.limit.programme import LimitAnalysis, Mechanism, State
 from extrados.limit.solver import Immovable, NoEquilibrium
 
@@ -140,6 +140,11 @@ class ArchModel:
         return core_arch.limits(self.four_hinge)
 
     @cached_property
+    def linkages(self) -> tuple[Linkage, Linkage]:
+        """Links and hinges of the mechanisms to +x and to -x."""
+        return linkage(self.arch, self.collapse[1], 1), linkage(self.arch, self.limit.collapse(-1)[1], -1)
+
+    @cached_property
     def impacts(self) -> Impacts:
         """c_v by each rule."""
         a, m = self.arch, self.four_hinge
@@ -149,7 +154,7 @@ class ArchModel:
             a.intrados[m.joint],
         )
         thesis, projection = core_arch.restitution(a.mass, a.centroid, a.inertia, m.joint, m.hinge, opposite)
-        one = linkage(a, self.collapse[1], 1)
+        one, _ = self.linkages
         opening = one.velocities(a.centroid, core_mechanism.follow(one, [0.0])[1][0])
         # the mirrored mechanism has the same mass, so that energies are squares of rates
         return Impacts(thesis, projection, float(np.sqrt(energy_kept(a, -opening))))

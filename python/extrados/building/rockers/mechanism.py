@@ -258,7 +258,7 @@ class MechanismModel:
         for k, j in enumerate(joints):
             part_a, part_b = number[a.a[j]], number[a.b[j]]
             for end in (a.p[j], a.q[j]):
-                apart = _carried(one, place, part_a, end) - _carried(one, place, part_b, end)
+                apart = carried(one, place, part_a, end) - carried(one, place, part_b, end)
                 turn = np.zeros(len(place)) if part_b == 0 else place[:, part_b - 1, 2]
                 out[:, k] = np.minimum(out[:, k], (apart * _turned(a.normal[j], turn)).sum(axis=1))
         return out
@@ -322,7 +322,7 @@ class MechanismModel:
             for h, pair in enumerate(one.joined):
                 for k, sign in zip(pair, (1.0, -1.0), strict=True):
                     if k:
-                        arm = _carried(one, place, k, one.point[h]) - place[:, k - 1, :2]
+                        arm = carried(one, place, k, one.point[h]) - place[:, k - 1, :2]
                         matrix[:, k - 1, 0, h, 0] += sign
                         matrix[:, k - 1, 1, h, 1] += sign
                         matrix[:, k - 1, 2, h] += sign * np.column_stack([-arm[:, 1], arm[:, 0]])
@@ -340,7 +340,7 @@ class MechanismModel:
         return HingeForces(normal, shear, miss)
 
 
-def _carried(one: Linkage, place: np.ndarray, part: int, point: np.ndarray) -> np.ndarray:
+def carried(one: Linkage, place: np.ndarray, part: int, point: np.ndarray) -> np.ndarray:
     """Where a point [m] of a part (0: the ground) lies at each state (states, 2)."""
     if part == 0:
         return np.broadcast_to(point, (len(place), 2))

@@ -165,12 +165,19 @@ def block_linkages(block: BlockModel, stones: Assembly) -> tuple[Linkage, Linkag
         toes = foot + np.array([b.toe_right, 0.0]), foot - np.array([b.toe_left, 0.0])
     made = [
         Linkage(
-            side, np.ones(len(stones.mass), dtype=int), b.mass, centre[None], b.inertia, np.zeros(1, dtype=int),
+            side, np.ones(len(stones.mass), dtype=int), b.mass, centre[None], b.inertia, _nearest(stones, toe),
             np.array([[1, 0]]), toe[None], np.array([[1, 1], [1, 2]]), 1, -side,
         )
         for side, toe in zip((1, -1), toes, strict=True)
     ]  # fmt: skip
     return made[0], made[1]
+
+
+def _nearest(stones: Assembly, toe: np.ndarray) -> np.ndarray:
+    """The joint on the ground (1) in which a toe [m] lies."""
+    grounded = np.flatnonzero((stones.a == GROUND) | (stones.b == GROUND))
+    apart = np.minimum(*(np.hypot(*(ends[grounded] - toe).T) for ends in (stones.p, stones.q)))
+    return grounded[[int(apart.argmin())]]
 
 
 def block_reach(block: BlockModel) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -7,17 +7,21 @@ import numpy as np
 
 from extrados.building.errors import WHOLE, NoView
 from extrados.building.geometry.assembly import Assembly
+from extrados.building.properties import NO_SLIDING_COEFFICIENT
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.block import BlockModel, block_model
 from extrados.building.rockers.frame import FrameModel
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.rockers.restraints import Restraints, block_linkages, block_reach, members_of, three_impacts
 from extrados.building.rockers.soft_base import UNDAMPED, SoftBaseModel, soft_base_model
+from extrados.building.rockers.watch import Watch, sliding_capacity
 from extrados.building.rockers.words import refuse_words, rocks_as_block
 from extrados.building.templates.arch import ArchAssembly
 from extrados.building.templates.frame import FrameAssembly
 from extrados.core.rocking import Body, limits
 from extrados.core.soft_base import soft_base_body
+from extrados.limit.linkage import Linkage
+from extrados.limit.loads import tilt_loads
 from extrados.schema.constants import GRAVITY
 
 if TYPE_CHECKING:
@@ -34,6 +38,7 @@ class Rocker:
     of unstable equilibrium to +x and -x [rad]; time_unit [s]: 1/p of a slender block; length: R of the toe or of the
     arch [m]; start_rotation [rad], > 0 to +x. restraints: what holds it besides its weight, None where nothing does.
     restitution: None on a base that gives way, from which what impacts lose follows; rest: rotation at which it stands [rad].
+    watch: what is known of its joints while it rocks; None where ties, dampers, a wall or a compliant base act on it.
     """
 
     what: str
@@ -49,13 +54,26 @@ class Rocker:
     warnings: tuple[str, ...] = ()
     restraints: Restraints | None = None
     rest: float = 0.0
+    watch: Watch | None = None
 
     def __repr__(self) -> str:
         return f"<Rocker: {self.what}, rocks from {self.uplift:.4g} g>"
 
     def held(self, body: Body) -> Body:
-        """Another body of the same structure, of other impacts, with what holds this one."""
+        """Another body of the same structure, of other impacts, with what holds this one and its joints watched."""
+        if self.watch is not None:
+            return self.watch.watched(body)
         return body if self.restraints is None else self.restraints.hold(body)
+
+    def unwatched(self) -> "Rocker":
+        """The same without the tables of its joints."""
+        if self.watch is None or isinstance(self.model, SoftBaseModel):
+            return self
+        return replace(self, body=self.model.body, watch=None)
+
+    def rivals(self, factor: float) -> dict[str, tuple[float, Body]]:
+        """Rule -> (c_v, structure) of all impact rules where they differ by more than the factor; none where there is one."""
+        return {} if isinstance(self.model, SoftBaseModel) else self.model.rivals(factor)
 
     def rebounding(self, factor: float) -> "Rocker":
         """The same with c_v times a factor, as long as an impact creates no energy."""
@@ -107,17 +125,20 @@ def make_rocker(
             float(block.restitution[0]), float(1.0 / block.frequency[0]), float(block.block.radius[0]),
             ratio * float(alpha[0 if ratio >= 0.0 else 1]), tuple(block.warnings),
         )  # fmt: skip
-        return _restrained(made, building)
+        if stones is None:
+            stones = building.blocks() if piers is None else piers
+        return _restrained(made, building) or _watched(made, building, stones, block_linkages(block, stones))
     given, stones = stones is not None, stones or (building.blocks() if piers is None else piers)
     if not given and isinstance(stones, ArchAssembly) and not _is_restrained(building):
         arch = ArchModel(stones, building.joints.restitution)
         limits = arch.limits
         # V' falls from its value at rest to zero at the critical rotation, as m g R (alpha - q) does for a block
         unit = float(np.sqrt(limits.mass * limits.critical / limits.gravity_moment))
-        return Rocker(
+        made = Rocker(
             "arch", structure.word, arch, arch.body, arch.collapse[0].gamma, (limits.critical, limits.critical), arch.restitution, unit,
             stones.radius, ratio * limits.critical, tuple(arch.warnings),
         )  # fmt: skip
+        return _watched(made, building, stones, arch.linkages)
     rule = building.joints.restitution
     known = FrameModel if isinstance(stones, FrameAssembly) else MechanismModel
     model = known(stones, "energy-safe" if rule == "thesis" else rule)  # type: ignore[arg-type]
@@ -127,7 +148,31 @@ def make_rocker(
         structure.kind, structure.word, model, model.body, min(model.uplift), critical, model.restitution[0],
         model.time_unit, model.length, ratio * critical[0 if ratio >= 0.0 else 1], (*model.warnings, *told),
     )  # fmt: skip
-    return _restrained(made, building)
+    return _restrained(made, building) or _watched(made, building, stones, model.linkages)
+
+
+def _watched(
+    free: Rocker, building: "Building", stones: Assembly, linkages: tuple[Linkage, Linkage]
+) -> Rocker:  # fmt: skip
+    """The rocker with its joints watched; CannotStand where the friction of the joints does not carry its weight."""
+    given = building.friction()
+    friction = np.full(len(stones.a), np.inf)
+    if given is not None and np.size(given) in (1, len(stones.a)):
+        friction = np.broadcast_to(np.asarray(given, dtype=float), len(stones.a))
+        friction = np.where(friction < NO_SLIDING_COEFFICIENT, friction, np.inf)
+    model = free.model
+    needed: tuple[np.ndarray, ...] | None = None
+    if isinstance(model, ArchModel):
+        needed = (model.collapse[0].friction,)
+    elif isinstance(model, MechanismModel) and not isinstance(model, FrameModel):
+        needed = tuple(state.friction for state, _ in model.collapse)
+    rocking = model.uplift if isinstance(model, MechanismModel) else (free.uplift, free.uplift)
+    if isinstance(model, BlockModel):
+        rocking = float(np.tan(model.alpha[0])), float(np.tan(model.alpha[1]))
+    loads = replace(tilt_loads(stones), resistance=None)
+    capacity = sliding_capacity(stones, friction, rocking, needed, loads)
+    watch = Watch(stones, linkages, free.critical, friction, capacity, not isinstance(model, BlockModel))
+    return replace(free, body=watch.watched(free.body), watch=watch)
 
 
 def _on_soft_base(building: "Building", linear: bool, stones: Assembly | None) -> Rocker:
@@ -149,10 +194,10 @@ def _is_restrained(building: "Building") -> bool:
     return bool(building.restraints) or building.supports.abutting_wall is not None
 
 
-def _restrained(free: Rocker, building: "Building") -> Rocker:
-    """The rocker with the ties, dampers, added hinges and the wall of its building."""
+def _restrained(free: Rocker, building: "Building") -> Rocker | None:
+    """The rocker with the ties, dampers, added hinges and the wall of its building; None where nothing holds it."""
     if not _is_restrained(building):
-        return free
+        return None
     model = free.model
     assert not isinstance(model, ArchModel | SoftBaseModel) and building.structure is not None
     wall = building.supports.abutting_wall

@@ -137,12 +137,13 @@ export function motionPanel(app, lower, frame) {
   }
   function drawMap() {
     if (app.tab !== "motion" || shownThird !== "map") return;
-    boxes.map.querySelector(".map-why")?.remove();
+    for (const old of boxes.map.querySelectorAll(".map-why, .remark")) old.remove();
     if (it.map?.why) boxes.map.append(h("p", { class: "map-why" }, `No map: ${it.map.why}.`));
     if (!it.map || it.map.why) { boxes.map.querySelector(".map-legend")?.remove(); charts.map.draw({ title: "Which pulses bring it down", x: { label: "duration", unit: "s" }, y: { label: "amplitude", unit: "g" }, series: [], span: [0, 1] }, {}); return; }
     const { told, arrays } = it.map;
     charts.map.draw({ title: `Which ${told.pulse} pulses bring it down`, x: { array: "duration", label: told.pulse === "step" ? "t_p" : "T_p", unit: "s" }, y: { label: "amplitude", unit: "g" }, series: [], heat: { codes: "codes", x: "duration", y: "amplitude", stride: told.stride }, least: 0 }, arrays);
     if (!boxes.map.querySelector(".map-legend")) boxes.map.append(h("div", { class: "map-legend" }, told.outcomes.map((o, k) => h("span", {}, h("i", { class: `m${k}` }), o))));
+    boxes.map.append(...(told.conditions ?? []).map((text) => h("p", { class: "remark" }, text)));
   }
   function pulse() {
     const found = app.deck?.motion?.pulse;

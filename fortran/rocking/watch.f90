@@ -1,0 +1,142 @@
+!> What the joints of a rocking structure must carry while it rocks: friction, and the place of the thrust line.
+!>
+!> Of one degree of freedom the forces across a joint are linear in w = 1 + a_v/g, in the ground acceleration
+!> towards the other side, h = side a_h, and in the square of the rate, with coefficients that depend on the rotation:
+!>
+!>    (N, T, E) = C_w(q) w + C_h(q) h + C_v(q) q'^2,
+!>
+!> N the compression, T the shear, E = M_p / L the moment about the end p over the length, so that the resultant meets
+!> the joint at the share E/N of its length. The coefficients are tabulated at equal steps from rest to the critical
+!> rotation and read by cubics through four neighbours; beyond it nothing is looked at.
+module rocking_watch
+   use common_kinds, only : wp, gravity
+   use common_status, only : status_ok, status_invalid_argument, status_out_of_memory
+   use, intrinsic :: iso_c_binding, only : c_int
+   implicit none
+   private
+   public :: joint_demand, joint_watch, joint_watch_new, demand_numbers
+
+   !> Length of the flat list of a demand
+   integer, parameter :: demand_numbers = 6
+
+   type :: joint_watch
+      real(wp) :: tolerance = 0.0_wp       !! how far the resultant may leave a joint, over its length
+      !> Horizontal acceleration of the ground at which the resting structure slides, of the sides +1 and -1 [m/s^2]
+      real(wp) :: slides(2) = huge(1.0_wp)
+      integer :: joints = 0
+      integer :: panels = 0                !! between rest and the critical rotation
+      real(wp) :: critical(2) = 0.0_wp     !! [rad]
+      real(wp), allocatable :: friction(:) !! (joints) coefficient that they have
+      !> (joint and quantity N T E, input w h q'^2, 0 to panels, side)
+      real(wp), allocatable :: value(:, :, :, :)
+   contains
+      procedure :: look
+   end type joint_watch
+
+   !> What a run demanded of the joints, up to the critical rotation
+   type :: joint_demand
+      real(wp) :: friction = 0.0_wp        !! greatest coefficient needed; huge in tension
+      real(wp) :: outside = -1.0_wp        !! how far the resultant left a joint, over its length; below 0: inside
+      real(wp) :: slips_at = -1.0_wp       !! first time at which it exceeds that of the joints [s]; -1: never
+      real(wp) :: leaves_at = -1.0_wp      !! first time at which the resultant leaves by more than the tolerance [s]
+      integer :: slips = 0                 !! the joint where it slips first, 1-based; 0: at rest, or never
+      integer :: leaves = 0                !! the joint where the resultant leaves first
+   contains
+      procedure :: flat
+   end type joint_demand
+
+contains
+
+   !> From a flat list: tolerance, both accelerations that slide it [m/s^2], joints, panels, both critical rotations,
+   !> friction of the joints, the values in their order
+   subroutine joint_watch_new(list, watch, status)
+      real(wp), intent(in) :: list(:)
+      type(joint_watch), intent(out) :: watch
+      integer(c_int), intent(out) :: status
+      integer :: last, stat
+
+      status = status_invalid_argument
+      if (size(list) < 7) return
+      if (any(list(1:3) < 0.0_wp) .or. any(list(6:7) <= 0.0_wp)) return
+      if (any(list(4:5) < [1.0_wp, 4.0_wp]) .or. any(list(4:5) > real(size(list), wp))) return
+      watch%tolerance = list(1)
+      watch%slides = list(2:3)
+      watch%joints = nint(list(4))
+      watch%panels = nint(list(5))
+      watch%critical = list(6:7)
+      if (real(size(list), wp) < 7.0_wp + list(4) * (1.0_wp + 18.0_wp * (list(5) + 1.0_wp)) - 0.5_wp) return
+      last = 7 + watch%joints
+      if (size(list) /= last + 18 * watch%joints * (watch%panels + 1)) return
+      allocate (watch%friction(watch%joints), watch%value(3 * watch%joints, 3, 0:watch%panels, 2), stat=stat)
+      status = merge(status_ok, status_out_of_memory, stat == 0)
+      if (stat /= 0) return
+      watch%friction(:) = list(8:last)
+      watch%value(:, :, :, :) = reshape(list(last + 1:), [3 * watch%joints, 3, watch%panels + 1, 2])
+   end subroutine joint_watch_new
+
+   !> Enter what the joints must carry in a state
+   pure subroutine look(watch, i, q, v, horizontal, vertical, time, demand)
+      class(joint_watch), intent(in) :: watch
+      integer, intent(in) :: i               !! 1 rocking to +x, 2 to -x
+      real(wp), intent(in) :: q              !! rotation [rad]
+      real(wp), intent(in) :: v              !! its rate [rad/s]
+      real(wp), intent(in) :: horizontal     !! ground acceleration to +x [m/s^2]
+      real(wp), intent(in) :: vertical       !! ground acceleration, up [m/s^2]
+      real(wp), intent(in) :: time           !! [s]
+      type(joint_demand), intent(inout) :: demand
+      real(wp) :: force(watch%joints, 3), x, t, weight(4), input(3), needed, beyond
+      integer :: first, j, k, l
+
+      x = max(q, 0.0_wp) / watch%critical(i)
+      if (x > 1.0_wp) return
+      x = x * real(watch%panels, wp)
+      first = min(max(int(x) - 1, 0), watch%panels - 3)
+      t = x - real(first, wp)
+      weight = [-(t - 1.0_wp) * (t - 2.0_wp) * (t - 3.0_wp) / 6.0_wp, 0.5_wp * t * (t - 2.0_wp) * (t - 3.0_wp), &
+         -0.5_wp * t * (t - 1.0_wp) * (t - 3.0_wp), t * (t - 1.0_wp) * (t - 2.0_wp) / 6.0_wp]
+      input = [1.0_wp + vertical / gravity, real(3 - 2 * i, wp) * horizontal, v**2]
+      force = 0.0_wp
+      do k = 1, 4
+         do l = 1, 3
+            call add(3 * watch%joints, weight(k) * input(l), watch%value(:, l, first + k - 1, i), force)
+         end do
+      end do
+      do j = 1, watch%joints
+         if (force(j, 1) > 0.0_wp) then
+            needed = abs(force(j, 2)) / force(j, 1)
+            beyond = max(-force(j, 3) / force(j, 1), force(j, 3) / force(j, 1) - 1.0_wp)
+         else
+            needed = huge(needed)
+            beyond = huge(beyond)
+         end if
+         if (needed > watch%friction(j) .and. demand%slips_at < 0.0_wp) then
+            demand%slips_at = time
+            demand%slips = j
+         end if
+         if (beyond > watch%tolerance .and. demand%leaves_at < 0.0_wp) then
+            demand%leaves_at = time
+            demand%leaves = j
+         end if
+         demand%friction = max(demand%friction, needed)
+         demand%outside = max(demand%outside, beyond)
+      end do
+   end subroutine look
+
+   !> total + factor part, of lists
+   pure subroutine add(n, factor, part, total)
+      integer, intent(in) :: n
+      real(wp), intent(in) :: factor
+      real(wp), intent(in) :: part(n)
+      real(wp), intent(inout) :: total(n)
+      total = total + factor * part
+   end subroutine add
+
+   !> Friction, outside, both times, both joints
+   pure function flat(demand) result(list)
+      class(joint_demand), intent(in) :: demand
+      real(wp) :: list(demand_numbers)
+      list = [demand%friction, demand%outside, demand%slips_at, demand%leaves_at, real(demand%slips, wp), &
+         real(demand%leaves, wp)]
+   end function flat
+
+end module rocking_watch

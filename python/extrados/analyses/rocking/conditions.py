@@ -1,0 +1,214 @@
+"""The conditions under which the results of rocking hold, checked along the motion: no sliding, and no hinge elsewhere.
+
+Of one run with place and time; of many runs by the share of them in which a condition does not hold.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from extrados.building.rockers.rocker import Rocker
+from extrados.building.rockers.soft_base import SoftBaseModel
+from extrados.building.rockers.watch import LOST, Watch
+from extrados.core.rocking import FAILED, JointDemand, Response
+from extrados.results.rocking import Conditions, JointTime
+
+#: What a member of an ensemble keeps of the demand on its joints, see `rows_of`
+ROWS = ("friction", "slips", "strays")
+
+
+def rows_of(joints: JointDemand, half_cycles: np.ndarray, astray: float) -> dict[str, np.ndarray]:
+    """Of every run: greatest friction needed while it rocks, whether joints slide, whether hinges form elsewhere.
+
+    half_cycles (runs); astray: see `astray_of`.
+    """
+    struck = (half_cycles > 1) & (astray > LOST)
+    return {
+        "friction": np.asarray(joints.friction, dtype=float),
+        "slips": (joints.slips_at >= 0.0).astype(np.int8),
+        "strays": ((joints.leaves_at >= 0.0) | struck).astype(np.int8),
+    }
+
+
+def astray_of(rocker: Rocker) -> float:
+    """Greatest share of the kinetic energy after an impact that the mechanism of the other side does not hold."""
+    return max(rocker.watch.astray) if rocker.watch is not None else 0.0
+
+
+def not_checked(rocker: Rocker) -> str:
+    """Why the joints are not checked, or not all; "" where they are."""
+    watch = rocker.watch
+    if isinstance(rocker.model, SoftBaseModel):
+        return "Friction is not checked: the base is compliant."
+    if watch is None:
+        return "Friction and thrust line are not checked: ties, dampers, added hinges or a wall act on the structure."
+    if not len(watch.joints):
+        return "Friction and thrust line are not checked: the forces at the hinges are statically indeterminate."
+    if watch.unknown:
+        return (
+            f"Friction and thrust line are checked at {len(watch.joints)} of {len(watch.assembly.a)} joints: the forces at the others "
+            "are statically indeterminate."
+        )
+    return ""
+
+
+def friction_of(watch: Watch) -> float:
+    """The least coefficient of friction of its joints."""
+    return float(watch.friction.min())
+
+
+@dataclass(frozen=True)
+class Counted:
+    """How many of the runs with a result violate a condition."""
+
+    runs: int
+    sliding: int
+    elsewhere: int
+    friction: float
+
+    @classmethod
+    def of(cls, rows: "list[dict[str, np.ndarray]]") -> "Counted":
+        """From pieces of rows: `outcome` and ROWS."""
+        runs = sliding = elsewhere = 0
+        friction = 0.0
+        for piece in rows:
+            good = piece["outcome"] != FAILED
+            runs += int(good.sum())
+            sliding += int(piece["slips"][good].sum())
+            elsewhere += int(piece["strays"][good].sum())
+            friction = max(friction, float(np.max(piece["friction"], where=good, initial=0.0)))
+        return cls(runs, sliding, elsewhere, friction)
+
+
+def of_many(rocker: Rocker, counted: Counted, runs: str) -> dict[str, Any]:
+    """Results of the conditions over many runs; `runs` calls them, "motions"."""
+    if rocker.watch is None:
+        return {"conditions": Conditions(not_checked=not_checked(rocker), violated=[])}
+    total = max(counted.runs, 1)
+    given = friction_of(rocker.watch)
+    return {
+        "conditions": Conditions(
+            friction=given if np.isfinite(given) else None,
+            required_friction=counted.friction,
+            sliding=counted.sliding,
+            sliding_share=counted.sliding / total,
+            hinges_elsewhere=counted.elsewhere,
+            hinges_elsewhere_share=counted.elsewhere / total,
+            energy_astray=astray_of(rocker),
+            not_checked=not_checked(rocker),
+            violated=violated(rocker, counted, runs),
+        )
+    }
+
+
+def violated(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
+    """A sentence for each condition that does not hold in some of the runs."""
+    watch = rocker.watch
+    assert watch is not None
+    found = []
+    if counted.sliding:
+        share = _share(counted.sliding, counted.runs, runs)
+        given = friction_of(watch)
+        if np.isfinite(min(watch.capacity)):
+            reason = f"the resting {rocker.word} slides from {min(watch.capacity):.3g} g on, and rocking starts at {rocker.uplift:.3g} g"
+        elif np.isfinite(counted.friction):
+            reason = f"rocking needs up to {counted.friction:.2f}"
+        else:
+            reason = "a joint comes under tension"
+        found.append(
+            f"Friction {given:.2f} is too low {share}: {reason}. Blocks slide first. Use dem, or check the friction."
+        )
+    if counted.elsewhere:
+        share = _share(counted.elsewhere, counted.runs, runs)
+        found.append(
+            f"Hinges form elsewhere {share}: {_elsewhere(rocker)}. Use dem." if len(watch.joints) > 1
+            else f"The base lifts off as a whole {share}: rocking without flight is assumed. Use dem."
+        )  # fmt: skip
+    return found
+
+
+def told(conditions: Conditions) -> list[str]:
+    """What is said of the conditions beside an answer."""
+    return [*conditions.violated, *(text for text in [conditions.not_checked] if text)]
+
+
+def _elsewhere(rocker: Rocker) -> str:
+    astray = astray_of(rocker)
+    if astray > LOST:
+        return (
+            f"an impact leaves {100.0 * astray:.0f} % of its kinetic energy outside the mechanism that rocks on, or the thrust line "
+            "leaves a joint"
+        )
+    return "the thrust line leaves a joint"
+
+
+def _share(part: int, whole: int, runs: str) -> str:
+    """In how many of the runs."""
+    if whole == 1:
+        return "under the motion"
+    share = 100.0 * part / whole
+    return (
+        f"in {share:.0f} % of the {runs}"
+        if 1.0 <= share <= 99.0 or part == whole
+        else f"in {share:.2g} % of the {runs}"
+    )
+
+
+def of_one(rocker: Rocker, response: Response) -> dict[str, Any]:
+    """Results of the conditions of one run."""
+    watch, joints = rocker.watch, response.joints
+    if watch is None or joints is None:
+        return {"conditions": Conditions(not_checked=not_checked(rocker), violated=[])}
+    found: list[str] = []
+    given, needed, outside = friction_of(watch), float(joints.friction), float(joints.outside)
+    slides = leaves = None
+    if joints.slips_at >= 0.0:
+        at_rest = joints.slips < 0
+        slides = JointTime(joint="" if at_rest else watch.name(int(joints.slips)), time_s=float(joints.slips_at))
+        if at_rest:
+            found.append(
+                f"Friction {given:.2f} lets the resting {rocker.word} slide at {slides.time_s:.3f} s, from {min(watch.capacity):.3g} g on; "
+                f"rocking starts at {rocker.uplift:.3g} g. Use dem, or check the friction."
+            )
+        elif np.isfinite(needed):
+            found.append(
+                f"Friction {given:.2f} is below the {needed:.2f} that rocking needs, first at {slides.joint} at {slides.time_s:.3f} s: "
+                "blocks slide. Use dem, or check the friction."
+            )
+        else:
+            found.append(
+                f"{_upper(slides.joint)} comes under tension or slides, first at {slides.time_s:.3f} s. Use dem."
+            )
+    if joints.leaves_at >= 0.0:
+        leaves = JointTime(joint=watch.name(int(joints.leaves)), time_s=float(joints.leaves_at))
+        far = (
+            f", at most by {100.0 * outside:.0f} % of the joint"
+            if np.isfinite(outside)
+            else ", and a joint comes under tension"
+        )
+        found.append(
+            f"Hinges form elsewhere: the thrust line leaves {leaves.joint} at {leaves.time_s:.3f} s{far}. Use dem." if len(watch.joints) > 1
+            else f"The base lifts off as a whole at {leaves.time_s:.3f} s: rocking without flight is assumed. Use dem."
+        )  # fmt: skip
+    astray = astray_of(rocker)
+    if response.half_cycles > 1 and astray > LOST:
+        found.append(
+            f"Hinges form elsewhere: an impact leaves {100.0 * astray:.0f} % of its kinetic energy outside the mechanism that rocks "
+            "on. Use dem."
+        )
+    results = Conditions(
+        friction=given if np.isfinite(given) else None,
+        required_friction=needed,
+        **({"slides_first": slides} if slides else {}),
+        **({"leaves_first": leaves} if leaves else {}),
+        thrust_line_outside=outside,
+        energy_astray=astray,
+        not_checked=not_checked(rocker),
+        violated=found,
+    )
+    return {"conditions": results}
+
+
+def _upper(text: str) -> str:
+    return text[:1].upper() + text[1:]
