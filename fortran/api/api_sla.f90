@@ -95,7 +95,8 @@ contains
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: room
       !> Load carried, displacement of monitor 1 [m], fraction of the peak, compliance over the first, target of
-      !> monitor 1 [m], the side it is reached from, loads like B already on, greatest way of monitor 1 [m]; see stop_rules
+      !> monitor 1 [m], the side it is reached from, loads like B already on, greatest way of monitor 1 [m];
+      !> see stop_rules
       real(c_double), intent(in) :: limits(8)
       integer(c_int), intent(in) :: refuse_overload
       !> 1: without equilibrium all loads go down together, 2: what a tooth sets free is put on at the load reached

@@ -185,9 +185,8 @@ contains
       end do
    end subroutine run_events
 
-   !> Does the envelope of load over displacement stay below a fraction of its peak, over a tenth of the way to the peak?
-   !> From the first state below it that is the furthest so far, all are; a single tooth gives one such state, and one on
-   !> the way back counts for nothing
+   !> Does the envelope of load over displacement stay below a fraction of its peak, over a tenth of the way to it? So
+   !> do all states from the first one below it that is the furthest so far; a single tooth gives one such state
    subroutine judge_fall(model, rules, reached, displacement, fallen)
       type(element_model), intent(inout) :: model
       type(stop_rules), intent(in) :: rules

@@ -94,7 +94,8 @@ contains
       select case (sense)
       case (code_tension)
          ! What no load relieves is beyond its strength
-         reached = min(reached, group%teeth%strength_of(group%table_of(e, p, k), group%tooth(k, p), share_of(group, e, p, k)))
+         reached = min(reached, group%teeth%strength_of(group%table_of(e, p, k), group%tooth(k, p), &
+            share_of(group, e, p, k)))
          group%tooth(k, p) = group%tooth(k, p) + 1_c_int
       case (code_compression)
          group%crush(k, p) = group%crush(k, p) + 1_c_int

@@ -452,7 +452,7 @@ def _energy(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         number = np.arange(1, len(state) + 1)[state]
         ax.stackplot(
             number, get("stored")[state], get("dissipated")[state], colors=["#cfe3d6", "#f2c28b"],
-            labels=["stored", "dissipated by cracks, crushing and friction"],
+            labels=["stored", "dissipated"],
         )  # fmt: skip
         ax.plot(
             number, get("external")[state], color=style.EDGE, linewidth=0.9, linestyle="--", label="work of the loads"

@@ -83,7 +83,7 @@ class SlaCurve(ResultModel):
     )
     stored_energy_J: float | None = fact("elastic energy at that event", "J")
     dissipated_energy_J: float | None = fact(
-        "energy of the teeth passed and work of friction up to that event; never negative, and never falls", "J"
+        "energy dissipated up to that event, from state to state; never negative, and never falls", "J"
     )
     crack_energy_J: float = fact("area of all teeth passed, in the planes of elements", "J")
     residual_ratio: float | None = fact("greatest residual of the equations that was measured; null where none was")

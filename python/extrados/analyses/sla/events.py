@@ -58,7 +58,6 @@ class Curve:
     name: str = ""  # of a stage
     unit: float = 1.0  # resultant of the reference load [N]
     extent: float = np.inf  # greatest extent of the structure [m]
-    slides: bool = False  # joints have a coefficient of friction
     releases: bool = False  # events between states are on the way of forces that are released
     acceleration: float | None = None  # of the reference load of a stage
     already: float = 0.0  # load in the direction of the reference load that was on before [N]
@@ -91,20 +90,19 @@ class Curve:
 
     @property
     def dissipated(self) -> np.ndarray:
-        """Energy dissipated up to each event [J], a sum of parts none of which is negative: of the teeth passed; where joints
-        slide, of friction; where forces are released, of their way. The last two are what is lost on the way from one
-        event to the next beyond what teeth take. Through events that are no states that way is not gone, and teeth alone
-        count; teeth that pass out of reach do not, for they were not reached."""
+        """Energy dissipated up to each event [J], a sum of parts none of which is negative.
+
+        From one state to the next it is what the work of the loads does not store. Through events that are no states that
+        way is not gone: the area of the teeth that pass counts, and out of reach nothing does.
+        """
         e = self.events
         if not len(e):
             return np.zeros(0)
         state, out = self.judged
-        found = e.crack[0] + np.cumsum(np.append(0.0, np.where(out[:-1], 0.0, np.diff(e.crack))))
-        if self.slides or self.releases:
-            rest, known = e.lost - e.crack, state | self.releases
-            steps = np.where(known[1:] & known[:-1], np.maximum(np.diff(rest), 0.0), 0.0)
-            found = found + max(float(rest[0]), 0.0) + np.cumsum(np.append(0.0, steps))
-        return found
+        known = state | self.releases
+        teeth = np.where(out[:-1], 0.0, np.diff(e.crack))
+        steps = np.where(known[1:] & known[:-1], np.maximum(np.diff(e.lost), 0.0), teeth)
+        return np.cumsum(np.append(max(float(e.lost[0]), float(e.crack[0])), steps))
 
     def envelope(self, unit: float) -> tuple[np.ndarray, np.ndarray]:
         """Displacements [m] and loads [N] of the envelope; it begins at the constant loads' displacement."""
@@ -437,7 +435,7 @@ def run_reference_loads(
     curve = Curve(
         events, None, kept_states, NOTHING, damage_end, 0.0, sign, [], core_model.equations, core_model.points
     )
-    curve.already, curve.driven, curve.slides, curve.releases = model.already, model.driven, model.slides, release
+    curve.already, curve.driven, curve.releases = model.already, model.driven, release
     curve.before, curve.unit, curve.extent = before, model.unit, model.extent
     if len(events) and not model.driven:
         curve.most_compliance = floor * float(events.compliance[0])

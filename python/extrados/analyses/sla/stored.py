@@ -59,7 +59,7 @@ def events_of_curve(result: Result, unit: float, curve: Curve, prefix: str) -> N
             "work along that way that is not stored; what lies between events without equilibrium is no "
             "state, so that it may fall",
         ),
-        "dissipated": (curve.dissipated, "J", "energy of the teeth passed and of friction; never falls"),
+        "dissipated": (curve.dissipated, "J", "energy dissipated from state to state; never falls"),
         "crack": (e.crack, "J", "area of the teeth passed"),
         "scale": (e.scale, "", "part of all loads that is on, below 1 where they went down together"),
     }
