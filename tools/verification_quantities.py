@@ -66,6 +66,7 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
         r"uplift",
         r"(?:least|greatest)_acceleration_g",
         r"base_shear_coefficient",
+        r"sliding_capacity_N",
         r"associated_g",
         r"pyramids\.",
         r"stable_limits",

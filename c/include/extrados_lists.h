@@ -103,7 +103,8 @@
   ENTRY(4, displacement, "target displacement") \
   ENTRY(5, load, "target load") \
   ENTRY(6, fraction, "load fell below the fraction of its peak") \
-  ENTRY(7, lost, "no equilibrium is found any more")
+  ENTRY(7, lost, "no equilibrium is found any more") \
+  ENTRY(8, far, "the displacement exceeds a tenth of the structure's size")
 
 /* Where the layers of a shell lie: Gauss's points, or Lobatto's with one on each face */
 #define EXTRADOS_SHELL_THROUGH_LIST(ENTRY) \

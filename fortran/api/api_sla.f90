@@ -22,7 +22,7 @@ contains
       real(c_double), intent(in) :: load_b(freedoms, nodes)    !! [N], [N m]
       integer(c_int), intent(in) :: carried             !! 1: the work of A is in the ledger
       integer(c_int), intent(in) :: events              !! so far
-      real(c_double), intent(in) :: ledger(3)           !! external, dissipated, crack energy so far [J]
+      real(c_double), intent(in) :: ledger(3)           !! external, lost, crack energy so far [J]
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       !f2py threadsafe
@@ -95,8 +95,9 @@ contains
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: room
       !> Load carried, displacement of monitor 1 [m], fraction of the peak, compliance over the first, target of
-      !> monitor 1 [m], the side it is reached from, loads like B already on; see stop_rules
-      real(c_double), intent(in) :: limits(7)
+      !> monitor 1 [m], the side it is reached from, loads like B already on, greatest way of monitor 1 [m];
+      !> see stop_rules
+      real(c_double), intent(in) :: limits(8)
       integer(c_int), intent(in) :: refuse_overload
       !> 1: without equilibrium all loads go down together, 2: what a tooth sets free is put on at the load reached
       integer(c_int), intent(in) :: variant
@@ -145,7 +146,7 @@ contains
          if (any(freedom(2, :) < 1) .or. any(freedom(2, :) > size(model%equation, 1))) return
          if (first(1) /= 1 .or. first(monitors + 1) /= entries + 1 .or. any(first(2:) < first(:monitors))) return
          rules = stop_rules(limits(1), limits(2), limits(3), limits(4), refuse_overload /= 0, &
-            variant == 1, variant == 2, limits(5), limits(6), limits(7))
+            variant == 1, variant == 2, limits(5), limits(6), limits(7), limits(8))
          fate = status_out_of_memory
          allocate (equation(entries), weight(entries), log%reals(11, room), log%integers(4, room), &
             log%monitors(monitors, room), stat=info)
@@ -340,7 +341,7 @@ contains
       use sla_handle, only : model_take, stage_loaded
       use sla_model, only : element_model, model_standing
       integer(c_int64_t), intent(in) :: handle
-      real(c_double), intent(out) :: values(31)
+      real(c_double), intent(out) :: values(34)
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       values = 0.0_c_double
@@ -357,7 +358,7 @@ contains
       use sla_handle, only : model_take, stage_factored, stage_loaded
       use sla_model, only : element_model, model_resume
       integer(c_int64_t), intent(in) :: handle
-      real(c_double), intent(in) :: values(31)
+      real(c_double), intent(in) :: values(34)
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       !f2py threadsafe

@@ -12,7 +12,7 @@ module sla_events
       stop_none => sla_stop_none, stop_mechanism => sla_stop_mechanism, &
       stop_unbounded => sla_stop_unbounded, stop_all_empty => sla_stop_all_empty, &
       stop_displacement => sla_stop_displacement, stop_load => sla_stop_load, stop_fraction => sla_stop_fraction, &
-      stop_lost => sla_stop_lost
+      stop_lost => sla_stop_lost, stop_far => sla_stop_far
    use common_status, only : status_ok, status_cancelled, status_out_of_memory, status_not_positive_definite, &
       status_beyond_strength
    use sla_assembly, only : add_event
@@ -34,6 +34,8 @@ module sla_events
    real(wp), parameter :: least_pivot = 1.0e-10_wp    !! of I - W' inv(K) W: below it the structure is a mechanism
    !> Multiplier of an event without equilibrium over the peak before, from which no state is sought any more
    real(wp), parameter :: farthest = 1.0e3_wp
+   !> Of the way to the peak: so much further the load must stay below a fraction of the peak to have fallen below it
+   real(wp), parameter :: further = 0.1_wp
 
    !> What happens to a joint without a force beside its stiffness
    integer(c_int), parameter :: in_place(3) = [code_tension, code_compression, code_open]
@@ -52,6 +54,7 @@ module sla_events
       real(wp) :: target = unbounded               !! of monitor 1 [m]: the stage ends in the state that has it
       real(wp) :: side = 0.0_wp                    !! +1: it is reached from below, -1: from above, 0: there is none
       real(wp) :: already = 0.0_wp                 !! loads like B that are on already, over B
+      real(wp) :: far = unbounded                  !! way of monitor 1 beyond which displacements are not small [m]
    end type stop_rules
 
 contains
@@ -70,7 +73,7 @@ contains
       type(bound) :: scaled
       real(wp), allocatable :: ratio(:)
       real(wp) :: reached, at
-      logical :: equilibrium, driven, met, turned
+      logical :: equilibrium, driven, met, turned, first_of_stage, fallen
       integer :: info
 
       driven = any(abs(model%moved(:, 2)) > 0.0_wp)
@@ -108,6 +111,7 @@ contains
          model%hot(:, 1) = [found%hi%group, found%hi%point]
          model%hot(:, 2) = [found%lo%group, found%lo%point]
          equilibrium = found%empty%point == 0 .and. .not. crossed(found)
+         first_of_stage = .not. model%recorded
          if (rules%refuse_overload .and. .not. model%recorded .and. .not. equilibrium) then
             status = status_beyond_strength
             return
@@ -152,18 +156,20 @@ contains
          if (status /= status_ok) return
          call record(model, found, equilibrium, first, equation, share, ratio, log)
          if (reason /= stop_none) return
+         if (first_of_stage) model%start_displacement = log%monitors(1, log%count) - model%lambda * model%slope
          if (equilibrium) then
             model%lambda_held = model%lambda
             reached = merge(log%reals(log_reals, log%count), model%lambda + rules%already, driven)
-            if (reached > model%peak) then
+            if (abs(log%monitors(1, log%count) - model%start_displacement) > rules%far) reason = stop_far
+            if (reached > model%peak .and. reason == stop_none) then
                model%peak = reached
                model%peak_displacement = log%monitors(1, log%count)
             end if
             if (abs(log%monitors(1, log%count)) >= rules%displacement) reason = stop_displacement
-            ! A drop on the way back from a small crack is no end: the wall must have gone further than at its peak.
-            if (rules%fraction >= 0.0_wp .and. model%peak > 0.0_wp .and. &
-                reached < rules%fraction * model%peak .and. &
-                (log%monitors(1, log%count) - model%peak_displacement) * model%slope > 0.0_wp) reason = stop_fraction
+            if (reason == stop_none) then
+               call judge_fall(model, rules, reached, log%monitors(1, log%count), fallen)
+               if (fallen) reason = stop_fraction
+            end if
          end if
          ! Where no multiplier brings a state back, limits run away
          if (model%peak > 0.0_wp .and. .not. equilibrium) then
@@ -173,11 +179,33 @@ contains
          ! Joints that slide make the structure unsymmetric: it may answer the load the other way, until what slides
          ! back sticks, at once. Where all were asked there is no such way.
          if (too_soft(model, driven, rules%compliance)) then
-            if (turned .or. model%pending(3) /= code_stick) reason = stop_mechanism
+            if (turned .or. model%pending(3) /= code_stick) reason = stop_mechanism   ! whatever it says besides
          end if
          if (reason /= stop_none) return
       end do
    end subroutine run_events
+
+   !> Does the envelope of load over displacement stay below a fraction of its peak, over a tenth of the way to it? So
+   !> do all states from the first one below it that is the furthest so far; a single tooth gives one such state
+   subroutine judge_fall(model, rules, reached, displacement, fallen)
+      type(element_model), intent(inout) :: model
+      type(stop_rules), intent(in) :: rules
+      real(wp), intent(in) :: reached          !! load, or its multiplier
+      real(wp), intent(in) :: displacement     !! of monitor 1 [m]
+      logical, intent(out) :: fallen
+      real(wp) :: way
+      fallen = .false.
+      if (rules%fraction < 0.0_wp .or. .not. model%peak > 0.0_wp) return
+      way = sign(1.0_wp, model%slope) * (displacement - model%start_displacement)
+      if (reached >= rules%fraction * model%peak) then
+         model%fallen_from = unbounded
+      else if (model%fallen_from < unbounded) then
+         fallen = way >= model%fallen_from + further * abs(model%peak_displacement - model%start_displacement)
+      else if (way > model%furthest) then
+         model%fallen_from = way
+      end if
+      model%furthest = max(model%furthest, way)
+   end subroutine judge_fall
 
    !> Has the compliance to the growing load grown by a ratio; supports that move also move what has no stiffness left,
    !> unless the constant loads carry it away
@@ -329,7 +357,7 @@ contains
          ! Flexibilities that have not followed the event before this one are lost
          model%friction%known = model%friction%known .and. model%friction%current
          model%friction%current = .false.
-         model%cracked = model%cracked + event%crack
+         model%cracked = model%cracked + model%scale**2 * event%crack
          n = event%entries
          do i = 1, event%rank
             before(:, i) = [component(event, i, model%ua), component(event, i, model%ub)]
@@ -338,7 +366,7 @@ contains
                model%before(i) = component(event, i, model%from)
                model%dissipated = model%dissipated + 0.5_wp * event%sign(i) * model%before(i)**2
             end if
-            if (event%cracks) model%cracked = model%cracked + 0.5_wp * event%sign(i) * model%before(i)**2
+            if (event%cracks .and. event%sign(i) > 0.0_wp) model%cracked = model%cracked + 0.5_wp * model%before(i)**2
          end do
          if (model%refactor) then
             call add_event(event, model%start, model%row, model%value)

@@ -67,8 +67,8 @@ module sla_group
       real(wp) :: origin(most_rank) = 0.0_wp         !! value of w.u at which the part that changes carries nothing
       real(wp) :: hold(2, most_rank) = 0.0_wp        !! change of a held force along w, constant and per multiplier
       real(wp) :: shift = 0.0_wp                     !! change of the energy of `origins` [J]
-      logical :: cracks = .true.                     !! what the springs lose is energy of a crack
-      real(wp) :: crack = 0.0_wp                     !! beside what they lose [J]
+      logical :: cracks = .true.                     !! energy of softening springs is that of a crack
+      real(wp) :: crack = 0.0_wp                     !! energy of the crack beside it, >= 0 [J]
    end type event_vectors
 
    !> A point that slides: a force h that follows the displacements, unlike a spring not symmetrically, see sla_friction

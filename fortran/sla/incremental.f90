@@ -45,9 +45,10 @@ contains
                if (worst%point == 0) cycle
                call group%damage(worst%point, worst%code, lambda, model%ua, model%ub, event, tooth)
                count = count + 1
-               do i = 1, event%rank
-                  model%cracked = model%cracked + 0.5_wp * event%sign(i) * &
-                     along(event, i, model%ua, model%ub, lambda)**2
+               model%cracked = model%cracked + event%crack
+               do i = 1, merge(event%rank, 0, event%cracks)
+                  if (event%sign(i) > 0.0_wp) model%cracked = model%cracked + &
+                     0.5_wp * along(event, i, model%ua, model%ub, lambda)**2
                end do
             end do
          end select

@@ -16,8 +16,9 @@ module sla_ledger
    !> What is recorded; monitors are weighted sums of equations
    type :: event_log
       integer :: count = 0
-      !> lambda, upper limit, lower limit, stored, external, dissipated, crack energy [J], compliance fb.ub (where
-      !> supports move with lambda their stiffness instead), residual, scale of all loads, force that moves supports [N]
+      !> lambda, upper limit, lower limit, stored, external, lost on the straight way, crack energy [J], compliance
+      !> fb.ub (where supports move with lambda their stiffness instead), residual, scale of all loads, force that moves
+      !> supports [N]
       real(wp), allocatable :: reals(:, :)         !! (log_reals, room)
       !> point (1-based), code, tooth reached by it before, 1 in equilibrium
       integer(c_int), allocatable :: integers(:, :)  !! (log_integers, room)

@@ -27,7 +27,7 @@ module sla_model
    real(wp), parameter :: least_ratio = 1.0e-13_wp
    !> No tooth or change of a stored damage has a greater number
    real(wp), parameter :: most_damage = 1.0e8_wp
-   integer, parameter :: standing_values = 31   !! numbers that tell where the event loop stands
+   integer, parameter :: standing_values = 34   !! numbers that tell where the event loop stands
 
    type :: element_model
       integer :: stage = 0                               !! how far it is built, see sla_handle
@@ -83,11 +83,14 @@ module sla_model
       real(wp) :: before(most_rank) = 0.0_wp             !! w.u before the last event
       real(wp) :: external = 0.0_wp                      !! [J]
       real(wp) :: dissipated = 0.0_wp                    !! [J] along the straight way between events
-      real(wp) :: cracked = 0.0_wp                       !! [J] at constant strain: the area of the teeth
+      real(wp) :: cracked = 0.0_wp                       !! [J] at constant strain: the area of the teeth, never falls
       real(wp) :: first_compliance = 0.0_wp              !! fb.ub at the start of the stage
       real(wp) :: first_constant = 0.0_wp                !! work of the constant loads and supports there [J]
       real(wp) :: peak = 0.0_wp                          !! greatest |lambda| in equilibrium of the stage
       real(wp) :: peak_displacement = 0.0_wp             !! of monitor 1 there [m]
+      real(wp) :: start_displacement = 0.0_wp            !! of monitor 1 under the constant loads at the start [m]
+      real(wp) :: furthest = 0.0_wp                      !! its greatest way from there in the sense of the load [m]
+      real(wp) :: fallen_from = huge(1.0_wp)             !! the way from which on the load is below a fraction [m]
       real(wp) :: slope = 0.0_wp                         !! of monitor 1 per unit lambda [m]
       real(wp) :: residual = 0.0_wp                      !! the last found by the guard
       integer :: guard(3) = 0                            !! residual checks, re-solutions, new factors
@@ -492,6 +495,9 @@ contains
       model%scale_recorded = 1.0_wp
       model%releasing = .false.
       model%peak = 0.0_wp
+      model%peak_displacement = 0.0_wp
+      model%fallen_from = huge(1.0_wp)
+      model%furthest = 0.0_wp
       model%event%rank = 0
       model%hot = 0
       model%residual = 0.0_wp
@@ -526,7 +532,8 @@ contains
          model%cracked, model%first_compliance, model%peak, model%peak_displacement, model%slope, model%residual, &
          real(model%guard, wp), real(model%events, wp), merge(1.0_wp, 0.0_wp, model%recorded), &
          merge(1.0_wp, 0.0_wp, model%carried), model%lambda_recorded, reshape(real(model%hot, wp), [4]), &
-         model%scale, model%scale_recorded, model%lambda_held, model%first_constant]
+         model%scale, model%scale_recorded, model%lambda_held, model%first_constant, model%start_displacement, &
+         model%fallen_from, model%furthest]
    end function model_standing
 
    !> Go on from where an event loop stood, after its loads and its damage were set and the factor made: the
@@ -562,6 +569,9 @@ contains
       model%scale_recorded = values(29)
       model%lambda_held = values(30)
       model%first_constant = values(31)
+      model%start_displacement = values(32)
+      model%fallen_from = values(33)
+      model%furthest = values(34)
       model%event%rank = 0
       model%slides = .false.
       call model_solve(model, status)

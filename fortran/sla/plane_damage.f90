@@ -49,7 +49,7 @@ contains
       integer, intent(out) :: tooth
       real(wp), parameter :: right_angle = 0.5_wp * acos(-1.0_wp)
       real(wp) :: la(most_entries), lb(most_entries), eps(3, most_per), s(3), v(3), old(4), phi, delta, pressed
-      real(wp) :: before, after, alpha, change
+      real(wp) :: before, after, alpha, change, sound, reached
       logical :: turns, follows
       integer :: e, j, k, p, sense
 
@@ -86,9 +86,16 @@ contains
          group%turn(:, p) = [cos(delta) * group%turn(1, p) - sin(delta) * group%turn(2, p), &
             sin(delta) * group%turn(1, p) + cos(delta) * group%turn(2, p)]
          call set_band(group, e, p)
+         call group%refresh(p)
       end if
+      sound = direction_modulus(group, e, p, k)
+      s = stress_at(group, p, in_crack_axes(group, p, eps(:, j)))
+      reached = abs(s(k))
       select case (sense)
       case (code_tension)
+         ! What no load relieves is beyond its strength
+         reached = min(reached, group%teeth%strength_of(group%table_of(e, p, k), group%tooth(k, p), &
+            share_of(group, e, p, k)))
          group%tooth(k, p) = group%tooth(k, p) + 1_c_int
       case (code_compression)
          group%crush(k, p) = group%crush(k, p) + 1_c_int
@@ -116,6 +123,10 @@ contains
       end if
       after = direction_modulus(group, e, p, k)
       call group%refresh(p)
+      ! The area of the tooth: between the secants before and after, up to the stress reached
+      event%cracks = .false.
+      if (sense == code_tension .or. sense == code_compression) event%crack = &
+         0.5_wp * max(sound - after, 0.0_wp) * (reached / sound)**2 * group%weight(p)
 
       if (group%options%cracking == isotropic) then
          ! All of D changes in proportion: the Cholesky factor of the change, three vectors.

@@ -132,8 +132,8 @@ def test_a_deadline_stops_the_core_and_leaves_no_flag() -> None:
     assert not time.passed
 
 
-def test_without_a_peak_elements_bear_so_much_at_least() -> None:
-    """A run that ends before its peak is no capacity; one that passes it is."""
+def test_elements_of_a_wall_have_a_capacity_without_a_verdict() -> None:
+    """A wall that vibrates and yields is not judged by the PGA. Before its peak what it carries is a lower bound."""
     panel = {"kind": "panel", "width": 2.0, "height": 2.0, "thickness": 0.3, "unit_length": 0.5, "unit_height": 0.5}
     soft = {"density": 1900.0, "young": "2 GPa", "tensile_strength": "0.05 MPa", "fracture_energy": "10 N/m"}
     weak = {**PULSE, "amplitude": "0.02 g"}
@@ -143,9 +143,11 @@ def test_without_a_peak_elements_bear_so_much_at_least() -> None:
         (row,) = extrados.run(deck(structure=panel, material=soft, motion=weak, assess=given))["assess"].verdicts
         rows.append(row)
     begun, ended = rows
-    assert begun.outcome == ended.outcome == "stands"
-    assert begun.margin is None and begun.margin_at_least > 1.0 and "passed no peak" in begun.statement
-    assert ended.margin > begun.margin_at_least and ended.margin_at_least is None
+    assert begun.outcome == ended.outcome == "not-applicable"
+    assert begun.bound == "lower" and "without a peak" in begun.statement and ended.bound is None
+    assert ended.capacity > begun.capacity > 0.02
+    for row in rows:
+        assert row.margin is None and row.margin_at_least is None and "response spectrum" in row.statement
 
 
 # ----- a building on a plan
@@ -174,10 +176,20 @@ def test_a_building_on_a_plan_is_pushed_along_both_axes_and_its_walls_are_checke
     assert run["local-mechanism"].walls[0].wall in ("left", "right"), "the thin ones"
     assert any("building on a plan" in text for text in r.not_done)
     assert run["pushover"].peak_load_N is None, "300 events are few"
-    assert r.verdicts[1].margin is None and r.verdicts[1].margin_at_least is not None
+    for push in r.verdicts[1:]:
+        assert push.outcome == "not-applicable" and push.demand is None and push.capacity > 0.0
+        assert push.margin is None and push.margin_at_least is None
+    assert "Capacity without a verdict: push along x at " in r.statement and r.overall != "stands under all"
     run.write(tmp_path / "out", figures=False)
     saved, caption = draw_building(Run.read(tmp_path / "out"), _figures(tmp_path))
     assert saved == "building" and "Storey: 2.8 m" in caption
+
+
+def test_where_only_pushes_have_a_result_the_outcome_is_open() -> None:
+    keys = {f"push-{axis}": {"events": 100, "mesh": {"size": 0.7}} for axis in "xy"}
+    r = extrados.run(on_plan(assess={"strategies": ["push-x", "push-y"], "options": keys}))["assess"]
+    assert r.overall == "open" and r.least_margin is None and not r.agreement
+    assert "No strategy has a verdict" in r.statement and "push along y at least" in r.statement
 
 
 def _figures(folder: Path) -> Path:

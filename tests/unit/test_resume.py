@@ -475,7 +475,7 @@ def test_a_new_factor_forgets_the_history(tmp_path: Path) -> None:
         for it in (one, other):
             it.renew(damage, standing)
             ends.append(it.run(60, [model.control], core.Stop()))
-    for name in ("load", "compliance", "stored", "external", "dissipated", "crack", "point", "number", "monitors"):
+    for name in ("load", "compliance", "stored", "external", "lost", "crack", "point", "number", "monitors"):
         assert getattr(ends[0], name).tobytes() == getattr(ends[1], name).tobytes(), name
 
 

@@ -6,6 +6,7 @@ import random
 import numpy as np
 import pytest
 
+from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.conclude import assumptions_of
 from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
@@ -16,6 +17,7 @@ from extrados.building.mesh.mesh import Mesh, element_areas
 from extrados.building.mesh.options import MeshOptions
 from extrados.building.mesh.triangles import fill_ring
 from extrados.decks.reader import make_deck
+from extrados.results.verdict import SelfWeight
 
 BLOCKS = [
     {"name": "left", "points": [[0.0, 0.0], [1.0, 0.0], [1.0, 3.0], [0.0, 3.0]]},
@@ -241,9 +243,48 @@ def test_what_does_not_fit_is_refused() -> None:
     assert "no joints" in sla(panel, mesh={"joint_thickness": 0.01}).reason
     with pytest.raises(BadGeometry, match="Q4"):
         context(STRUCTURES["arch"]).building.mesh(MeshOptions(element="Q8"))
-    # An arch too thin for its own weight
-    thin = {**STRUCTURES["arch"], "thickness": 0.5, "voussoirs": 20}
-    assert "not carried" in sla(thin).reason
+
+
+def test_an_arch_too_thin_for_its_weight_cannot_stand() -> None:
+    """Elements lead to a mechanism, of which limit analysis of the same blocks holds a certificate."""
+    found = sla({**STRUCTURES["arch"], "thickness": 0.5, "voussoirs": 20})
+    assert found.status == "ok" and isinstance(found.results, SelfWeight) and "proof" in found.results.certificate
+    assert found.results.judged(Demanded(0.1)).outcome == "cannot-stand"
+
+
+#: The least t/R of a dry semicircle of 40 voussoirs by limit analysis: .10746
+SEMICIRCLE = {"kind": "arch", "radius": 10.0, "embrace": 180, "voussoirs": 40}
+
+
+@pytest.mark.parametrize("friction", [0.7, "no-sliding"])
+@pytest.mark.parametrize("thickness", [1.03, 1.05, 1.07, 1.0745])
+def test_a_semicircle_below_the_least_thickness_cannot_stand(thickness: float, friction: float | str) -> None:
+    """The work of the weight hardly grows as it becomes a mechanism: its displacements tell."""
+    found = sla({**SEMICIRCLE, "thickness": thickness}, joints={"friction": friction})
+    assert isinstance(found.results, SelfWeight) and found.results.judged(Demanded(None)).outcome == "cannot-stand"
+
+
+@pytest.mark.parametrize("thickness", [1.0755, 1.08, 1.1, 1.3])
+def test_a_semicircle_above_the_least_thickness_bears_what_limit_analysis_says(thickness: float) -> None:
+    """The load that a mechanism reaches within small displacements; what it would reach at kilometres is no state."""
+    structure = {**SEMICIRCLE, "thickness": thickness}
+    found = sla(structure, joints={"friction": "no-sliding"})
+    r = found.results
+    assert r["peak_acceleration_g"] == pytest.approx(tilt(structure), rel=2e-3)
+    assert abs(r["peak_displacement_m"] - r["displacement_of_constant_loads_m"]) < 0.1 * 2.0 * (10.0 + 0.5 * thickness)
+    state = found["event_state"] == 1
+    assert np.abs(found["event_displacement"][state]).max() < 0.1 * 2.0 * (10.0 + 0.5 * thickness)
+    assert r["stop"] == "mechanism" and r["stones"]
+
+
+def test_without_a_certificate_what_is_not_carried_is_refused(monkeypatch) -> None:
+    """Limit analysis finds equilibrium, or is not asked since the loads are others: elements have no answer."""
+    monkeypatch.setattr("extrados.analyses.sla.driver.LimitAnalysis.stands", lambda self: True)
+    found = sla({**SEMICIRCLE, "thickness": 1.05})
+    assert found.status == "refused" and "not carried" in found.reason and "a tenth" in found.reason
+    monkeypatch.undo()
+    found = sla({**SEMICIRCLE, "thickness": 1.05}, constant=[{"kind": "gravity"}])
+    assert found.status == "refused" and "not carried" in found.reason
 
 
 def test_only_rows_assume_that_nothing_slides() -> None:

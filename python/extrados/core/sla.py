@@ -372,7 +372,7 @@ class Model(Owner):
     ) -> None:
         """Start a stage under nodal forces (nodes, 2) [N], of shells (nodes, 6) [N], [N m]: constant + lambda reference.
 
-        ledger (3,): external work, energy dissipated and energy of cracks so far [J].
+        ledger (3,): external work, energy lost and energy of cracks so far [J].
         """
         status = long_call(
             _core.api_sla.loads,
@@ -425,9 +425,10 @@ class Model(Owner):
             stop.target,
             stop.side,
             stop.already,
+            min(stop.far, huge),
         ]
         counts, reals, ints, watched, cracked, status = long_call(
-            _core.api_sla.run, self.handle, int(room), real("stop", limits, (7,)), int(stop.refuse_overload),
+            _core.api_sla.run, self.handle, int(room), real("stop", limits, (8,)), int(stop.refuse_overload),
             VARIANTS.index(variant), first,
             _rows(node, direction), real("share", np.concatenate([m.share for m in monitors]), node.shape),
         )  # fmt: skip
@@ -436,9 +437,9 @@ class Model(Owner):
             check(status, "events")
         count, checks, solutions, factors, reason = (int(k) for k in counts)
         reals, ints = reals[:, :count].copy(), ints[:, :count].copy()
-        load, limit_t, limit_c, stored, external, dissipated, crack, compliance, residual, scale, pull = reals
+        load, limit_t, limit_c, stored, external, lost, crack, compliance, residual, scale, pull = reals
         return Events(
-            load, limit_t, limit_c, stored, external, dissipated, crack, compliance, residual, scale, pull,
+            load, limit_t, limit_c, stored, external, lost, crack, compliance, residual, scale, pull,
             point=ints[0] - 1, code=ints[1], number=ints[2], equilibrium=ints[3].astype(bool),
             monitors=watched[:, :count].T.copy(), reason=STOPS[reason], guard=(checks, solutions, factors),
             interrupted=interrupted, crack_total=float(cracked),
@@ -520,11 +521,11 @@ class Model(Owner):
     def renew(self, damage: npt.ArrayLike, standing: npt.ArrayLike) -> None:
         """Go on from a damage (11, points) and where the loop stood, under the loads of the stage, with a new factor.
 
-        standing (31,): as the method of that name gave it.
+        standing (34,): as the method of that name gave it.
         Whoever goes on from the same two gets the same bits, after whatever history. Raises FreeNode.
         """
         self.set_damage(damage)
-        check(long_call(_core.api_sla.resume, self.handle, real("standing", standing, (31,))), "stored events")
+        check(long_call(_core.api_sla.resume, self.handle, real("standing", standing, (34,))), "stored events")
 
 
 def _softenings(law: Softening | Sequence[Softening | None] | None, count: int) -> list[Softening | None]:

@@ -61,7 +61,8 @@ class Monitor:
 class Stop:
     """When a run ends by itself: `load` carried, `displacement` of the first monitor, `fraction` of the peak
     load after it, compliance over the first (a mechanism). `refuse_overload`: the first state must carry A. `target` of
-    the first monitor, met exactly, from below (`side` 1) or above (-1); `already`: loads like B that are on, over B."""
+    the first monitor, met exactly, from below (`side` 1) or above (-1); `already`: loads like B that are on, over B;
+    `far`: way of the first monitor beyond which displacements are no longer small [m]."""
 
     load: float = np.inf
     displacement: float = np.inf
@@ -71,6 +72,7 @@ class Stop:
     target: float = 0.0
     side: int = 0
     already: float = 0.0
+    far: float = np.inf
 
 
 #: Least part of its strength that shear leaves a crack of bedded masonry (fortran/sla/plane_points.f90)
@@ -352,8 +354,8 @@ class Freedoms:
 class Events:
     """What was recorded, one row per event; n_* before the damage of that event is done.
 
-    load: multiplier; limit_t, limit_c: least upper and greatest lower limit; stored, external, dissipated
-    (path), crack (area of the teeth) energies [J]; compliance fB.uB (where supports move with lambda their stiffness
+    load: multiplier; limit_t, limit_c: least upper and greatest lower limit; stored, external, lost (on the straight way
+    from event to event) and crack (area of the teeth passed, never falls) energies [J]; compliance fB.uB (where supports move with lambda their stiffness
     instead); residual of the last guard check; scale of all loads, below 1 where they went down together; pull, the force
     that moves such supports [N].
     point (0-based), code (see EVENTS), equilibrium; monitors (events, monitors) [m].
@@ -364,7 +366,7 @@ class Events:
     limit_c: np.ndarray
     stored: np.ndarray
     external: np.ndarray
-    dissipated: np.ndarray
+    lost: np.ndarray
     crack: np.ndarray
     compliance: np.ndarray
     residual: np.ndarray
@@ -385,15 +387,15 @@ class Events:
 
     @property
     def ledger(self) -> tuple[float, float, float]:
-        """Work of the loads, energy dissipated and area of the teeth at the last event [J]; 0 without events."""
-        return tuple(float(e[-1]) if len(e) else 0.0 for e in (self.external, self.dissipated, self.crack))  # type: ignore[return-value]
+        """Work of the loads, energy lost and area of the teeth at the last event [J]; 0 without events."""
+        return tuple(float(e[-1]) if len(e) else 0.0 for e in (self.external, self.lost, self.crack))  # type: ignore[return-value]
 
     @property
     def ledger_error(self) -> float:
         """Greatest imbalance of the energies over the greatest work."""
         if not len(self):
             return 0.0
-        gap = self.external - self.stored - self.dissipated
+        gap = self.external - self.stored - self.lost
         scale = np.maximum(np.abs(self.external), np.abs(self.stored)).max()
         return float(np.abs(gap).max() / scale) if scale > 0.0 else 0.0
 

@@ -429,8 +429,8 @@ class _Maker:
     def _held(self, events: np.ndarray) -> np.ndarray:
         """Which states, by their events, are in equilibrium and no farther than the envelope: beyond it a mechanism moves."""
         held = np.ones(len(events), dtype=bool)
-        if "event_equilibrium" in self.arrays:
-            held = self.arrays["event_equilibrium"][events - 1] > 0
+        if "event_state" in self.arrays:
+            held = self.arrays["event_state"][events - 1] > 0
         if "envelope_displacement" in self.arrays:
             reach = 1.05 * np.abs(self.arrays["envelope_displacement"]).max(initial=0.0)
             held &= np.abs(self.arrays["event_displacement"][events - 1]) <= reach
@@ -440,7 +440,7 @@ class _Maker:
         series, axis = [], _axis("event_displacement", "displacement", "mm", 1e3)
         if "event_displacement" not in self.arrays:
             return
-        fine = self.arrays["event_equilibrium"] > 0 if "event_equilibrium" in self.arrays else slice(None)
+        fine = self.arrays["event_state"] > 0 if "event_state" in self.arrays else slice(None)
         for kind, label, more in (
             ("event", "every event", {"faint": True, "aside": "envelope_load" in self.arrays}),
             ("envelope", "envelope", {}),

@@ -382,7 +382,7 @@ def _told_states(run: Stored, name: str) -> np.ndarray:
     """The states of a film: those in equilibrium, as far as the envelope goes; beyond it a mechanism is on its way, whose
     displacements would hide all before. All of them where that leaves fewer than two."""
     events, envelope = run.array(name, "state_event"), np.abs(run.array(name, "envelope_displacement"))
-    held = run.array(name, "event_equilibrium")[events - 1] > 0
+    held = run.array(name, "event_state")[events - 1] > 0
     near = np.abs(run.array(name, "event_displacement")[events - 1]) <= 1.05 * envelope.max(initial=0.0)
     kept = np.flatnonzero(held & near)
     return kept if len(kept) > 1 else np.arange(len(events))
@@ -421,7 +421,7 @@ def draw_sla(run: Stored, name: str, folder: Path) -> None:
         window(ax, np.concatenate([xy, *(xy + factor * u for u in moved)]))
         fig.colorbar(cracks[0], ax=ax, shrink=0.6, label="crack width [mm]")
         d, p = get(name, "event_displacement"), get(name, "event_load")
-        fine = get(name, "event_equilibrium") > 0
+        fine = get(name, "event_state") > 0
         curve.plot(1e3 * d[fine], p[fine] / 1e3, color=style.THRUST, linewidth=0.25, alpha=0.5)
         curve.plot(1e3 * get(name, "envelope_displacement"), get(name, "envelope_load") / 1e3, color=style.THRUST)
         shown = 1e3 * np.concatenate([get(name, "envelope_displacement"), d[events - 1]])

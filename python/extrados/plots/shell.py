@@ -70,7 +70,7 @@ def _stage_curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 if stage.of != of:
                     continue
                 sign = -1.0 if stage.sense == "-" else 1.0
-                fine = run.array(name, f"{stage.prefix}event_equilibrium") > 0
+                fine = run.array(name, f"{stage.prefix}event_state") > 0
                 d, p = (
                     run.array(name, f"{stage.prefix}event_displacement"),
                     run.array(name, f"{stage.prefix}event_load"),
@@ -111,12 +111,14 @@ def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 continue
             color = style.SAFE if prefix else style.THRUST
             d, p = 1e3 * get(f"{prefix}event_displacement"), get(f"{prefix}event_load") / 1e3
-            fine = get(f"{prefix}event_equilibrium") > 0
+            fine = get(f"{prefix}event_state") > 0
             ax.plot(d[fine], p[fine], color=color, linewidth=0.25, alpha=0.4)
-            if (~fine).any():
+            none = get(f"{prefix}event_state") == 0
+            if none.any():
                 far = 1.1 * np.abs(get(f"{prefix}envelope_displacement")).max() * 1e3
-                inside = (~fine) & (np.abs(p) < 1.2 * np.abs(p[fine]).max()) & (d >= 0.0) & (d < far)
-                ax.plot(d[inside], p[inside], "x", color=LOST, markersize=3, label="no equilibrium")
+                inside = none & (np.abs(p) < 1.2 * np.abs(p[fine]).max()) & (d >= 0.0) & (d < far)
+                label = "no equilibrium" if not prefix or (get("event_state") != 0).all() else None
+                ax.plot(d[inside], p[inside], "x", color=LOST, markersize=3, label=label)
             ax.plot(
                 1e3 * get(f"{prefix}envelope_displacement"), get(f"{prefix}envelope_load") / 1e3, color=color,
                 linewidth=1.5, label=f"push to {numbers.sense}",
@@ -127,6 +129,14 @@ def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 x = shift + np.array([0.0, idea.yield_displacement_m, idea.ultimate_displacement_m])
                 ax.plot(1e3 * x, np.array([0.0, idea.yield_load_N, idea.yield_load_N]) / 1e3, color=color,
                         linestyle="--", linewidth=0.9, label=f"bilinear, ductility {idea.ductility:.2g}")  # fmt: skip
+        if r.sliding_capacity_N is not None and r.sliding_capacity_N < 1.2 * ax.get_ylim()[1] * 1e3:
+            ax.axhline(
+                r.sliding_capacity_N / 1e3,
+                color=LOST,
+                linestyle=":",
+                linewidth=1.2,
+                label=f"slides on {r.sliding_level}",
+            )
         ax.set_xlabel("control displacement [mm]")
         ax.set_ylabel("base shear [kN]")
         ax.set_ylim(bottom=0.0)
@@ -136,7 +146,8 @@ def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         right.set_ylabel("base shear over weight")
         ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
-            "Capacity curves: every event in equilibrium (thin), the envelope and its bilinear idealisation of equal area; "
+            "Capacity curves: every state (thin), the envelope and its bilinear idealisation of equal area; dotted, Coulomb's limit of the level that slides first, "
+            "which the curve does not know; "
             "variants of what is assumed in blue-grey, other analyses of the run in grey."
         )
 
@@ -154,7 +165,7 @@ def _state(run: Stored, name: str, prefix: str) -> int:
 def _shown(run: Stored, name: str, prefix: str) -> list[int]:
     """The states to draw: that of the greatest base shear, and the last in equilibrium."""
     events = run.array(name, f"{prefix}state_event")
-    held = np.flatnonzero(run.array(name, f"{prefix}event_equilibrium")[events - 1] > 0)
+    held = np.flatnonzero(run.array(name, f"{prefix}event_state")[events - 1] > 0)
     return sorted({_state(run, name, prefix), *held[-1:].tolist()})
 
 

@@ -9,7 +9,7 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 
 from extrados.plots import animation, style
 from extrados.results.model import Array
-from extrados.results.sla import PREFIXES
+from extrados.results.sla import PREFIXES, Sla
 from extrados.results.store import Stored
 
 #: Of crack widths: its lightest colour stands out from white
@@ -94,7 +94,7 @@ def _all_stages(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             for k, sense in panel:
                 stage = stages[k]
                 get = lambda n, prefix=stage.prefix: run.array(name, f"{prefix}{n}")  # noqa: E731
-                fine = get("event_equilibrium") > 0
+                fine = get("event_state") > 0
                 d = sense * 1e3 * np.append(stage.displacement_of_constant_loads_m, get("event_displacement")[fine])
                 p = sense * 1e-3 * np.append(stage.start_load_N, get("event_load")[fine])
                 color = STAGES[k % len(STAGES)]
@@ -139,9 +139,7 @@ def _cracks_by_stage(run: Stored, name: str, folder: Path) -> list[tuple[str, st
     shown = []
     for stage in run[name].stages:
         if f"{stage.prefix}state_event" in run.arrays[name]:
-            held = run.array(name, f"{stage.prefix}event_equilibrium")[
-                run.array(name, f"{stage.prefix}state_event") - 1
-            ]
+            held = run.array(name, f"{stage.prefix}event_state")[run.array(name, f"{stage.prefix}state_event") - 1]
             shown += [(stage.prefix, int(s), f"end of stage {stage.name}") for s in np.flatnonzero(held > 0)[-1:]]
     if not shown:
         return []
@@ -166,13 +164,14 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             if numbers is None:
                 continue
             d, p = get(f"{prefix}event_displacement") * 1e3, get(f"{prefix}event_load") / 1e3
-            fine = get(f"{prefix}event_equilibrium") > 0
+            fine = get(f"{prefix}event_state") > 0
             color = style.THRUST if not prefix else style.SAFE
             begin = 1e3 * numbers.displacement_of_constant_loads_m
             on = next((1e-3 * s.start_load_N for s in numbers.get("stages", []) if not s.prefix), 0.0)
             ax.plot(np.append(begin, d[fine]), np.append(on, p[fine]), color=color, linewidth=0.25, alpha=0.4)
-            if (~fine).any():
-                ax.plot(d[~fine], p[~fine], "x", color=LOST, markersize=3, label="no equilibrium" if not lost else None)
+            none = get(f"{prefix}event_state") == 0  # what lies out of reach is not drawn
+            if none.any():
+                ax.plot(d[none], p[none], "x", color=LOST, markersize=3, label="no equilibrium" if not lost else None)
                 lost = True
             ax.plot(get(f"{prefix}envelope_displacement") * 1e3, get(f"{prefix}envelope_load") / 1e3, color=color,
                     linewidth=1.4, label=f"envelope, load to {numbers.sense}")  # fmt: skip
@@ -188,7 +187,7 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         # Events without equilibrium of a wall that comes apart lie far beyond: they must not shrink the curve
         there = [p for p in PREFIXES if f"{p}envelope_load" in run.arrays[name]]
         far = np.concatenate([get(f"{p}envelope_displacement") for p in there])
-        loads = np.concatenate([get(f"{p}event_load")[get(f"{p}event_equilibrium") > 0] for p in there])
+        loads = np.concatenate([get(f"{p}event_load")[get(f"{p}event_state") > 0] for p in there])
         least, most = min(far.min(), 0.0), max(far.max(), 1e-12)
         enough = max(near_the_peak(*(get(f"{p}envelope_{n}") for n in ("displacement", "load"))) for p in there)
         cut = most > MOST_PLATEAU * enough > 0.0
@@ -204,9 +203,19 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_ylabel("load [kN]")
         ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
-            "Load against displacement: every event (thin), the monotone envelope and its bilinear idealisation; grey, the "
-            "steps of an incremental solution of the same deck, if there is one."
+            f"Load against displacement: every state (thin), the envelope and its bilinear idealisation; grey, the steps of "
+            f"an incremental solution of the same deck, if there is one.{_dropped(r)}"
         )
+
+
+def _dropped(r: Sla) -> str:
+    """A sentence on the events of all curves that are not drawn, because they lie out of reach."""
+    count = sum(curve.events_out_of_reach for curve in (r, r.minus) if curve is not None)
+    return (
+        f" Not drawn: {count} events out of reach of small displacements or of ten times the peak load."
+        if count
+        else ""
+    )
 
 
 def near_the_peak(displacement: np.ndarray, load: np.ndarray) -> float:
@@ -241,7 +250,7 @@ def _incremental(run: Stored, name: str) -> list[str]:
 def _peak_state(run: Stored, name: str, prefix: str) -> list[int]:
     """The states to draw: at the greatest load and the last that is in equilibrium."""
     events = run.array(name, f"{prefix}state_event")
-    held = np.flatnonzero(run.array(name, f"{prefix}event_equilibrium")[events - 1] > 0)
+    held = np.flatnonzero(run.array(name, f"{prefix}event_state")[events - 1] > 0)
     return sorted({_peak(run, name, prefix), *held[-1:].tolist()})
 
 
@@ -400,7 +409,7 @@ def _bars(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
     with style.figure(7.0, 3.4 * count, rows=count) as (fig, axes):
         if follow:
             ax = axes[0]
-            fine = run.array(name, f"{prefix}event_equilibrium") > 0
+            fine = run.array(name, f"{prefix}event_state") > 0
             # The displacements of stones run away as they become a mechanism
             axis, scale, words = ("load", 1e-3, "load [kN]") if run[name].hinges is not None else (
                 "displacement", 1e3, "control displacement [mm]")  # fmt: skip
@@ -439,23 +448,22 @@ def _bars(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
 def _energy(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     get = lambda n: run.array(name, f"event_{n}")  # noqa: E731
     with style.figure(7.0, 3.4) as (fig, (ax,)):
-        fine = np.flatnonzero(get("equilibrium") > 0)
-        upto = slice(0, fine[-1] + 1 if len(fine) else None)  # what follows has no equilibrium, and no energy either
-        number = np.arange(1, len(get("load")) + 1)[upto]
+        state = get("state") > 0
+        number = np.arange(1, len(state) + 1)[state]
         ax.stackplot(
-            number, get("stored")[upto], get("dissipated")[upto], colors=["#cfe3d6", "#f2c28b"],
+            number, get("stored")[state], get("dissipated")[state], colors=["#cfe3d6", "#f2c28b"],
             labels=["stored", "dissipated"],
         )  # fmt: skip
         ax.plot(
-            number, get("external")[upto], color=style.EDGE, linewidth=0.9, linestyle="--", label="work of the loads"
+            number, get("external")[state], color=style.EDGE, linewidth=0.9, linestyle="--", label="work of the loads"
         )
-        ax.plot(number, get("crack")[upto], color=style.THRUST, linewidth=0.9, label="area of the teeth")
+        ax.plot(number, get("crack")[state], color=style.THRUST, linewidth=0.9, label="area of the teeth")
         style.numbers(ax.xaxis)
         ax.set_xlabel("event")
         ax.set_ylabel("energy [J]")
         style.legend_below(fig, ax)
         title = style.save(fig, folder, f"{name}-energy")
     return title, (
-        f"Energy ledger: stored and dissipated energy make up the work of the loads to "
-        f"{run[name].energy_residual_ratio:.1e}."
+        f"Energies in the states: the work of the loads is stored, dissipated, or lost where the structure goes from one state "
+        f"to the next; the ledger of all three closes to {run[name].energy_residual_ratio:.1e}."
     )

@@ -4,7 +4,7 @@ from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.sla import SlaCurve
-from extrados.results.verdict import Demand, KindResults, Verdict, judge, judge_acceleration
+from extrados.results.verdict import Demand, KindResults, Verdict, capacity_alone, judge
 
 
 class WallShare(ResultModel):
@@ -60,10 +60,31 @@ class Flanges(ResultModel):
     working: bool = fact("whether they take more than a twentieth of the weight up or down")
 
 
+class SlidingLevel(ResultModel):
+    """Coulomb's limit of a level: a base of a storey, or bed joints that cut all walls at a height."""
+
+    level: str = fact("its name")
+    height_m: float = fact("its height", "m")
+    normal_N: float = fact("normal force on it under the constant loads; compression is positive", "N")
+    area_m2: float = fact("area of its walls", "m^2")
+    resistance_N: float = fact("friction times the normal force, and cohesion times the area", "N")
+    shear_share: float = fact("part of the base shear that acts above it")
+    base_shear_N: float = fact("base shear under which it slides", "N")
+
+
 class PushCurve(SlaCurve):
     """The events of one sense of the push; loads are base shears."""
 
-    base_shear_coefficient: float | None = fact("greatest base shear in equilibrium over the weight")
+    capacity_N: float | None = fact(
+        "greatest base shear, or the sliding limit where that is less; null without a state, and of ground that moves",
+        "N",
+    )
+    sliding_capacity_N: float = maybe("least base shear under which a level slides by Coulomb's limit", "N")
+    sliding_level: str = maybe("the level that slides first")
+    sliding: list[SlidingLevel] = maybe(
+        "limits of all levels; absent without walls, and where friction excludes sliding"
+    )
+    base_shear_coefficient: float | None = fact("capacity over the weight")
     roof_drift: float | None = fact("control displacement there over its height")
     storey_drifts: list[float | None] = fact("drift of each storey there")
     walls: list[WallShare] = fact("what each wall carries there")
@@ -126,17 +147,23 @@ class Pushover(PushCurve, KindResults):
     band_N: list[float] = maybe("least and greatest base shear of all variants and the deck's own", "N")
 
     def judged(self, demand: Demand) -> Verdict:
-        """The lesser capacity of the two senses: an acceleration [g] where the forces are those of the masses."""
+        """The lesser capacity of the two senses, without an outcome: base shear over weight is not compared with the PGA."""
         curves = [c for c in (self, self.minus) if c is not None]
-        if any(c.greatest_load_N is None for c in curves):
-            return judge(f"No greatest base shear was found; the run ended by: {self.stop}.", None, None, "N")
-        least = min(curves, key=lambda c: c.greatest_load_N or 0.0)
-        load, reached = f"{(least.greatest_load_N or 0.0) / 1e3:.4g} kN", least.greatest_acceleration_g
-        if any(c.peak_load_N is None for c in curves):
-            text = f"The base shear has reached {load} without a peak; what the building bears is not known"
-            if reached is not None and demand.peak_g is not None and demand.peak_g < reached:
-                return judge_acceleration(reached, demand)
-            return judge(f"{text}.", demand.peak_g, None, "N" if reached is None else "g", "open")
-        if reached is not None:
-            return judge_acceleration(abs(reached), demand)
-        return judge(f"The building bears a base shear of {load}.", None, least.greatest_load_N, "N")
+        if any(c.capacity_N is None for c in curves):
+            return judge(f"No state with a base shear was found; the run ended by: {self.stop}.", None, None, "N")
+        least = min(curves, key=lambda c: c.capacity_N or 0.0)
+        load, capacity = least.greatest_load_N or 0.0, least.capacity_N or 0.0
+        slides, reached = capacity < load, least.greatest_acceleration_g
+        unit, value = ("N", capacity) if reached is None else ("g", abs(reached) * capacity / load if load else 0.0)
+        told = f"{capacity / 1e3:.4g} kN" + ("" if reached is None else f" ({value:.3g} g times the masses)")
+        if slides:
+            text = f"Sliding on {least.sliding_level} limits the base shear to {told}, by Coulomb's law."
+            violated = [
+                f"The model excludes that sliding: it carries {load / 1e3:.4g} kN, "
+                f"{load / capacity:.3g} times the sliding limit."
+            ]
+            return capacity_alone(text, value, unit, "upper", violated)
+        if least.peak_load_N is None:
+            text = f"The base shear has reached {told} without a peak; the capacity is not known."
+            return capacity_alone(text, value, unit, "lower")
+        return capacity_alone(f"The building carries a base shear of {told}.", value, unit)

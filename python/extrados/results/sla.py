@@ -3,7 +3,7 @@
 from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
-from extrados.results.verdict import Demand, KindResults, Verdict, judge, judge_acceleration
+from extrados.results.verdict import Demand, KindResults, Verdict, capacity_alone, judge, judge_acceleration
 
 #: How the names of arrays begin that belong to the first sense of the load, and to the second
 PREFIXES = ("", "minus_")
@@ -59,26 +59,33 @@ class SlaCurve(ResultModel):
     peak_displacement_m: float | None = fact("control displacement at the peak", "m")
     displacement_of_constant_loads_m: float = fact("control displacement under the constant loads alone", "m")
     peak_event: int | None = fact("event of the peak, from 1")
-    greatest_load_N: float | None = fact("greatest load in equilibrium, a peak or not; null where there is none", "N")
+    greatest_load_N: float | None = fact("greatest load of a state, a peak or not; null where there is none", "N")
     greatest_load_displacement_m: float | None = fact("control displacement at the greatest load", "m")
     greatest_load_event: int | None = fact("event of the greatest load, from 1")
     first_event_load_N: float | None = fact("load of the first event", "N")
     events: int = fact("events of this run")
     events_before_resume: int = fact("events of the runs that this one goes on from")
     events_without_equilibrium: int = fact("events at which no multiplier of the load suits all points")
+    events_out_of_reach: int = fact(
+        "events that are no states: beyond a displacement of a tenth of the structure's size, or ten times the peak load"
+    )
     first_event_without_equilibrium: int | None = fact("the first of them, from 1")
     stop: str = fact("why the run ended")
     secondary_cracks: int = fact("events of second cracks")
     damaged_points: int = fact("points that cracked")
     closings: int = fact("cracks that closed")
     crushing_events: int = fact("events of crushing")
-    last_load_N: float | None = fact("load of the last event", "N")
-    last_displacement_m: float | None = fact("control displacement of the last event", "m")
+    last_load_N: float | None = fact("load of the last event in equilibrium", "N")
+    last_displacement_m: float | None = fact("control displacement of that event", "m")
     energy_residual_ratio: float = fact("error of the energy ledger over the work of the loads")
-    external_work_J: float | None = fact("work of all loads", "J")
-    stored_energy_J: float | None = fact("elastic energy at the end", "J")
-    dissipated_energy_J: float | None = fact("energy dissipated along the straight way between events", "J")
-    crack_energy_J: float = fact("area of the teeth passed", "J")
+    external_work_J: float | None = fact(
+        "work of all loads up to that event, along the straight way from event to event", "J"
+    )
+    stored_energy_J: float | None = fact("elastic energy at that event", "J")
+    dissipated_energy_J: float | None = fact(
+        "energy dissipated up to that event, from state to state; never negative, and never falls", "J"
+    )
+    crack_energy_J: float = fact("area of all teeth passed, in the planes of elements", "J")
     residual_ratio: float | None = fact("greatest residual of the equations that was measured; null where none was")
     guard_checks: int = fact("times that the residual was measured on the way")
     guard_resolutions: int = fact("times that the equations were solved again for it")
@@ -145,15 +152,21 @@ class Sla(SlaCurve, KindResults):
     )
     measured: Comparison = maybe("the measured curve of the deck beside the first sense's")
     scatter: Scatter = maybe("repetitions with other seeds")
+    stones: bool = fact("whether it is of stones with joints, whose peak acceleration is a static limit load")
     hinges: list[str] = maybe("of stones: joints that are open but for an edge at the peak")
 
     def judged(self, demand: Demand) -> Verdict:
         """The lesser peak of the two senses: an acceleration [g], or a load [N] that the deck does not ask for."""
         curves = [c for c in (self, self.minus) if c is not None]
         if any(c.greatest_load_N is None for c in curves):
-            return judge(f"No greatest load was found; the run ended by: {self.stop}.", None, None, "N")
+            text = f"No state with a load was found; the run ended by: {self.stop}."
+            return judge(text, None, None, "N", "open" if self.stones and demand.peak_g is not None else None)
         least = min(curves, key=lambda c: c.greatest_load_N or 0.0)
         reached, load = least.greatest_acceleration_g, f"{(least.greatest_load_N or 0.0) / 1e3:.4g} kN"
+        if reached is not None and not self.stones:
+            peaks = least.peak_load_N is not None
+            text = f"The wall {'carries' if peaks else 'has carried, without a peak,'} {load} ({abs(reached):.3g} g times its masses)."
+            return capacity_alone(text, abs(reached), "g", None if peaks else "lower")
         if any(c.peak_load_N is None for c in curves):
             text = f"The load has reached {load} without a peak; what the building bears is not known"
             if reached is None or demand.peak_g is None:

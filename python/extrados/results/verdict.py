@@ -120,6 +120,17 @@ def judge(
     )  # fmt: skip
 
 
+def capacity_alone(
+    carried: str, capacity: float, unit: str, bound: Bound | None = None, violated: Sequence[str] = ()
+) -> Verdict:
+    """A base shear that a structure carries which vibrates and yields: no verdict follows from the peak ground acceleration."""
+    text = (
+        f"{carried} This is a capacity without a verdict: the structure amplifies the motion and yields, so that the peak ground "
+        "acceleration is no demand on it. A displacement demand by the response spectrum would give a verdict."
+    )
+    return judge(text, None, capacity, unit, "not-applicable", bound, violated)
+
+
 def judge_acceleration(
     capacity: float, demand: Demand, bound: Bound | None = None, violated: Sequence[str] = ()
 ) -> Verdict:  # fmt: skip

@@ -94,10 +94,18 @@ def conclusion(
     none = [row.label for row in rows if row.status != "ok"]
     if none:
         said.append(f"No answer from {_list(none)}.")
-    idle = [row.label for row in rows if row.status == "ok" and row.outcome == "not-applicable"]
-    if idle:
-        said.append(f"No verdict from {_list(idle)}.")
+    idle = [row for row in rows if row.status == "ok" and row.outcome == "not-applicable"]
+    if silent := [row.label for row in idle if row.capacity is None]:
+        said.append(f"No verdict from {_list(silent)}.")
+    if able := [f"{row.label} {_capacity(row)}" for row in idle if row.capacity is not None]:
+        said.append(f"Capacity without a verdict: {_list(able)}.")
     return overall, " ".join(s for s in said if s)
+
+
+def _capacity(row: StrategyVerdict) -> str:
+    bound = {"upper": "at most ", "lower": "at least "}.get(row.bound or "", "")
+    value, unit = (row.capacity or 0.0, row.unit)
+    return f"{bound}{value / 1e3:.3g} kN" if unit == "N" else f"{bound}{value:.3g} {unit}"
 
 
 def _count(words: list[str]) -> str:

@@ -56,6 +56,13 @@ class ShellModel:
     rate: np.ndarray = field(default_factory=lambda: np.empty(0))  # and goes on to with the multiplier, in a stage [m]
     warnings: list[str] = field(default_factory=list)
 
+    dimensions = 3
+
+    @property
+    def extent(self) -> float:
+        """Greatest extent of the building [m]."""
+        return float(np.ptp(self.mesh.xyz, axis=0).max())
+
     @property
     def driven(self) -> bool:
         """Whether the multiplier moves supports."""

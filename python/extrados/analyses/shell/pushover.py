@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
@@ -13,11 +13,12 @@ from extrados.analyses.shell.frame import capacities
 from extrados.analyses.shell.model import ShellModel, build, first_mode
 from extrados.analyses.shell.needs import pier_strength
 from extrados.analyses.shell.sections import Section, cracks, drifts, place_axes, point_places, sections
+from extrados.analyses.shell.sliding import sliding_limits
 from extrados.analyses.shell.stages import run_stages
 from extrados.analyses.shell.tables import Pushover, Variant
 from extrados.analyses.sla.events import Curve, run_curves
 from extrados.analyses.sla.kept import State
-from extrados.analyses.sla.measures import numbers_of
+from extrados.analyses.sla.measures import numbers_of, out_of_reach
 from extrados.analyses.sla.stored import events_of_curve
 from extrados.building.building import Building
 from extrados.building.templates.plan import Plan
@@ -49,6 +50,8 @@ def _run(context: Context, options: Pushover) -> Result:
     if not any(g.tension is not None for g in model.groups if isinstance(g, Shells | ShellJoints)):
         context.warnings.append("nothing of it can crack: [material] has no tensile_strength, or no fracture_energy")
     elastic = _elastic(model, options)
+    if model.mesh.walls and not sliding_limits(model, context.building, options, elastic["under"]):
+        context.warnings.append("sliding of the building on its levels is not checked: [joints] friction excludes it")
     numbers: dict[str, Any] = {}
     if options.stages:
         curves, numbers = _stages(context, result, model, options, elastic)
@@ -113,7 +116,7 @@ def _stages(
             context, own, options.model_copy(update={"probes": [] if prefix else options.probes}), curve, elastic
         )
         _describe(result, own, curve, prefix)
-        held = curve.force(own.unit)[curve.events.equilibrium]
+        held = curve.force(own.unit)[curve.held]
         rows.append(
             found
             | {
@@ -195,8 +198,18 @@ def _numbers(
     state = shown_state(model, curve)
     force = curve.force(model.unit)
     greatest = numbers["greatest_load_N"]
+    limits = sliding_limits(model, context.building, options, elastic["under"])
+    least = min(limits, key=lambda row: (round(row.base_shear_N / model.weight, 9), row.height_m), default=None)
+    capacity = greatest
+    if least is not None:
+        capacity = None if greatest is None else min(greatest, least.base_shear_N)
+        numbers |= {
+            "sliding_capacity_N": least.base_shear_N, "sliding_level": least.level,
+            "sliding": [asdict(row) | {"base_shear_N": row.base_shear_N} for row in limits],
+        }  # fmt: skip
     numbers |= {
-        "base_shear_coefficient": None if greatest is None or model.driven else greatest / model.weight, "roof_drift": None,
+        "capacity_N": None if model.driven else capacity,
+        "base_shear_coefficient": None if capacity is None or model.driven else capacity / model.weight, "roof_drift": None,
         "storey_drifts": [], "walls": [], "cracked_points_by_storey": [],
     }  # fmt: skip
     crack = _first_crack(model, curve)
@@ -259,7 +272,7 @@ def _gave_way(row: dict[str, Any]) -> str:
 
 def _joints(model: ShellModel, curve: Curve, state: State) -> list[dict[str, Any]]:
     """How far each joint has come apart in a state, and in the last one that is in equilibrium."""
-    last = next((s for s in reversed(curve.states) if curve.events.equilibrium[s.event]), state)
+    last = next((s for s in reversed(curve.states) if curve.held[s.event]), state)
     rows, force = [], curve.force(model.unit)
     for joint, points in model.joints():
         hits = np.flatnonzero((curve.events.point >= points.start) & (curve.events.point < points.stop))
@@ -317,14 +330,15 @@ def _place_of(model: ShellModel, point: int) -> dict[str, Any] | None:
 
 def _remarks(model: ShellModel, curve: Curve) -> list[str]:
     events, sense = curve.events, f" (stage {curve.name})" if curve.name else f" (push to {curve.sense})"
+    said = [far] if (far := out_of_reach(curve)) else []
     if model.driven or (curve.name and events.reason == "target load"):
-        return []  # a stage that ends where it is told to
+        return said  # a stage that ends where it is told to
     if curve.peak >= 0 and not events.interrupted and not curve.passed(model.unit):
-        return [
+        said.append(
             f"the base shear{sense} had not passed a peak when the run ended by: {events.reason or 'number of events'}; "
             f"its greatest value, {curve.force(model.unit)[curve.peak]:.4g} N, is no capacity"
-        ]
-    return []
+        )
+    return said
 
 
 def _frame(
@@ -563,11 +577,16 @@ def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any
     )
     if load is None:
         return f"{sense}: no state in equilibrium was found."
-    bears = "bears" if curve["peak_load_N"] is not None else "has reached, without a peak,"
-    text = (
-        f"{sense} the {word} {bears} a base shear of {load / 1e3:.4g} kN, "
-        f"{curve['base_shear_coefficient']:.3g} of its weight of {numbers['weight_N'] / 1e3:.4g} kN"
-    )
+    bears = "carries" if curve["peak_load_N"] is not None else "has reached, without a peak,"
+    part = f"{curve['base_shear_coefficient']:.3g} of its weight of {numbers['weight_N'] / 1e3:.4g} kN"
+    slides = curve["capacity_N"] < load
+    if slides:
+        text = (
+            f"{sense} the {word} carries a base shear of at most {curve['capacity_N'] / 1e3:.4g} kN, {part}: it then slides "
+            f"on {curve['sliding_level']} by Coulomb's limit. Without that sliding the model {bears} {load / 1e3:.4g} kN"
+        )
+    else:
+        text = f"{sense} the {word} {bears} a base shear of {load / 1e3:.4g} kN, {part}"
     if curve["roof_drift"] is not None:
         text += f", at a drift of {100 * curve['roof_drift']:.2g} %"
     if "first_crack" in curve:

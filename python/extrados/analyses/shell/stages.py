@@ -10,7 +10,7 @@ from extrados.analyses.batches import Chain
 from extrados.analyses.context import Refused
 from extrados.analyses.shell.model import ShellModel, how_far, mass_push
 from extrados.analyses.shell.tables import Pushover, PushStage
-from extrados.analyses.sla.events import Curve, bring_on_constant_loads, run_reference_loads
+from extrados.analyses.sla.events import NOTHING_DONE, Curve, bring_on_constant_loads, run_reference_loads
 from extrados.core import sla as core
 
 NOWHERE = np.empty(0)
@@ -37,7 +37,7 @@ def run_stages(
             curve.name = options.stage_names[0]
             return [(model, curve)]
         applied, moved, damage = model.constant, model.settled.copy(), core_model.damage()
-        ledger, events = (0.0, 0.0, 0.0), 0
+        ledger, events = NOTHING_DONE, 0
         if stage_a is not None and len(stage_a):
             ledger, events = stage_a.ledger, int(stage_a.number[-1])
         pushed: list[tuple[np.ndarray, float]] = []  # the load of each push, and its multiplier
@@ -67,8 +67,10 @@ def run_stages(
                 # A mechanism by the compliance of the building as it was: a stage may begin with little of it left
                 softer = _softness(core_model, staged.reference, start) / sound[_direction(options, stage)]
                 stop = replace(stop, compliance=max(model.mechanism_ratio / softer, 1.0))
-            curve = run_reference_loads(core_model, staged, own, 1, told, False, chain([k, damage, moved]), stop)
-            curve.name, curve.before, curve.damage_start, curve.unit = name, before, damage, staged.unit
+            curve = run_reference_loads(
+                core_model, staged, own, 1, before, told, False, chain([k, damage, moved]), stop
+            )
+            curve.name, curve.damage_start = name, damage
             curve.acceleration = staged.acceleration
             curve.sign = -1 if stage.sense == "-" else 1  # its displacements have it already
             if not found:

@@ -1,14 +1,26 @@
-"""What an event curve says: envelope, peak, bilinear idealisation."""
+"""What an event curve says: which events are states, envelope, peak, bilinear idealisation."""
 
 from dataclasses import dataclass
 
 import numpy as np
+
+from extrados.core import lists
+from extrados.core import sla as core
 
 #: Displacements at which an envelope is given, and at most as many points: with the peak and the start
 BINS = 400
 MOST_ENVELOPE = BINS + 2
 #: A peak was passed where the last tenth of the envelope's way lies this much below it
 LAST, FALLEN = 0.1, 0.02
+#: Displacements are taken as small: part of the structure's greatest extent beyond which an event is no state
+FAR = 0.1
+#: Times the peak load beyond which an event is no state
+FAR_ABOVE = 10.0
+#: Of the way to the peak: so much further a load must stay below a fraction of the peak to have fallen below it; what lies
+#: this much behind the furthest state is no part of the envelope (fortran/sla/events.f90 has the same)
+FURTHER = 0.1
+#: How a run ends whose load fell below `stop_fraction` of its peak, and one whose displacements are no longer small
+FELL, TOO_FAR = (core.STOPS[lists.number("sla_stop", name)] for name in ("fraction", "far"))
 
 
 @dataclass(frozen=True)
@@ -27,22 +39,64 @@ class Bilinear:
         return self.ultimate_displacement / self.yield_displacement
 
 
+def states(
+    equilibrium: np.ndarray,
+    load: np.ndarray,
+    way: np.ndarray,
+    compliance: np.ndarray,
+    most_way: float,
+    most_compliance: float,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Which events are states of the structure, and which lie out of reach (both (events), bool).
+
+    A state is in equilibrium (bool) on a structure that is no mechanism (compliance <= most_compliance), has gone no
+    further than displacements that are small (way <= most_way [m]), and carries at most FAR_ABOVE times the peak load
+    of the states, to either sense. Out of reach is what exceeds a bound on the way or the load, in equilibrium or not:
+    results count it, figures do not draw it.
+    """
+    near = way <= most_way
+    found = equilibrium & near & (compliance <= most_compliance)
+    most = FAR_ABOVE * float(load[found].max(initial=0.0)) if found.any() else np.inf
+    below = np.abs(load) <= (most if most > 0.0 else np.inf)
+    return found & below, ~(near & below)
+
+
+def has_fallen(displacement: np.ndarray, load: np.ndarray, start: float, fraction: float) -> bool:
+    """Has the load fallen below a fraction of its peak: does it stay below it over a further tenth of the way to the peak?
+
+    As the event loop judges at each state (fortran/sla/events.f90).
+    """
+    peak = int(load.argmax())
+    way = float(np.copysign(1.0, displacement[peak] - start)) * (displacement - start)
+    last = int(np.flatnonzero(load >= fraction * load[peak])[-1])  # not below it
+    ahead = np.append(0.0, np.maximum.accumulate(np.maximum(way, 0.0)))[:-1]
+    below = np.flatnonzero(way[last + 1 :] > ahead[last + 1 :]) + last + 1
+    return bool(len(below) and way[-1] >= way[below[0]] + FURTHER * abs(way[peak]))
+
+
 def envelope(
     displacement: np.ndarray, load: np.ndarray, start: float = 0.0, bins: int = BINS
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Monotone envelope of the polyline through (start, 0) and the equilibrium points: at each of `bins`
-    displacements the greatest load on it. Displacements count positive in the sense they have, from the start, at
-    the peak; `start` is the displacement of the constant loads alone.
+    """Monotone envelope of the polyline through (start, 0) and states: at each of `bins` displacements the greatest load on
+    it. What comes back after the peak, by more than FURTHER of the way to the peak, has no part in it.
+
+    Displacements count positive in the sense they have, from the start, at the peak; states of the other sense, of the
+    displacement or of the load, have no part either. `start` is the displacement of the constant loads alone.
     """
-    if not len(load):
+    if not len(load) or not load.max() > 0.0:
         return np.full(1, start), np.zeros(1)
     turn = float(np.copysign(1.0, displacement[load.argmax()] - start))
-    d = np.append(0.0, turn * (displacement - start))
-    p = np.append(0.0, load)
+    along = turn * (displacement - start)
+    same = (along >= 0.0) & (load >= 0.0)
+    d = np.append(0.0, along[same])
+    p = np.append(0.0, load[same])
     if not d.max() > 0.0:
         return np.full(1, turn * start), np.zeros(1)
+    peak = int(p.argmax())
+    behind = np.maximum.accumulate(d)[:-1] - FURTHER * d[peak]
+    behind[:peak] = -np.inf
     # The peak and the end must be on the envelope, whatever the bins
-    grid = np.union1d(np.linspace(0.0, d.max(), bins + 1), np.maximum(d[p.argmax()], 0.0))
+    grid = np.union1d(np.linspace(0.0, d.max(), bins + 1), d[peak])
     best = np.full(len(grid), -np.inf)
     low, high = np.minimum(d[:-1], d[1:]), np.maximum(d[:-1], d[1:])
     first, last = np.searchsorted(grid, low, "left"), np.searchsorted(grid, high, "right")
@@ -51,7 +105,8 @@ def envelope(
     at = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + np.repeat(first, count)
     span = d[segment + 1] - d[segment]
     share = np.where(span != 0.0, (grid[at] - d[segment]) / np.where(span != 0.0, span, 1.0), 0.0)
-    np.maximum.at(best, at, p[segment] + share * (p[segment + 1] - p[segment]))
+    value = np.where(grid[at] >= behind[segment], p[segment] + share * (p[segment + 1] - p[segment]), -np.inf)
+    np.maximum.at(best, at, value)
     kept = np.isfinite(best)
     return grid[kept] + turn * start, best[kept]
 

@@ -7,10 +7,12 @@ import numpy as np
 
 from extrados.analyses.batches import Chain
 from extrados.analyses.context import Context
+from extrados.analyses.limit.common import loads_of
 from extrados.analyses.sla.bar_forces import bar_arrays
+from extrados.analyses.sla.contact import NotCarried
 from extrados.analyses.sla.events import Curve, run_curves
 from extrados.analyses.sla.measured import arrays, compare, read_measured
-from extrados.analyses.sla.measures import far_away, joint_openings, numbers_of, tooth_counts
+from extrados.analyses.sla.measures import joint_openings, numbers_of, out_of_reach, tooth_counts
 from extrados.analyses.sla.model import SlaModel, build, strength_factors
 from extrados.analyses.sla.repetitions import repeat
 from extrados.analyses.sla.resume import carry_on, makeup, start_of
@@ -18,7 +20,11 @@ from extrados.analyses.sla.stages import run_stages
 from extrados.analyses.sla.stored import curve_arrays, field_files, mesh_arrays, sections
 from extrados.analyses.sla.tables import Sla
 from extrados.analyses.sla.words import answer_of_stones, answer_of_wall
+from extrados.building.building import Building
 from extrados.core.calls import interruptible
+from extrados.limit.answer import cannot_stand
+from extrados.limit.equilibrium import Disconnected
+from extrados.limit.programme import LimitAnalysis, NoAnswer
 from extrados.results import sla as out
 from extrados.results.model import Result
 from extrados.results.sla import PREFIXES
@@ -52,18 +58,26 @@ def _run(context: Context, options: Sla) -> Result:
         mesh_of = [model.mesh.xy, [group.connect for group in model.mesh.groups], model.constant, model.reference]
         return Chain(context, "sla", [options, of, damage, model.freedoms, *mesh_of])
 
+    stones = context.building.meshed_by_stones
+    try:
+        if options.stages:
+            curves = run_stages(model, options, context.threads, context.progress, chain)
+        else:
+            curves = run_curves(model, options, context.threads, context.progress, damage, chain)
+    except NotCarried:
+        if options.constant is None and stones:
+            certify(context.building)
+        raise
     if options.stages:
-        curves = run_stages(model, options, context.threads, context.progress, chain)
         main = curves[min(options.main, len(curves) - 1)]
         model = replace(model, unit=main.unit, acceleration=main.acceleration)
-        numbers = _describe(result, model, options, [main])
+        numbers = _describe(result, model, options, [main], stones)
         numbers["stages"] = _stages(result, model, options, curves, main)
     else:
-        curves = run_curves(model, options, context.threads, context.progress, damage, chain)
         main = curves[0]
         for curve in curves:
             carry_on(curve, earlier, model.unit)
-        numbers = _describe(result, model, options, curves)
+        numbers = _describe(result, model, options, curves, stones)
     if measured is not None:
         numbers["measured"] = compare(measured, *main.envelope(model.unit))
         result.arrays |= arrays(measured)
@@ -74,6 +88,17 @@ def _run(context: Context, options: Sla) -> Result:
         again = "; --resume goes on from them" if context.checkpoint is not None else ""
         result.status, result.reason = "interrupted", f"interrupted; the events up to then are kept{again}"
     return result
+
+
+def certify(building: Building) -> None:
+    """CannotStand where limit analysis of the same blocks holds a certificate that they collapse under their weight."""
+    assembly = building.blocks()
+    try:
+        limit = LimitAnalysis(assembly, building.friction(), loads=loads_of(assembly, None, building))
+        if not limit.stands():
+            raise cannot_stand(limit)
+    except (NoAnswer, Disconnected):
+        return
 
 
 def _stages(result: Result, model: SlaModel, options: Sla, curves: list[Curve], main: Curve) -> list[dict[str, Any]]:
@@ -107,7 +132,7 @@ def _stages(result: Result, model: SlaModel, options: Sla, curves: list[Curve], 
     return found
 
 
-def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]) -> dict[str, Any]:
+def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve], stones: bool) -> dict[str, Any]:
     """Arrays, tables, files and words of all curves into `result`; their numbers."""
     first = curves[0]
     numbers = {
@@ -120,6 +145,7 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
         "equations": first.equations,
         "points": first.points,
         "makeup": makeup(model),
+        "stones": stones,
     }
     for curve in curves[1:]:
         numbers["minus"] = numbers_of(model, options, curve)
@@ -131,7 +157,7 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
                 f"the load{sense} had not passed a peak when the run ended by: {events.reason or 'number of events'}; its "
                 f"greatest value, {curve.force(model.unit)[curve.peak]:.4g} N, is no capacity"
             )
-        if far := far_away(model, curve):
+        if far := out_of_reach(curve):
             result.warnings.append(far)
         if len(events) and events.load[0] < 0.0 and not curve.name:
             result.warnings.append(

@@ -12,8 +12,8 @@ import numpy as np
 
 from extrados.analyses.batches import Chain
 from extrados.analyses.context import Refused
-from extrados.analyses.sla.contact import settle
-from extrados.analyses.sla.curve import envelope, fallen
+from extrados.analyses.sla.contact import NotCarried, settle
+from extrados.analyses.sla.curve import FALLEN, FAR, FELL, TOO_FAR, envelope, fallen, states
 from extrados.analyses.sla.incremental import run_incremental
 from extrados.analyses.sla.kept import State, UnderWay
 from extrados.analyses.sla.model import MECHANISM, MECHANISM_OF_STONES, SlaModel
@@ -32,9 +32,10 @@ GRID = 100
 #: Events beyond the peak's number among which its load is looked for, where it comes in another order
 MORE = 30
 NOTHING = np.zeros(0)
+NOTHING_DONE = (0.0, 0.0, 0.0)  # of the energies of a ledger
 STRAINS_AND_STRESSES = core.REPORT[:6]
-#: How a run ends whose load fell below `stop_fraction` of its peak, further on than there
-FELL = core.STOPS[next(entry.number for entry in lists.entries("sla_stop") if entry.name == "fraction")]
+#: How a run ends in which the load can grow for ever
+UNBOUNDED, MECHANISM_REACHED = (core.STOPS[lists.number("sla_stop", name)] for name in ("unbounded", "mechanism"))
 
 
 @dataclass
@@ -54,13 +55,17 @@ class Curve:
     events_before: int = 0  # of the runs that this one goes on from
     before: float = 0.0  # control displacement of the constant loads alone, in the sense of the load [m]
     most_compliance: float = np.inf  # beyond it only the floor of the stiffness carries
-    stones: bool = False  # of joints that open without teeth
     name: str = ""  # of a stage
-    unit: float = 0.0  # resultant of the reference load of a stage [N]
+    unit: float = 1.0  # resultant of the reference load [N]
+    extent: float = np.inf  # greatest extent of the structure [m]
+    releases: bool = False  # events between states are on the way of forces that are released
     acceleration: float | None = None  # of the reference load of a stage
     already: float = 0.0  # load in the direction of the reference load that was on before [N]
     driven: bool = False  # the multiplier is a displacement of supports, the load their force
     residual: float | None = None  # measured at the end; None where the end is a mechanism without displacements
+    last_line: tuple[float, float] | None = (
+        None  # control displacement [m] after the last event: constant, per multiplier
+    )
 
     @property
     def sense(self) -> str:
@@ -71,34 +76,84 @@ class Curve:
         """The load of each event [N]."""
         return self.events.pull if self.driven else self.already + self.events.load * unit
 
+    @property
+    def judged(self) -> tuple[np.ndarray, np.ndarray]:
+        """Which events are states, and which lie out of reach (curve.states)."""
+        e = self.events
+        way = np.abs(e.monitors[:, 0] - self.before)
+        return states(e.equilibrium, self.force(self.unit), way, e.compliance, FAR * self.extent, self.most_compliance)
+
+    @property
+    def state(self) -> np.ndarray:
+        """Which events are states of the structure: all that is read off a curve rests on these."""
+        return self.judged[0]
+
+    @property
+    def dissipated(self) -> np.ndarray:
+        """Energy dissipated up to each event [J], a sum of parts none of which is negative.
+
+        From one state to the next it is what the work of the loads does not store. Through events that are no states that
+        way is not gone: the area of the teeth that pass counts, and out of reach nothing does.
+        """
+        e = self.events
+        if not len(e):
+            return np.zeros(0)
+        state, out = self.judged
+        known = state | self.releases
+        teeth = np.where(out[:-1], 0.0, np.diff(e.crack))
+        steps = np.where(known[1:] & known[:-1], np.maximum(np.diff(e.lost), 0.0), teeth)
+        return np.cumsum(np.append(max(float(e.lost[0]), float(e.crack[0])), steps))
+
     def envelope(self, unit: float) -> tuple[np.ndarray, np.ndarray]:
         """Displacements [m] and loads [N] of the envelope; it begins at the constant loads' displacement."""
-        fine = self.events.equilibrium & (self.events.compliance <= self.most_compliance)
+        fine = self.state
         d, p = envelope(self.events.monitors[fine, 0], self.force(unit)[fine] - self.already, self.before)
         return d, p + self.already
 
     @property
     def peak(self) -> int:
-        """The event of the greatest load in equilibrium, passed or not; -1 where there is none."""
-        carried = self.events.equilibrium & (self.events.compliance <= self.most_compliance)
-        load = np.where(carried, self.force(1.0), -np.inf)
+        """The event of the greatest load of a state, passed or not; -1 where there is none."""
+        load = np.where(self.state, self.force(self.unit), -np.inf)
         return int(load.argmax()) if len(load) and np.isfinite(load.max()) else -1
 
+    @property
+    def held(self) -> np.ndarray:
+        """Events in equilibrium within reach: the states, and those on the way of a mechanism that begins."""
+        return self.events.equilibrium & ~self.judged[1]
+
+    @property
+    def last(self) -> int:
+        """The last event in equilibrium within reach; -1 where there is none."""
+        found = np.flatnonzero(self.held)
+        return int(found[-1]) if len(found) else -1
+
     def passed(self, unit: float) -> bool:
-        """Was the greatest load a peak: did the load fall after it, or the wall become a mechanism under it?"""
+        """Was the greatest load a peak: did the load fall after it, or the structure become a mechanism under it?"""
         if self.peak < 0 or (self.name and not self.force(unit)[self.peak] > 0.0):
             return False  # a stage may begin under a load of the opposite sense and never leave it
-        ended = ("mechanism", FELL, "no point limits the load") if self.stones else ("mechanism", FELL)
-        if self.events.reason in ended:
+        if self.events.reason in ("mechanism", FELL) or self.flat():
             return True
         return fallen(*self.envelope(unit))
+
+    def flat(self) -> bool:
+        """Is the structure a mechanism at the end, by its stiffness: does the load grow by no more than FALLEN within small
+        displacements, or is less than 1 / MECHANISM of the stiffness at the start left?"""
+        if self.last_line is None or self.driven or self.peak < 0:
+            return False
+        constant, slope = self.last_line
+        if not abs(slope) > 0.0:
+            return False
+        ends = [(side * FAR * self.extent + self.before - constant) / slope for side in (1.0, -1.0)]
+        peak = float(self.force(self.unit)[self.peak])
+        softer = abs(slope) * self.unit / float(self.events.compliance[0])
+        return softer > MECHANISM or self.already + max(ends) * self.unit <= (1.0 + FALLEN) * peak
 
     def leads_on(self, left: list[str]) -> bool:
         """Does this stage end in a state from which another can go on? If not, a warning names those that are `left`."""
         events = self.events
         if events.interrupted:
             return False
-        if len(events) and events.equilibrium[-1] and events.reason != "mechanism":
+        if len(events) and self.state[-1] and events.reason != "mechanism":
             return True
         if left:
             self.warnings.append(
@@ -148,7 +203,7 @@ def run_curves(
         else:
             stage_a, rubs = bring_on_constant_loads(core_model, model, options, progress, warnings, chain and chain(0))
         start = core_model.damage()
-        ledger, events = _totals(stage_a)
+        ledger, events = stage_a.ledger if stage_a is not None else NOTHING_DONE, _count(stage_a)
         for number, sense in enumerate(options.directions):
             sign = 1 if sense == "+" else -1
             if number or stage_a is not None:  # a new factor: a run that is resumed here has one too
@@ -160,17 +215,17 @@ def run_curves(
             watch = model.control
             before = sign * float(watch.share @ core_model.displacement(0.0)[watch.node, watch.direction])
             if options.solution == "incremental":
-                curve = _incremental_stage(core_model, model, options, sign, progress)
+                curve = _incremental_stage(core_model, model, options, sign, progress, before)
             else:
                 curve = run_reference_loads(
-                    core_model, model, options, sign, progress,
+                    core_model, model, options, sign, before, progress,
                     bool(stage_a is None and damage is None and not rubs), chain and chain(sign),
                     core.Stop(
                         displacement=np.inf if options.target_displacement is None else options.target_displacement,
                         fraction=options.stop_fraction or -1.0, compliance=model.mechanism_ratio,
                     ),
                 )  # fmt: skip
-            curve.stage_a, curve.before = stage_a, before
+            curve.stage_a = stage_a
             curve.damage_start = start
             curve.warnings += warnings if not number else []
             curves.append(curve)
@@ -186,10 +241,8 @@ def _settled(core_model: core.Model, model: SlaModel, growing: bool = False) -> 
         core_model.supports(*((still, model.settled) if growing else (model.settled, still)))
 
 
-def _totals(stage: core.Events | None) -> tuple[tuple[float, float, float], int]:
-    if stage is None or not len(stage):
-        return (0.0, 0.0, 0.0), 0
-    return (float(stage.external[-1]), float(stage.dissipated[-1]), float(stage.crack[-1])), int(stage.number[-1])
+def _count(stage: core.Events | None) -> int:
+    return int(stage.number[-1]) if stage is not None and len(stage) else 0
 
 
 def bring_on_constant_loads(
@@ -203,7 +256,32 @@ def bring_on_constant_loads(
     """The constant loads are on: which dry joints touch and slide, and the events until then, None where there are none.
 
     True where joints can slide: their friction was found under the whole of A and does not hold under a part of it.
+    NotCarried where they lead to a mechanism, or further than displacements that are small.
     """
+    found, rubs = _bring_on(core_model, model, options, progress, warnings, chain)
+    if np.any(model.constant) and not (found is not None and found.interrupted):
+        _settled(core_model, model)
+        core_model.loads(model.constant, np.zeros_like(model.constant))
+        far = float(np.abs(core_model.displacement(0.0)[:, : model.dimensions]).max())
+        if not far <= FAR * model.extent:
+            raise NotCarried(
+                f"the constant loads are not carried: under them the structure would move by {far:.3g} m, more than a tenth "
+                f"of its size of {model.extent:.3g} m: it is a mechanism, which only the stiffness left in open joints and "
+                "cracks holds",
+                WHOLE,
+            )
+    return found, rubs
+
+
+def _bring_on(
+    core_model: core.Model,
+    model: SlaModel,
+    options: Sla,
+    progress: Callable[[float, float, str], None],
+    warnings: list[str],
+    chain: Chain | None,
+) -> tuple[core.Events | None, bool]:
+    """As bring_on_constant_loads, without asking where they lead."""
     kept = None if chain is None or chain.state is None else chain.state[1]
     if kept is None:
         rubs = settle(core_model, model, options, warnings)
@@ -257,7 +335,7 @@ def _constant_stage(
     if events.reason != "target load" and not events.interrupted:
         most = float(events.load.max()) if len(events) else 0.0
         why = events.reason or f"{way.done} events were not enough"
-        raise Refused(
+        raise NotCarried(
             f"the constant loads are not carried: with damage the wall reaches {100 * most:.3g} % of them ({why})",
             WHOLE,
         )
@@ -269,6 +347,7 @@ def run_reference_loads(
     model: SlaModel,
     options: Sla,
     sign: int,
+    before: float,
     progress: Callable[[float, float, str], None],
     fresh: bool,
     chain: Chain | None,
@@ -276,17 +355,18 @@ def run_reference_loads(
 ) -> Curve:
     """Events under A + lambda B until `stop`; states at the wanted events, at the peak and at the end.
 
-    fresh: A was not brought on with damage before; it must be carried.
+    before: control displacement of A alone [m], in the sense of the load. fresh: A was not brought on with damage before;
+    it must be carried.
     """
     begin = time.perf_counter()
-    stop = replace(stop, refuse_overload=fresh and bool(np.any(model.constant)))
+    stop = replace(stop, refuse_overload=fresh and bool(np.any(model.constant)), far=FAR * model.extent)
     wanted = sorted({e - 1 for e in options.states if 1 <= e <= options.events})
     way = UnderWay((core_model.damage(), 0))
     if chain is not None and chain.state is not None:
         kept = chain.state[1]
         way = UnderWay.of(kept)
         core_model.renew(kept["damage"], kept["standing"])
-    before, begun = way.seconds, way.done
+    spent_before, begun = way.seconds, way.done
     variant = options.without_equilibrium
     release = variant == "force-release"
     floor = MECHANISM_OF_STONES if model.mesh.has_joints else MECHANISM
@@ -300,7 +380,7 @@ def run_reference_loads(
             except core.FreeNode:
                 way.parts[-1].reason = "mechanism"
                 break
-            way.seconds = before + time.perf_counter() - begin
+            way.seconds = spent_before + time.perf_counter() - begin
             if chain is not None:
                 chain.keep(done, way.arrays(damage, standing))
         if done % GRID == 0:
@@ -327,9 +407,10 @@ def run_reference_loads(
         way.parts.append(part)
         if len(part):
             most = np.inf if model.driven else floor * way.parts[0].compliance[0]
-            load = np.where(
-                part.equilibrium & (part.compliance <= most), part.pull if model.driven else part.load, -np.inf
-            )
+            moved = np.abs(part.monitors[:, 0] - sign * before)
+            load = part.pull if model.driven else part.load
+            found, _ = states(part.equilibrium, load, moved, part.compliance, FAR * model.extent, most)
+            load = np.where(found, load, -np.inf)
             if part.reason == "mechanism" and model.mesh.has_joints:
                 load[-1] = -np.inf  # on the way of the mechanism
             if load.max() > way.best:
@@ -342,7 +423,7 @@ def run_reference_loads(
         if part.reason or part.interrupted or not len(part):
             break
         batch = int(np.clip(len(part) * BATCH_SECONDS / max(spent, 1e-3), 10, GRID))
-    events, states = core.Events.join(way.parts), way.states
+    events, kept_states = core.Events.join(way.parts), way.states
     events.monitors[:, 0] *= sign  # positive in the sense of the load
     collapsed = events.reason == "mechanism" and events.compliance[-1] > model.mechanism_ratio * events.compliance[0]
     if events.reason == "mechanism" and len(events) and model.driven:
@@ -351,18 +432,29 @@ def run_reference_loads(
         # Found on the way of the mechanism, which carries no more than the event before: it shows how the stones move
         events.equilibrium[-1] = False
     damage_end = core_model.damage()
-    curve = Curve(events, None, states, NOTHING, damage_end, 0.0, sign, [], core_model.equations, core_model.points)
-    curve.stones, curve.already, curve.driven = model.mesh.has_joints, model.already, model.driven
+    curve = Curve(
+        events, None, kept_states, NOTHING, damage_end, 0.0, sign, [], core_model.equations, core_model.points
+    )
+    curve.already, curve.driven, curve.releases = model.already, model.driven, release
+    curve.before, curve.unit, curve.extent = before, model.unit, model.extent
     if len(events) and not model.driven:
         curve.most_compliance = floor * float(events.compliance[0])
+    if events.reason in (TOO_FAR, UNBOUNDED):
+        watch, ends = model.control, [core_model.displacement(load) for load in (0.0, 1.0)]
+        constant, one = (sign * float(watch.share @ u[watch.node, watch.direction]) for u in ends)
+        curve.last_line = (constant, one - constant)
+        if events.reason == TOO_FAR and curve.flat():
+            events.reason = MECHANISM_REACHED
+            if model.mesh.has_joints:
+                events.equilibrium[-1] = False  # as below
     if len(events):
         # A mechanism found while its event is applied leaves the displacements of the event before
         if events.reason != "mechanism" or (collapsed and not model.mesh.has_joints):
             curve.residual = core_model.residual()
-        if not (done - 1 in wanted and states):
-            states.append(_state(core_model, len(events) - 1, events))
+        if not (done - 1 in wanted and kept_states):
+            kept_states.append(_state(core_model, len(events) - 1, events))
         peak = curve.peak
-        if peak >= 0 and peak not in {s.event for s in states} and not (events.interrupted or release):
+        if peak >= 0 and peak not in {s.event for s in kept_states} and not (events.interrupted or release):
             try:
                 state = _replay(core_model, model, sign, events, peak, way.before_best, variant)
             except Cancelled:
@@ -371,9 +463,9 @@ def run_reference_loads(
                 if state is None:
                     curve.warnings.append("the state at the peak could not be reproduced from the batch before it")
                 else:
-                    states.append(state)
-        states.sort(key=lambda s: s.event)
-    curve.seconds = before + time.perf_counter() - begin
+                    kept_states.append(state)
+        kept_states.sort(key=lambda s: s.event)
+    curve.seconds = spent_before + time.perf_counter() - begin
     return curve
 
 
@@ -383,19 +475,22 @@ def _incremental_stage(
     options: Sla,
     sign: int,
     progress: Callable[[float, float, str], None],
+    before: float,
 ) -> Curve:
     """The same loads by the incremental peer; its last state is kept."""
     begin = time.perf_counter()
     events = run_incremental(core_model, model, options, sign, progress)
     events.monitors *= sign
-    states = [_state(core_model, len(events) - 1, events)] if len(events) else []
+    kept_states = [_state(core_model, len(events) - 1, events)] if len(events) else []
     curve = Curve(
-        events, None, states, NOTHING, core_model.damage(), time.perf_counter() - begin, sign, [],
-        core_model.equations, core_model.points, stones=model.mesh.has_joints,
+        events, None, kept_states, NOTHING, core_model.damage(), time.perf_counter() - begin, sign, [],
+        core_model.equations, core_model.points, before=before, unit=model.unit, extent=model.extent,
     )  # fmt: skip
     if len(events):
         curve.residual = core_model.residual()
-        curve.most_compliance = (MECHANISM_OF_STONES if curve.stones else MECHANISM) * float(events.compliance[0])
+        curve.most_compliance = (MECHANISM_OF_STONES if model.mesh.has_joints else MECHANISM) * float(
+            events.compliance[0]
+        )
     return curve
 
 

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from extrados.analyses.sla.curve import FAR, FELL, TOO_FAR, has_fallen
 from extrados.analyses.sla.model import SlaModel
 from extrados.analyses.sla.tables import Sla
 from extrados.core import sla as core
@@ -28,13 +29,14 @@ STALLED = "no convergence"
 
 @dataclass(frozen=True)
 class Step:
-    """A converged state: displacements (nodes, 2) of A and of B [m], multiplier, damage."""
+    """A converged state: displacements (nodes, 2) of A and of B [m], multiplier, damage, energy of cracks."""
 
     ua: np.ndarray
     ub: np.ndarray
     load: float
     damage: np.ndarray
     iterations: int
+    cracked: float  # energy of the teeth passed [J]
 
     @property
     def u(self) -> np.ndarray:
@@ -68,14 +70,14 @@ def run_incremental(
     first = core_model.run_whole(1, watch)
     ua = core_model.displacement(0.0)
     ub = core_model.displacement(1.0) - ua
-    step = Step(ua, ub, 0.0, core_model.damage(), 0)
+    step = Step(ua, ub, 0.0, core_model.damage(), 0, float(first.crack_total))
     way, length = ub * float(first.load[0]), FIRST * abs(float(first.load[0])) * float(np.linalg.norm(ub))
-    longest, compliance, peak = 4.0 * length, float((fb * ub).sum()), 0.0
+    longest, compliance = 4.0 * length, float((fb * ub).sum())
     rows: list[tuple[float, ...]] = []
     external = 0.5 * float((fa * ua).sum())
-    reason, cracked = "", float(first.crack_total)
+    reason, start = "", float(watch.share @ ua[watch.node, watch.direction])
     while len(rows) < options.events and not reason and not cancel_requested():
-        found, energy = _step(core_model, fa, fb, step, way, length)
+        found = _step(core_model, fa, fb, step, way, length)
         if found is None:
             length = 0.5 * length
             if length < SHORTEST * longest:
@@ -86,52 +88,51 @@ def run_incremental(
         stored = 0.5 * float(((fa + found.load * fb) * found.u).sum())
         if found.iterations <= FEW:
             length = min(1.3 * length, longest)
-        step, cracked = found, energy if energy is not None else cracked
+        step = found
         moved = float(watch.share @ step.u[watch.node, watch.direction])
         soft = float((fb * step.ub).sum())
-        rows.append((step.load, stored, external, external - stored, cracked, soft, moved))
-        peak = max(peak, step.load)
+        rows.append((step.load, stored, external, external - stored, step.cracked, soft, moved))
         progress(len(rows), options.events, f"step {len(rows)}, load {step.load * model.unit:.4g} N")
-        if abs(moved) >= target:
+        if abs(moved - start) > FAR * model.extent:
+            reason = TOO_FAR
+        elif abs(moved) >= target:
             reason = "target displacement"
         elif soft > model.mechanism_ratio * compliance:
             reason = "mechanism"
-        elif options.stop_fraction and step.load < options.stop_fraction * peak:
-            reason = "load fell below the fraction of its peak"
+        elif options.stop_fraction and has_fallen(*np.array(rows)[:, [-1, 0]].T, start, options.stop_fraction):
+            reason = FELL
     return _events(rows, reason, cancel_requested())
 
 
 def _step(
     core_model: core.Model, fa: np.ndarray, fb: np.ndarray, last: Step, way: np.ndarray, length: float
-) -> tuple[Step | None, float | None]:
-    """The state `length` on from the last one, and the crack energy of the model; None where the iteration fails,
-    which leaves the model in the last state."""
-    ua, ub = last.ua, last.ub
-    energy = None
+) -> Step | None:
+    """The state `length` on from the last one; None where the iteration fails, which leaves the model in the last state."""
+    ua, ub, cracked = last.ua, last.ub, last.cracked
     try:
         for iteration in range(MOST_ITERATIONS):
             load = multiplier(ua, ub, last.u, way, length)
             if load is None:
                 break
-            damaged, energy = core_model.relax(load)
+            damaged, cracked = core_model.relax(load)
             if not damaged:
-                return Step(ua, ub, load, core_model.damage(), iteration), energy
+                return Step(ua, ub, load, core_model.damage(), iteration, cracked)
             ua = core_model.displacement(0.0)
             ub = core_model.displacement(1.0) - ua
     except core.FreeNode:
         pass
     core_model.set_damage(last.damage)
-    core_model.loads(fa, fb, carried=True)
-    return None, None
+    core_model.loads(fa, fb, carried=True, ledger=(0.0, 0.0, last.cracked))
+    return None
 
 
 def _events(rows: list[tuple[float, ...]], reason: str, interrupted: bool) -> core.Events:
     """Steps as the rows of an event curve: no point, no limits, all in equilibrium."""
-    load, stored, external, dissipated, crack, soft, moved = np.array(rows).reshape(-1, 7).T
+    load, stored, external, lost, crack, soft, moved = np.array(rows).reshape(-1, 7).T
     n = len(load)
     none = np.full(n, np.finfo(float).max)
     return core.Events(
-        load, none, -none, stored, external, dissipated, crack, soft, np.zeros(n), np.ones(n), np.zeros(n),
+        load, none, -none, stored, external, lost, crack, soft, np.zeros(n), np.ones(n), np.zeros(n),
         point=np.full(n, -1), code=np.zeros(n, dtype=int), number=np.arange(1, n + 1), equilibrium=np.ones(n, dtype=bool),
         monitors=moved[:, None], reason=reason, interrupted=interrupted, crack_total=float(crack[-1]) if n else 0.0,
     )  # fmt: skip

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.sla.bar_forces import bar_rows
-from extrados.analyses.sla.curve import bilinear
-from extrados.analyses.sla.events import Curve
+from extrados.analyses.sla.curve import FAR, FAR_ABOVE, bilinear
+from extrados.analyses.sla.events import MECHANISM_REACHED, Curve
 from extrados.analyses.sla.model import SlaModel
 from extrados.analyses.sla.stored import point_fields, points_of_groups
 from extrados.analyses.sla.tables import Sla
@@ -14,10 +14,6 @@ from extrados.core.sla import EVENT, teeth
 from extrados.results.model import Result, TableData
 from extrados.schema.constants import GRAVITY
 
-#: Displacements are taken as small: beyond this part of the building's greatest extent no load is told without a word
-FAR = 0.1
-#: Part of the greatest load whose displacement is told beside it
-NEARLY = 0.99
 #: Open part of a joint from which it counts as a hinge, and the part of the widest opening that it must have
 HINGE, WIDE = 0.9, 0.1
 
@@ -25,6 +21,7 @@ HINGE, WIDE = 0.9, 0.1
 def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
     """Results of one curve; keys end in their unit."""
     events, greatest, unit = curve.events, curve.peak, model.unit
+    last = curve.last
     peak = greatest if curve.passed(unit) else -1
     load = curve.force(unit)
     lost = np.flatnonzero(~events.equilibrium)
@@ -52,12 +49,13 @@ def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
         "damaged_points": len(np.unique(events.point[kinds("tension", "tension_s")])),
         "closings": int(kinds("close", "close_s").sum()),
         "crushing_events": int(kinds("compression", "compression_s").sum()),
-        "last_load_N": float(load[-1]) if len(events) else None,
-        "last_displacement_m": float(events.monitors[-1, 0]) if len(events) else None,
+        "events_out_of_reach": int(curve.judged[1].sum()),
+        "last_load_N": float(load[last]) if last >= 0 else None,
+        "last_displacement_m": float(events.monitors[last, 0]) if last >= 0 else None,
         "energy_residual_ratio": events.ledger_error,
-        "external_work_J": float(events.external[-1]) if len(events) else None,
-        "stored_energy_J": float(events.stored[-1]) if len(events) else None,
-        "dissipated_energy_J": float(events.dissipated[-1]) if len(events) else None,
+        "external_work_J": float(events.external[last]) if last >= 0 else None,
+        "stored_energy_J": float(events.stored[last]) if last >= 0 else None,
+        "dissipated_energy_J": float(curve.dissipated[last]) if last >= 0 else None,
         "crack_energy_J": events.crack_total,
         "residual_ratio": _residual(curve),
         "guard_checks": events.guard[0],
@@ -84,26 +82,16 @@ def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
     return numbers
 
 
-def far_away(model: SlaModel, curve: Curve) -> str | None:
-    """A warning where the greatest load comes with a displacement that small displacements do not cover.
-
-    Mechanisms of stones tend to a load that they reach in the end only, and a wall that nothing crushes bears ever more.
-    """
-    if curve.peak < 0 or not curve.force(model.unit)[curve.peak] > 0.0:
-        return None
-    load, moved = curve.force(model.unit), curve.events.monitors[:, 0]
-    size = float(np.ptp(model.mesh.xy, axis=0).max())
-    if not abs(moved[curve.peak] - curve.before) > FAR * size:
-        return None
-    carried = curve.events.equilibrium & (curve.events.compliance <= curve.most_compliance)
-    nearly = int(np.argmax(carried & (load >= NEARLY * load[curve.peak])))
-    text = (
-        f"the greatest load comes with a displacement of {moved[curve.peak]:.3g} m in a building of {size:.3g} m, and "
-        "displacements are taken as small: it is what the load tends to"
+def out_of_reach(curve: Curve) -> str | None:
+    """A warning where events are no states because they lie beyond small displacements or far above the peak load."""
+    out = curve.judged[1]
+    count = int(out.sum())
+    if not count or (count == 1 and out[-1] and curve.events.reason == MECHANISM_REACHED):
+        return None  # the way of a mechanism, which the run ends with
+    return (
+        f"{count} of {len(curve.events)} events lie beyond a displacement of {FAR * curve.extent:.3g} m (a tenth of the structure's "
+        f"size), or beyond {FAR_ABOVE:g} times the greatest load: they are no states, and no result rests on them"
     )
-    if abs(moved[nearly] - curve.before) > FAR * size:
-        return f"{text} where no strength limits it, and no capacity"
-    return f"{text}; {100.0 * NEARLY:.0f} % of it come at {1e3 * moved[nearly]:.3g} mm"
 
 
 def _acceleration(model: SlaModel, peak: float | None, greatest: float | None) -> dict[str, float | None]:

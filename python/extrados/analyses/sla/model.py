@@ -52,6 +52,13 @@ class SlaModel:
     )  # supports that go down with A, as of a building [m]
     bars: list[NamedBar] = field(default_factory=list)
 
+    dimensions = 2
+
+    @property
+    def extent(self) -> float:
+        """Greatest extent of the structure [m]."""
+        return float(np.ptp(self.mesh.xy, axis=0).max())
+
     @property
     def driven(self) -> bool:
         """True where supports move with the multiplier, which then is a displacement [m]."""

@@ -19,7 +19,7 @@ from extrados.results.store import Stored, StoreError, read
 from extrados.schema.files import BadFile, locate
 
 RESUME = ("analysis", "resume_from")  # the key of the deck
-LEDGER = ("external", "dissipated", "crack")
+LEDGER = ("external", "lost", "crack")
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from extrados.analyses.batches import Chain
-from extrados.analyses.sla.events import Curve, bring_on_constant_loads, run_reference_loads
+from extrados.analyses.sla.events import NOTHING_DONE, Curve, bring_on_constant_loads, run_reference_loads
 from extrados.analyses.sla.model import AXES, SlaModel, acceleration_of, control_of, nodal_forces, refusal, resultant
 from extrados.analyses.sla.tables import Hold, Sla, Stage
 from extrados.building.errors import BadGeometry
@@ -117,7 +117,7 @@ def run_stages(
             return [curve]
         core_model.loads(model.constant, np.zeros_like(model.constant), carried=True)
         wall = Wall(
-            core_model.displacement(0.0), model.constant, core_model.damage(), (0.0, 0.0, 0.0), 0,
+            core_model.displacement(0.0), model.constant, core_model.damage(), NOTHING_DONE, 0,
             supports.held.copy(), [],
         )  # fmt: skip
         if stage_a is not None and len(stage_a):
@@ -145,9 +145,9 @@ def run_stages(
             watch = staged.control
             before = float(watch.share @ start[watch.node, watch.direction])
             curve = run_reference_loads(
-                core_model, staged, own, 1, told, False, chain and chain([k, wall.damage]), stop
+                core_model, staged, own, 1, before, told, False, chain and chain([k, wall.damage]), stop
             )
-            curve.name, curve.before, curve.damage_start, curve.unit = name, before, wall.damage, staged.unit
+            curve.name, curve.damage_start = name, wall.damage
             curve.acceleration = staged.acceleration
             if not curves:
                 curve.stage_a = stage_a

@@ -52,8 +52,14 @@ def events_of_curve(result: Result, unit: float, curve: Curve, prefix: str) -> N
         "limit_t": (limits[0], "N", "least upper limit of the load"),
         "limit_c": (limits[1], "N", "greatest lower limit of the load"),
         "stored": (e.stored, "J", "elastic energy"),
-        "external": (e.external, "J", "work of all loads"),
-        "dissipated": (e.dissipated, "J", "dissipated along the straight way between events"),
+        "external": (e.external, "J", "work of all loads along the straight way between events"),
+        "lost": (
+            e.lost,
+            "J",
+            "work along that way that is not stored; what lies between events without equilibrium is no "
+            "state, so that it may fall",
+        ),
+        "dissipated": (curve.dissipated, "J", "energy dissipated from state to state; never falls"),
         "crack": (e.crack, "J", "area of the teeth passed"),
         "scale": (e.scale, "", "part of all loads that is on, below 1 where they went down together"),
     }
@@ -63,6 +69,10 @@ def events_of_curve(result: Result, unit: float, curve: Curve, prefix: str) -> N
     result.arrays[f"{prefix}event_code"] = Array(e.code, dim, "", "kind of event: " + ", ".join(
         f"{k} {v}" for k, v in EVENTS.items()))  # fmt: skip
     result.arrays[f"{prefix}event_equilibrium"] = Array(e.equilibrium.astype(np.int8), dim, "", "1 in equilibrium")
+    state, out = curve.judged
+    result.arrays[f"{prefix}event_state"] = Array(
+        np.where(out, -1, state).astype(np.int8), dim, "", "1 a state of the structure, -1 out of reach, 0 neither"
+    )
     if not prefix:
         for name in ("damage_start", "damage_end"):
             result.arrays[name] = Array(
@@ -76,9 +86,9 @@ def events_of_curve(result: Result, unit: float, curve: Curve, prefix: str) -> N
     result.tables[name] = TableData(
         {
             "event": np.arange(1, len(e) + 1), "load": curve.force(unit), "displacement": e.monitors[:, 0],
-            "equilibrium": e.equilibrium.astype(int), "point": e.point + 1,
+            "equilibrium": e.equilibrium.astype(int), "state": np.where(out, -1, state).astype(int), "point": e.point + 1,
             "kind": [EVENTS.get(int(c), "end" if p >= 0 else "step") for c, p in zip(e.code, e.point, strict=True)],
-            "external": e.external, "stored": e.stored, "dissipated": e.dissipated,
+            "external": e.external, "stored": e.stored, "dissipated": curve.dissipated,
         },
         {"load": "N", "displacement": "m", "external": "J", "stored": "J", "dissipated": "J"},
     )  # fmt: skip
