@@ -15,6 +15,7 @@ from extrados.analyses.run import run_analyses
 from extrados.analyses.statistics.annual import rates
 from extrados.analyses.statistics.cloud import fit_cloud
 from extrados.analyses.statistics.uncertain import Sample
+from extrados.building.rockers.arch import minimum_thickness
 from extrados.core import rocking
 from extrados.decks.reader import DeckError, make_deck
 from extrados.motions.from_deck import generated_set
@@ -311,7 +312,7 @@ def _sampled_thickness(count: int, mean: float, scatter: float, seed: int) -> np
 def test_buildings_of_the_sample_that_cannot_stand_count_as_collapsed() -> None:
     thin = {**ARCH, "thickness": 0.13, "embrace": 180.0, "thickness_factor": 1.0}
     result = run({"count": 16, "uncertain": {"thickness": 0.2}, "seed": 1}, thin)
-    least = 0.1075  # t/R of a semicircle that stands
+    least = minimum_thickness(180.0, 13)
     fallen = sum(t < least for t in _sampled_thickness(16, 0.13, 0.2, 1))
     assert result.status == "ok" and result.results["failed"] == 0 and 0 < fallen < 16
     assert result.results["collapsed"] >= fallen
