@@ -126,11 +126,15 @@ def alike(told: str, one: Answer, other: Answer, within: float) -> None:
     same(told, one, other)
     a, b = _flat(one.numbers), _flat(other.numbers)
     must(set(a) == set(b), f"{told}: other results: {sorted(set(a) ^ set(b))}")
+    scale: dict[str, float] = {}  # of all numbers of one unit: one of them may be what is left of a sum
+    for name, value in a.items():
+        if isinstance(value, float):
+            scale[name.rpartition("_")[2]] = max(abs(value), scale.get(name.rpartition("_")[2], 1e-6))
     for name, value in a.items():
         if any(word in name for word in ("gap", "residual", "joint", "hinge", "iterations", "touching", "steps", "factor_bytes", "opening_contacts", "fastest", "sliding")):
             continue
         if isinstance(value, float) and isinstance(b[name], float | int):
-            near(f"{told}: {name}", value, b[name], within, 1e-6)
+            near(f"{told}: {name}", value, b[name], within, scale[name.rpartition("_")[2]])
 
 
 def _flat(there: Any, name: str = "") -> dict[str, Any]:
@@ -500,7 +504,7 @@ def one_thread_or_two(deck: Deck, motion: Deck, within: float) -> None:
 
 FOREIGN = st.sampled_from([
     ("joints", "damping_ratio", 0.3), ("material", "poisson", 0.3), ("joints", "restitution", 0.7),
-    ("material", "fracture_energy", 60.0), ("joints", "normal_stiffness", 1e9), ("joints", "cohesion", 1e5),
+("joints", "normal_stiffness", 1e9), ("joints", "cohesion", 1e5),
     ("joints", "tension", 1e5), ("material", "young", 5e9), ("initial", "rotation_ratio", 0.4), ("joints", "shear_ratio", 0.4),
 ])  # fmt: skip
 
@@ -726,7 +730,7 @@ def equilibrium_at_collapse(deck: Deck, within: float) -> None:
     at_most("gap of the bounds", r.duality_gap, 1e-6, 0.0)
     for gamma, stands in ((0.98 * r.collapse_acceleration_g, True), (1.02 * r.collapse_acceleration_g + 1e-3, False)):
         there = ask(deck, "thrust", gamma=gamma)
-        must((there.status == "ok") == stands, f"a thrust line at {gamma} g of {r.collapse_acceleration_g}: {there.status} {there.said}")
+        must((there.outcome == "stands") == stands, f"a thrust line at {gamma} g of {r.collapse_acceleration_g}: {there.outcome}")
 
 
 @relation("tilt", decks("block", "column", "brickwork", "arch", "stack", "frame"), 1e-4)
@@ -809,7 +813,7 @@ STANDING: dict[str, dict[str, Any]] = {
     "stones with joints": {"kind": "sla", "events": 30},
 }  # fmt: skip
 WEAK = {"kind": "sine-pulse", "amplitude": "0.02 g", "period": 0.3}
-WEAK_SET = {"kind": "generated", "mmi": 2, "duration": 1.0, "lines": 5}
+WEAK_SET = {"kind": "generated", "mmi": 4, "duration": 1.0, "lines": 5}
 
 
 @st.composite
@@ -976,7 +980,7 @@ def energies(deck: Deck, motion: Deck, within: float) -> None:
     for told, keys in (("rigid contacts", RIGID), ("springs", {"joints": {"normal_stiffness": 1e8}})):
         r = ask(moving, "dem", end_time=1.0, **keys)
         if r.status == "ok":
-            scale = max(r.results.peak_kinetic_energy_J, 1e-3)
+            scale = max(r.results.peak_kinetic_energy_J, 1.0)
             at_most(f"{told}: friction", 0.0, r.results.friction_loss_J, within, scale)
             at_most(f"{told}: damping", 0.0, r.results.damping_loss_J, within, scale)
             at_most(f"{told}: residual", r.results.energy_residual_ratio, 0.02, 0.0)
@@ -1018,9 +1022,10 @@ def dry_stones_by_elements(deck: Deck, within: float) -> None:
 
 
 @relation("rocking dem", st.tuples(RECTANGLES, number(0.3, 0.8), number(0.3, 0.8)), 0.03, share=0.5)
-def rocking_by_two_strategies(width: float, height: float, ratio: float, period: float, within: float) -> None:
+def rocking_by_two_strategies(size: tuple, ratio: float, period: float, within: float) -> None:
     """A block under one sine by its equation of motion and by rigid contacts."""
-    amplitude = min(1.5 + ratio, 3.0) * width / height
+    width, height = size
+    amplitude = (1.5 + ratio) * width / height
     deck = {"structure": {"kind": "block", "width": width, "height": height}, "joints": {"friction": "no-sliding"},
             "motion": {"kind": "sine-pulse", "amplitude": f"{amplitude:.4g} g", "period": period}}  # fmt: skip
     one = ask(deck, "rocking")
@@ -1082,7 +1087,7 @@ def hinges_elsewhere(deck: Deck, ratio: float, period: float, within: float) -> 
 
 
 @relation("rocking", st.tuples(number(0.5, 1.5), number(4.0, 6.0), number(0.8, 1.3), number(1.5, 2.5)), 0.0, awaits="A7", examples=(
-    (1.0, 5.0, 1.0, 2.0),
+    (1.15, 4.62, 1.165, 1.725),
 ))  # fmt: skip
 def chaos_is_told(width: float, slenderness: float, amplitude: float, frequency: float, within: float) -> None:
     """Where amplitudes 1e-5 g apart end otherwise, every such run says that last digits decide."""
@@ -1097,9 +1102,7 @@ def chaos_is_told(width: float, slenderness: float, amplitude: float, frequency:
         must(silent == 0, f"{silent} of {len(runs)} say nothing of it: {[r.results.outcome for r in runs]}")
 
 
-@relation("dem", st.tuples(decks("block", "column"), st.sampled_from([0.0, 0.01])), 0.0, awaits="A6", examples=(
-    ({"structure": {"kind": "column", "width": 1.0, "height": 3.0, "drums": 3}, "joints": {"friction": 0.7}}, 0.0),
-))  # fmt: skip
+@relation("dem", st.tuples(decks("block", "column"), st.sampled_from([0.0, 0.01])), 0.0)
 def little_damping(deck: Deck, ratio: float, within: float) -> None:
     """A wall that stands is looked at with springs that are not damped too."""
     moving = changed(deck, motion=WEAK, joints={"normal_stiffness": 1e9, "damping_ratio": ratio})
