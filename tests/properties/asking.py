@@ -1,7 +1,6 @@
 """Ask one strategy about one deck, in process, without files and figures; what was answered is kept."""
 
 import json
-import re
 from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,14 +11,12 @@ import numpy as np
 
 import extrados
 from extrados.results.model import Result
-from extrados.results.verdict import KindResults, Verdict
+from extrados.results.verdict import KindResults, SelfWeight, Verdict
 
 Deck = dict[str, Any]
 
 #: How many answers are kept: relations ask several things of one building
 MOST = 400
-#: How a proof that a building cannot stand is worded
-CANNOT = re.compile(r"cannot stand|does not stand|cannot carry its")
 _KEPT: "OrderedDict[str, Answer]" = OrderedDict()
 
 
@@ -37,6 +34,11 @@ class Answer:
     def status(self) -> str:
         """ok, refused or failed."""
         return self.result.status
+
+    @property
+    def answers(self) -> bool:
+        """Whether it has results of its kind, not a proof of collapse under self-weight in their place."""
+        return self.status == "ok" and not isinstance(self.results, SelfWeight)
 
     @property
     def said(self) -> str:
@@ -61,9 +63,7 @@ class Answer:
     @property
     def outcome(self) -> str:
         """Outcome of the verdict: stands, collapses, cannot-stand, open, not-applicable; else refused or failed."""
-        if self.verdict is not None:
-            return {"falls": "collapses", "none": "not-applicable"}.get(self.verdict.outcome, self.verdict.outcome)
-        return "cannot-stand" if self.status == "refused" and CANNOT.search(self.said) else self.status
+        return self.status if self.verdict is None else self.verdict.outcome
 
     @property
     def numbers(self) -> dict[str, Any]:

@@ -163,7 +163,9 @@ def legs(draw: st.DrawFn) -> Deck:
         "legs": [{"length": float(f"{unit * draw(st.integers(2, 3)):.5g}")}],
     }  # fmt: skip
     if draw(st.booleans()):
-        deck["legs"].append({"length": float(f"{unit * draw(st.integers(2, 3)):.5g}"), "turn": draw(st.sampled_from(["left", "right"]))})
+        deck["legs"].append(
+            {"length": float(f"{unit * draw(st.integers(2, 3)):.5g}"), "turn": draw(st.sampled_from(["left", "right"]))}
+        )
     return deck
 
 
@@ -408,7 +410,10 @@ def cut(deck: Deck, number: int, share: float) -> Deck:
     if not convex(points) or min(len(left), len(right)) < 3:
         return made
     blocks.remove(block)
-    blocks += [{**block, "name": f"{block['name']} {side}", "points": part.tolist()} for side, part in (("left", left), ("right", right))]
+    blocks += [
+        {**block, "name": f"{block['name']} {side}", "points": part.tolist()}
+        for side, part in (("left", left), ("right", right))
+    ]
     return made
 
 
@@ -443,7 +448,9 @@ def shaken(deck: Deck, deviation: float, seed: int) -> Deck:
     strays: dict[tuple, np.ndarray] = {}
 
     def stray(points: np.ndarray) -> np.ndarray:
-        return np.array([p + strays.setdefault(tuple(np.round(p, 9)), rng.uniform(-1, 1, 2) * deviation) for p in points])
+        return np.array(
+            [p + strays.setdefault(tuple(np.round(p, 9)), rng.uniform(-1, 1, 2) * deviation) for p in points]
+        )
 
     made = copy.deepcopy(deck)
     for block in made["structure"]["block"]:
