@@ -6,9 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
-from trials import count_of
 
 from extrados.analyses.assess import strategies
 from extrados.analyses.assess.asking import row_of, scaled_margin
@@ -22,6 +21,7 @@ from extrados.results.model import Result
 from extrados.results.statistics import Ensemble, OverLevels
 from extrados.results.verdict import KindResults, Verdict, judge
 from extrados.running.survey import Assessed
+from trials import count_of
 
 QUICK = settings(
     max_examples=count_of(2000, 60),
@@ -29,6 +29,7 @@ QUICK = settings(
     deadline=None,
     derandomize=True,
     suppress_health_check=list(HealthCheck),
+    phases=(Phase.generate, Phase.shrink),
 )
 OUTCOMES = ("stands", "collapses", "cannot-stand", "open", "not-applicable")
 BOUNDS = st.sampled_from([None, "exact", "upper", "lower"])

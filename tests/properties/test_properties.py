@@ -21,10 +21,10 @@ from buildings import KINDS
 from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis.errors import UnsatisfiedAssumption
 from relations import RELATIONS, Relation
-from trials import NOTES, SHARE, count_of
 
 import extrados
 from extrados import kinds
+from trials import NOTES, SHARE, count_of
 
 #: Buildings that a whole run asks at least, and each relation of share 1; in the quick suite, those of a costly relation none
 WHOLE, EACH, QUICK = 2000, 48, 2
