@@ -1497,3 +1497,216 @@ def a_mesh_of_another_scale(deck: Deck, within: float) -> None:
     same("scaled", *found)
     ok(*found)
     near("stiffness", found[0].results.initial_stiffness_N_m, found[1].results.initial_stiffness_N_m, within)
+
+
+@relation("local-mechanism tilt", decks("block", "column", "brickwork", "arch", "pointed-arch", "frame"), 1e-4)
+def codes_take_the_least_multiplier(deck: Deck, within: float) -> None:
+    """alpha_0 of the whole section is its collapse acceleration, to the weaker side; a_0* and M* follow from it and e*."""
+    codes = ask(deck, "local-mechanism", mechanism="building", confidence_factor=1.0)
+    limit = ask(deck, "tilt")
+    ok(codes, limit)
+    r = codes.results
+    near("alpha_0", r.multiplier, limit.capacity.min(), within)
+    near("a_0*", r.activation_acceleration_g * r.participating_part, r.multiplier, within)
+    near("M*", r.participating_mass_kg * GRAVITY, r.participating_part * r.swaying_weight_N, within)
+    if r.zero_displacement_m is not None:
+        near("d_SLV", r.ultimate_displacement_m, 0.4 * r.zero_displacement_m, within)
+        near("d_SLC", r.collapse_displacement_m, 0.6 * r.zero_displacement_m, within)
+
+
+@relation("failure-curves failure-domain", st.tuples(decks("block", "arch"), number(0.3, 1.0)), 5e-3)
+def curves_and_domains(deck: Deck, period: float, within: float) -> None:
+    """A failure curve is the lower edge of the failure domain."""
+    durations = [period, 1.5 * period]
+    domain = ask(deck, "failure-domain", pulse="sine", durations=durations, amplitudes=10, accuracy=1e-3)
+    curves = ask(deck, "failure-curves", pulse="sine", durations=durations, amplitudes=10, accuracy=1e-3)
+    ok(domain, curves)
+    pairs = zip(domain.results.mode_I.amplitudes_g, curves.results.curves[0].amplitudes_g, strict=True)
+    for one, other in pairs:
+        must((one is None) == (other is None), f"{one} g of the domain, {other} g of the curve")
+        if one is not None:
+            near("amplitude", one, other, within, 0.3)
+    near("uplift", domain.results.uplift_acceleration_g, curves.results.curves[0].uplift_acceleration_g, 1e-9)
+
+
+@relation("harmonic-map rocking", st.tuples(decks("block"), number(0.5, 2.0)), 0.0)
+def maps_and_single_runs(deck: Deck, frequency: float, within: float) -> None:
+    """What a map says of a frequency is what single runs at its amplitudes do."""
+    keys = {"frequencies": [frequency], "amplitudes": 6, "cycles": 2}
+    found = ask(deck, "harmonic-map", **keys)
+    ok(found)
+    if (least := found.results.lowest_overturning_amplitude_g[0]) is None:
+        reject()
+    motion = {"kind": "harmonic", "amplitude": f"{least!r} g", "frequency": frequency, "duration": 2.0 / frequency}
+    one = ask(changed(deck, motion=motion), "rocking")
+    ok(one)
+    must(
+        one.results.outcome == "collapse" or one.results.decided_by_last_digits, f"at {least} g: {one.results.outcome}"
+    )
+
+
+@relation("rocking", st.tuples(RECTANGLES, number(0.1, 0.9)), 1e-5)
+def free_rocking(size: tuple, ratio: float, within: float) -> None:
+    """A slender block let go falls back in acosh(1/(1 - r))/p, and loses 1 - c^2 of its energy (Housner 1963)."""
+    width, height = size
+    deck = {"structure": {"kind": "block", "width": width, "height": height}, "joints": {"friction": 2.0},
+            "initial": {"rotation_ratio": ratio}, "motion": {"kind": "constant", "amplitude": "0 g"}}  # fmt: skip
+    answer = ask(deck, "rocking", form="linear")
+    ok(answer)
+    r = answer.results
+    near("first impact", r.impact_times_s[0], math.acosh(1.0 / (1.0 - ratio)) / r.frequency_parameter_rad_s, within)
+    near("peak", abs(r.peak_rotation_ratio), ratio, within)
+    gaps = np.diff(r.impact_times_s[:2])
+    after = math.sqrt(1.0 - r.restitution**2 * (1.0 - (1.0 - ratio) ** 2))
+    near("half cycle", gaps[0], 2.0 * math.acosh(1.0 / after) / r.frequency_parameter_rad_s, within)
+
+
+@relation("rocking", st.tuples(RECTANGLES, st.sampled_from(["winkler", "two-spring"])), 0.02)
+def a_stiff_base(size: tuple, foundation: str, within: float) -> None:
+    """A very stiff base is a rigid one; a softer one bears less."""
+    width, height = size
+    deck = {"structure": {"kind": "block", "width": width, "height": height}, "joints": {"friction": 2.0},
+            "motion": {"kind": "sine-pulse", "amplitude": "0.05 g", "period": 0.5}}  # fmt: skip
+    capacity = []
+    for stiffness in (1e9, 1e13):
+        answer = ask(
+            changed(deck, supports={"stiffness": stiffness, "foundation": foundation}), "rocking", end_time=0.02
+        )
+        ok(answer)
+        capacity.append(answer.results.soft_base.capacity_g)
+    near("stiff", capacity[1], width / height, within)
+    at_most("soft", capacity[0], capacity[1], 1e-6)
+
+
+@relation("dem", st.tuples(decks("block", "column"), pulses(0.1, 0.5)), 0.05, share=0.3)
+def elements_in_space_and_in_the_plane(deck: Deck, motion: Deck, within: float) -> None:
+    """A body that moves in a plane does so in space too."""
+    keys = {"end_time": 0.5, "time_step": 0.001, **RIGID}
+    moving = changed(deck, motion=motion, joints={"friction": 0.9})
+    plane, space = ask(moving, "dem", **keys), ask(moving, "dem", direction=0.0, **keys)
+    ok(plane, space)
+    near("peak displacement", plane.results.peak_displacement_m, space.results.peak_displacement_m, within, 0.02)
+    near("peak kinetic energy", plane.results.peak_kinetic_energy_J, space.results.peak_kinetic_energy_J, within, 2.0)
+
+
+@relation("motion", st.tuples(pulses(), number(0.2, 3.0)), 1e-6)
+def measures_in_proportion(motion: Deck, factor: float, within: float) -> None:
+    """Twice the motion has twice the peaks and four times the Arias intensity; turned around it has the same."""
+    with tempfile.TemporaryDirectory() as name:
+        time = np.arange(0.0, 4.0, 0.01)
+        wave = float(motion["amplitude"].split()[0]) * np.sin(2.0 * np.pi * time / motion["period"]) * np.exp(-time)
+        record = recorded(Path(name), 0.01, wave)
+        one, other, back = (ask({"motion": {**record, "scale": f}}, "motion", Path(name)) for f in (1.0, factor, -1.0))
+    ok(one, other, back)
+    for key, power in (("pga_g", 1), ("pgv_m_s", 1), ("arias_m_s", 2)):
+        near(key, getattr(one.results, key) * factor**power, getattr(other.results, key), within)
+        near(key, getattr(one.results, key), getattr(back.results, key), within)
+    near("PGA", one.results.pga_g, np.abs(wave).max(), within)
+    near("Arias", one.results.arias_m_s, np.pi / 2.0 * GRAVITY * np.trapezoid(wave**2, dx=0.01), 2e-3)
+
+
+PIERS = st.tuples(number(0.8, 3.0), number(2.0, 4.0), number(0.2, 0.6), number(1e4, 3e5), number(0.5, 3.0))
+
+
+@relation("code-checks", PIERS, 1e-6)
+def strengths_of_piers_in_proportion(
+    width: float, height: float, thickness: float, load: float, factor: float, within: float
+) -> None:
+    """Forces and strengths times f give capacities times f; so does the thickness with the force."""
+    strengths = {"compressive_strength": 4e6, "tensile_strength": 1e5, "fracture_energy": 50.0, "density": 0.0}
+
+    def pier(thick: float, f: float, force: float) -> Answer:
+        material = {k: v * f for k, v in strengths.items()}
+        return ask(
+            {"structure": {"kind": "panel", "width": width, "height": height, "thickness": thick}, "material": material,
+             "joints": {"cohesion": 1e5 * f, "friction": 0.4}},
+            "code-checks", axial_load=force,
+        )  # fmt: skip
+
+    one, other, thick = (
+        pier(thickness, 1.0, load),
+        pier(thickness, factor, load * factor),
+        pier(thickness * factor, 1.0, load * factor),
+    )
+    ok(one, other, thick)
+    for name, check in one.results.checks.items():
+        if check.unit == "N":
+            near(name, check.capacity * factor, thick.results.checks[name].capacity, within, 1.0)
+            if "ASCE" not in check.code and "psi" not in check.source:
+                near(name, check.capacity * factor, other.results.checks[name].capacity, 0.05, 1.0)
+
+
+@relation("supports", st.tuples(decks("arch", "pointed-arch", "elliptical-arch"), SCALES), 1e-3)
+def spreading_supports_of_another_size(deck: Deck, factor: float, within: float) -> None:
+    """The movement at which an arch falls is a length."""
+    one, other = ask(deck, "supports", steps=50), ask(scaled(deck, factor), "supports", steps=50)
+    same("scaled", one, other)
+    ok(one, other)
+    a, b = one.results.movement_at_fall_m, other.results.movement_at_fall_m
+    must((a is None) == (b is None), f"{a} against {b}")
+    if a is not None:
+        near("movement", a * factor, b, within)
+        near("over the span", one.results.movement_at_fall_over_span, other.results.movement_at_fall_over_span, within)
+
+
+@relation("moving-load", decks("arch", "pointed-arch", "elliptical-arch"), 1e-4)
+def a_load_from_either_side(deck: Deck, within: float) -> None:
+    """On a symmetrical arch a load is as bad at either quarter, and worst at the place that is named."""
+    places = [ask(deck, "moving-load", places=[x]) for x in _quarters(deck)]
+    ok(*places)
+    near("mirrored", places[0].results.collapse_load_N, places[1].results.collapse_load_N, within)
+    whole = ask(deck, "moving-load", count=9)
+    ok(whole)
+    there = ask(deck, "moving-load", places=[whole.results.worst_place_m])
+    ok(there)
+    near("worst place", there.results.collapse_load_N, whole.results.collapse_load_N, within)
+    near("per metre", whole.results.collapse_load_kN_per_m * 1e3, whole.results.collapse_load_N, within)
+
+
+def _quarters(deck: Deck) -> list[float]:
+    """Two places that mirror each other, of an arch about its middle [m]."""
+    points = np.concatenate([b["points"] for b in drawn(deck)["structure"]["block"]])
+    left, right = points[:, 0].min(), points[:, 0].max()
+    return [float(left + share * (right - left)) for share in (0.3, 0.7)]
+
+
+@relation("tilt", sections("block", "column", "brickwork", "blocks"), 1e-6, awaits="A11", examples=(SLIDES,))
+def layers_that_are_switched_off(deck: Deck, within: float) -> None:
+    """A drawing's frozen layers, layers that are off, and invisible entities are not masonry."""
+    deck = drawn(deck)
+    there = deck["structure"]
+    found = []
+    for hidden in (False, True):
+        drawing = ezdxf.new()
+        drawing.header["$INSUNITS"] = 6
+        space = drawing.modelspace()
+        for block in there["block"]:
+            space.add_lwpolyline(block["points"], close=True)
+        if hidden:
+            drawing.layers.add("OLD").freeze()
+            drawing.layers.add("OFF").off()
+            top = max(p[1] for b in there["block"] for p in b["points"])
+            for k, layer in enumerate(("OLD", "OFF")):
+                low = top + 0.2 * k
+                space.add_lwpolyline(
+                    [(0.0, low), (0.2, low), (0.2, low + 0.2), (0.0, low + 0.2)],
+                    close=True,
+                    dxfattribs={"layer": layer},
+                )
+        with tempfile.TemporaryDirectory() as name:
+            drawing.saveas(Path(name) / "stones.dxf")
+            found.append(ask({**deck, "structure": {"kind": "blocks", "file": "stones.dxf"}}, "tilt", Path(name)))
+    same("hidden", *found)
+    near("weight", *(a.results.weight_N for a in found), within)
+
+
+@relation("motion", st.tuples(st.integers(200, 400), number(0.1, 0.5)), 0.0, awaits="A14", examples=((300, 0.2),))
+def columns_without_a_time_are_refused(count: int, amplitude: float, within: float) -> None:
+    """Three columns of numbers without a time are not one series."""
+    waves = amplitude * np.sin(np.arange(count)[:, None] * [0.1, 0.13, 0.17])
+    with tempfile.TemporaryDirectory() as name:
+        (Path(name) / "m.txt").write_text("\n".join(" ".join(f"{v:.6f}" for v in row) for row in waves) + "\n")
+        answer = ask(
+            {"motion": {"kind": "record", "file": "m.txt", "time_step": 0.01, "unit": "g"}}, "motion", Path(name)
+        )
+    must(answer.status == "refused", f"{answer.status}: read as one series")
