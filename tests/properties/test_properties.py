@@ -1,16 +1,13 @@
 """Random buildings asked by all strategies: the relations of the registry hold.
 
 Short in the quick suite; `make verify` asks 2,000 buildings. A relation that breaks is shown with the smallest deck that
-still breaks it. Environment: EXTRADOS_TRIALS, the share of the whole count; EXTRADOS_SEED, another draw; EXTRADOS_TOUCHED, a file
-that notes which modules each relation runs through, and its seconds (tools/seeded_faults.py).
+still breaks it. Environment: EXTRADOS_TRIALS, the share of the whole count; EXTRADOS_SEED, another draw.
 """
 
+import importlib
 import json
 import os
-import sys
-import time
 import zlib
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,10 +19,13 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 from hypothesis.errors import UnsatisfiedAssumption
 from relations import RELATIONS, Relation
 
-import extrados
 from extrados import kinds
 from trials import NOTES, SHARE, count_of
 
+#: The chapters of the registry
+CHAPTERS = ("invariance", "files", "proportion", "bounds", "agreement", "promises")
+for chapter in CHAPTERS:
+    importlib.import_module(chapter)
 #: Buildings that a whole run asks at least, and each relation of share 1; in the quick suite, those of a costly relation none
 WHOLE, EACH, QUICK = 2000, 48, 2
 COSTLY = 0.3
@@ -86,27 +86,6 @@ def random_cases(relation: Relation, count: int) -> None:
         raise AssertionError(f"{relation.name}: {error}\n\nThe smallest case:\n{shown}") from error
 
 
-@pytest.fixture(autouse=True)
-def _touched(request: pytest.FixtureRequest):
-    """Notes which modules of the package a relation runs through, where EXTRADOS_TOUCHED names a file."""
-    place = os.environ.get("EXTRADOS_TOUCHED")
-    if not place:
-        yield
-        return
-    root, found, begin = str(Path(extrados.__file__).parent), set(), time.perf_counter()
-
-    def note(frame: Any, event: str, _: Any) -> None:
-        if event == "call" and frame.f_code.co_filename.startswith(root):
-            found.add((os.path.relpath(frame.f_code.co_filename, root), frame.f_code.co_firstlineno))
-
-    sys.setprofile(note)
-    yield
-    sys.setprofile(None)
-    row = {"test": request.node.name, "seconds": time.perf_counter() - begin, "touched": sorted(found)}
-    with open(place, "a", encoding="utf-8") as file:
-        file.write(json.dumps(row) + "\n")
-
-
 def expected(relation: Relation) -> Any:
     """A relation that a known fault breaks is expected to be broken by its examples."""
     marks = (
@@ -142,7 +121,7 @@ def test_relation(relation: Relation) -> None:
 
 @pytest.mark.verify
 def test_how_many_buildings_were_asked() -> None:
-    """The count of a whole run, for the verification book; after all others of this file."""
+    """The count of a whole run, for the verification book; after all others of this file, in the same process."""
     asked = sum(ASKED.values())
     awaited = sorted({item for r in RELATIONS.values() for item in r.awaits.split()})
     if SHARE >= 1.0:
