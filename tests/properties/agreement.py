@@ -199,6 +199,12 @@ def rocking_by_two_strategies(size: tuple, ratio: float, period: float, within: 
     ok(other)
     peak = max(abs(v) for v in other.results.peak_rotation_rad.values())
     near("peak rotation", abs(one.results.peak_rotation_rad), peak, within, 0.05 * one.results.critical_rotation_rad)
+    must(one.results.outcome == other.results.outcome, f"{one.results.outcome} by rocking, {other.results.outcome} by elements")
+    weak = changed(deck, motion={"amplitude": f"{0.9 * width / height:.4g} g"})
+    quiet = [ask(weak, "rocking"), ask(weak, "dem", end_time=period, time_step=1e-3, **RIGID)]
+    ok(*quiet)
+    for answer in quiet:
+        must(answer.results.outcome == "no-hinging", f"{answer.results.outcome} below b/h")
 
 
 @relation("failure-domain rocking", st.tuples(decks("block", "arch"), number(0.3, 1.2)), 0.0)
