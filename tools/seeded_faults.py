@@ -137,7 +137,7 @@ KERNELS = {
 }  # fmt: skip
 PACKAGE = "python/extrados"
 #: Share of the whole count of the property suite that a fault is tried with
-SHARE = "0.1"
+SHARE = "0.25"
 
 
 @dataclass(frozen=True)

@@ -65,13 +65,15 @@ def a_section_through_files(deck: Deck, within: float) -> None:
             drawing.modelspace().add_line(row[:2], row[2:], dxfattribs={"layer": "GROUND"})
         drawing.saveas(folder / "stones.dxf")
         whole = {**deck, "analysis": [{"kind": "tilt"}]}
-        (folder / "compas.json").write_text(extrados.export(whole, "compas"))
+        text = extrados.export(whole, "compas")
+        (folder / "compas.json").write_text(text)
+        (folder / "triangles.json").write_text(triangulated(text))
         lines = re.findall(r"^block create polygon (.*)$", extrados.export(whole, "udec"), re.M)
         polygons = [[[float(v) for v in pair.split(",")] for pair in line.split()] for line in lines]
         shape = {"kind": "blocks", "depth": there.get("depth", 1.0)}
         files = {
             "JSON": {**shape, "file": "stones.json"}, "DXF": {**shape, "file": "stones.dxf"},
-            "COMPAS": {**shape, "file": "compas.json", "unit": "m"},
+            "COMPAS": {**shape, "file": "compas.json", "unit": "m"}, "COMPAS of triangles": {**shape, "file": "triangles.json", "unit": "m"},
             "UDEC": {**shape, "block": [{"name": f"b{k}", "points": p} for k, p in enumerate(polygons)], "ground": there["ground"]},
         }  # fmt: skip
         for form, structure in files.items():
@@ -134,6 +136,18 @@ def noise_below_the_tolerance(deck: Deck, seed: int, deviation: float, within: f
     one, other = ask(deck, "tilt"), ask(shaken(deck, deviation, seed), "tilt")
     same("noise", one, other)
     near("noise", one.capacity, other.capacity, within, 1e-2)
+
+
+def triangulated(text: str) -> str:
+    """An assembly of COMPAS with its convex faces cut into triangles."""
+    data = json.loads(text)
+    for node in data["data"]["graph"]["data"]["node"].values():
+        mesh = node["block"]["data"]
+        faces = [f for f in mesh["face"].values()]
+        fans = [[f[0], f[k], f[k + 1]] for f in faces for k in range(1, len(f) - 1)]
+        mesh["face"] = {str(k): fan for k, fan in enumerate(fans)}
+        mesh["facedata"], mesh["max_face"] = {str(k): {} for k in range(len(fans))}, len(fans) - 1
+    return json.dumps(data)
 
 
 def stray_solids(text: str, deviation: float, seed: int) -> str:

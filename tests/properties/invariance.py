@@ -369,3 +369,20 @@ def _quarters(deck: Deck) -> list[float]:
     points = np.concatenate([b["points"] for b in drawn(deck)["structure"]["block"]])
     left, right = points[:, 0].min(), points[:, 0].max()
     return [float(left + share * (right - left)) for share in (0.3, 0.7)]
+
+
+@relation("rocking", st.tuples(decks("block"), pulses(0.3, 1.0)), 1e-6)
+def a_wall_on_one_side(deck: Deck, motion: Deck, within: float) -> None:
+    """A block beside a wall rocks away from it alone; wall and motion on the other side mirror the run."""
+    moving = changed(deck, motion=motion)
+    turned_motion = {**motion, "amplitude": f"-{motion['amplitude']}"}
+    one = ask(changed(moving, supports={"abutting_wall": "left"}), "rocking", end_time=2.0)
+    other = ask(changed(deck, motion=turned_motion, supports={"abutting_wall": "right"}), "rocking", end_time=2.0)
+    ok(one, other)
+    must(one.results.peak_rotation_rad >= 0.0, f"a rotation of {one.results.peak_rotation_rad} into the wall")
+    if one.results.decided_by_last_digits:
+        reject()
+    same("mirrored", one, other)
+    near("peak rotation", one.results.peak_rotation_rad, -other.results.peak_rotation_rad, within, 1e-6)
+    r = [ask(changed(moving, supports={"abutting_wall": side}), "tilt") for side in ("left", "right")]
+    near("statics knows no wall", r[0].capacity, r[1].capacity, within)
