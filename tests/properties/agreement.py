@@ -354,13 +354,6 @@ def elements_in_space_and_in_the_plane(deck: Deck, motion: Deck, within: float) 
     plane, space = ask(moving, "dem", **keys), ask(moving, "dem", direction=0.0, **keys)
     ok(plane, space)
     near("peak displacement", plane.results.peak_displacement_m, space.results.peak_displacement_m, within, 1e-2)
-    near(
-        "peak kinetic energy",
-        plane.results.peak_kinetic_energy_J,
-        space.results.peak_kinetic_energy_J,
-        2.0 * within,
-        2.0,
-    )
 
 
 @relation("dem", st.tuples(number(1.0, 2.0), number(0.8, 2.0), number(0.3, 2.0), st.sampled_from([1e7, 1e8])), 0.05)
@@ -508,3 +501,34 @@ def stones_without_weight(deck: Deck, kind: str, within: float) -> None:
     )
     answer = ask(made, kind, **keys)
     must(answer.status == "refused" and "density" in answer.said, f"{kind}: {answer.status} {answer.said}")
+
+
+WALLS = st.tuples(
+    st.integers(4, 8),
+    st.integers(4, 8),
+    number(0.3, 0.6),
+    number(0.15, 0.3),
+    number(0.1, 0.9),
+    number(0.1, 0.9),
+    number(0.2, 0.6),
+)
+
+
+@relation("tilt", WALLS, 1e-9)
+def laid_walls_are_full(
+    units: int, courses: int, length: float, height: float, x: float, y: float, size: float, within: float
+) -> None:
+    """A wall of units around an opening weighs what its outline less the opening weighs."""
+    wide, high = units * length, courses * height
+    left, low = round(x * 0.5 * wide, 3), round(y * 0.5 * high, 3)
+    hole = {"x": [left, round(left + size * 0.4 * wide, 3)], "y": [low, round(low + size * 0.4 * high, 3)]}
+    hole["y"][0] = 0.0 if hole["y"][0] < 0.1 * high else hole["y"][0]
+    area = (hole["x"][1] - hole["x"][0]) * (hole["y"][1] - hole["y"][0])
+    for kind, keys in (
+        ("brickwork", {"units": units, "courses": courses, "depth": 0.25}),
+        ("panel", {"width": wide, "height": high, "thickness": 0.25}),
+    ):
+        structure = {"kind": kind, "unit_length": length, "unit_height": height, "openings": [hole], **keys}
+        answer = ask({"structure": structure, "joints": {"friction": 0.7}}, "tilt")
+        ok(answer)
+        near(kind, answer.results.weight_N, (wide * high - area) * 0.25 * 2000.0 * GRAVITY, within)
