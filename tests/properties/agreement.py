@@ -532,3 +532,20 @@ def laid_walls_are_full(
         answer = ask({"structure": structure, "joints": {"friction": 0.7}}, "tilt")
         ok(answer)
         near(kind, answer.results.weight_N, (wide * high - area) * 0.25 * 2000.0 * GRAVITY, within)
+
+
+@relation("failure-domain", st.tuples(decks("block", "arch"), number(0.4, 1.2), number(0.02, 0.98)), 1e-9)
+def verdicts_between_points_of_a_curve(deck: Deck, period: float, share: float, within: float) -> None:
+    """The capacity under a pulse whose period lies between two of a curve lies between theirs, on the straight line."""
+    durations = [round(period, 4), round(1.2 * period, 4)]
+    asked = round(durations[0] + share * (durations[1] - durations[0]), 5)
+    motion = {"kind": "sine-pulse", "amplitude": "0.2 g", "period": asked}
+    answer = ask(
+        changed(deck, motion=motion), "failure-domain", pulse="sine", durations=durations, amplitudes=10, accuracy=1e-3
+    )
+    ok(answer)
+    ends = answer.results.mode_I.amplitudes_g
+    if None in ends:
+        reject()
+    near("capacity", answer.verdict.capacity, np.interp(asked, durations, ends), within)
+    near("demand", answer.verdict.demand, 0.2, 1e-6)

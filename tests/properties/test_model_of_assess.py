@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -18,9 +19,10 @@ from extrados.decks.reader import make_deck
 from extrados.results.assess import Assess, StrategyVerdict
 from extrados.results.limit import Fracture, Tilt
 from extrados.results.model import Result
+from extrados.results.rocking import Rocking, RuleOutcome
 from extrados.results.statistics import Ensemble, OverLevels
 from extrados.results.verdict import KindResults, Verdict, judge
-from extrados.running.survey import Assessed
+from extrados.running.survey import Assessed, decks_of
 from trials import count_of
 
 QUICK = settings(
@@ -67,10 +69,10 @@ DECK = make_deck({
 CONTEXT = Context(DECK, 1)
 
 
-def concluded(table: list[StrategyVerdict]) -> Assess:
-    """What an assessment makes of rows that it did not ask for."""
+def concluded(table: list[StrategyVerdict], results: dict[str, Result] | None = None) -> Assess:
+    """What an assessment makes of rows, and results, that it did not ask for."""
     work = _Work(CONTEXT, DECK.analyses[0])
-    work.rows = {row.strategy: row for row in table}
+    work.rows, work.results = {row.strategy: row for row in table}, results or {}
     result = Result("assess")
     work.conclude(result)
     return result.results
@@ -148,6 +150,56 @@ def test_agreement_and_reasons_follow_from_the_rows(table: list[StrategyVerdict]
     explained = {frozenset(pair) for reason in found.reasons for pair in reason.explains}
     assert explained <= differing
     assert {frozenset(pair) for pair in found.unexplained} == differing - explained
+
+
+ENDS = st.sampled_from(["no-hinging", "recovery", "collapse"])
+RULES = ("thesis", "energy-safe", "inelastic")
+
+
+@QUICK
+@given(TABLES, FACTORS, FACTORS, st.none() | FACTORS, st.tuples(ENDS, ENDS, ENDS), st.booleans())
+def test_reasons_follow_from_the_results(
+    table: list[StrategyVerdict],
+    right: float,
+    left: float,
+    cracked: float | None,
+    ends: tuple[str, str, str],
+    chaotic: bool,
+) -> None:
+    """Rules on a crack, on impacts and on last digits: spoken where their numbers show it, of the pairs that they explain."""
+    asked = {row.strategy: row for row in table if row.status == "ok"}
+    fracture = None if cracked is None else Fracture.model_construct(stands=None, collapse_acceleration_g=cracked)
+    by_rule = [
+        RuleOutcome.model_construct(rule=rule, restitution=0.8, outcome=end)
+        for rule, end in zip(RULES, ends, strict=True)
+    ]
+    results = {
+        "tilt": Tilt.model_construct(collapse_acceleration_g=right, collapse_acceleration_opposite_g=left, fracture=fracture),
+        "rocking": Rocking.model_construct(
+            outcome=ends[2], outcomes_by_rule=by_rule, decided_by_last_digits=chaotic, peak_rotation_ratio=0.3
+        ),
+    }  # fmt: skip
+    found = concluded(table, {name: Result(name, results=r) for name, r in results.items() if name in asked})
+    differing = {
+        tuple(sorted((a, b))) for a, there in found.agreement.items() for b, said in there.items() if said != "agree"
+    }
+    told = {reason.rule: {tuple(sorted(pair)) for pair in reason.explains} for reason in found.reasons}
+    dynamic = {
+        pair for pair in differing if set(pair) <= {"rocking", "assessment", "probability", "dem"} and "rocking" in pair
+    }
+    split = len({end == "collapse" for end in ends}) == 2
+    assert told.get("impact-rule", set()) == (dynamic if split else set())
+    assert told.get("last-digits", set()) == (dynamic if chaotic else set())
+    order = {"cannot-stand": 0, "collapses": 1, "open": 2, "stands": 3}
+    weaker = {
+        pair
+        for pair in differing
+        if "tilt" in pair and order[asked["tilt"].outcome] < min(order[asked[n].outcome] for n in pair if n != "tilt")
+    }
+    if cracked is None or not (cracked < min(right, left) and min(right, left) > 0.2):
+        assert "crack" not in told
+    else:
+        assert weaker <= told.get("crack", set()) <= differing
 
 
 @QUICK
@@ -291,3 +343,20 @@ def test_a_ranking_puts_the_worst_first(buildings: list[Assessed]) -> None:
             assert worse.least_margin <= better.least_margin
         if np.isfinite(worse.least_margin) and worse.overall != "cannot stand":
             assert np.isfinite(better.least_margin) or better.overall == "stands under all"
+
+
+@settings(QUICK, max_examples=20)
+@given(st.sets(st.sampled_from("abcdef"), min_size=1, max_size=4), st.booleans())
+def test_a_folder_is_all_of_its_decks_and_nothing_else(names: set[str], common: bool) -> None:
+    with tempfile.TemporaryDirectory() as place:
+        structure = '[structure]\nkind = "block"\nwidth = 1.0\nheight = 3.0\n'
+        motion = '[motion]\nkind = "sine-pulse"\namplitude = "0.2 g"\nperiod = 0.5\n'
+        for name in names:
+            (Path(place) / f"{name}.toml").write_text(structure + ("" if common else motion))
+            (Path(place) / f"{name}.expect.toml").write_text("no deck")
+        if common:
+            (Path(place) / "common.toml").write_text(motion)
+        (Path(place) / "notes.txt").write_text("no deck")
+        found = decks_of(Path(place))
+    assert list(found) == sorted(names)
+    assert all("sine-pulse" in text and 'kind = "assess"' in text for text in found.values())
