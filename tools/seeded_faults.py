@@ -29,6 +29,7 @@ import time
 import tokenize
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -300,11 +301,12 @@ def commands(place: Path, room: str) -> list[tuple[list[str], str]]:
     ]
 
 
+@cache  # found before the first fault is planted
 def touched(place: Path) -> list[tuple[str, float, set[tuple[str, int]]]]:
     """Tests of the property suite, their seconds, and the functions that they run through: file and first line. Found once,
     by a run without a fault, which must pass."""
     whole = hashlib.sha256()
-    for path in sorted([*(apart.ROOT / "tests" / "properties").glob("*.py"), *(apart.ROOT / PACKAGE).rglob("*.py")]):
+    for path in sorted([*(place / "tests" / "properties").glob("*.py"), *(place / PACKAGE).rglob("*.py")]):
         whole.update(path.read_bytes())
     kept = place / f"touched-{whole.hexdigest()[:12]}.jsonl"
     if not kept.exists():
@@ -331,7 +333,7 @@ def relations_of(place: Path, fault: Fault) -> list[str]:
         near = [test for test, _, there in rows if any(file.startswith(core) for file, _ in there)]
         return near + [test for test, _, _ in rows if test not in near]
     file = fault.file.removeprefix(f"{PACKAGE}/")
-    tree = ast.parse((apart.ROOT / fault.file).read_text(encoding="utf-8"))
+    tree = ast.parse((place / fault.file).read_text(encoding="utf-8"))
     around = [
         n for n in ast.walk(tree) if isinstance(n, ast.FunctionDef) and n.lineno <= fault.line <= (n.end_lineno or 0)
     ]

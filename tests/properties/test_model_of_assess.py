@@ -26,7 +26,7 @@ from extrados.running.survey import Assessed, decks_of
 from trials import count_of
 
 QUICK = settings(
-    max_examples=count_of(2000, 60),
+    max_examples=count_of(500, 60),
     database=None,
     deadline=None,
     derandomize=True,
