@@ -1,5 +1,6 @@
 """What an answer must say: assumptions that do not hold, clauses beyond their scope, whole verdicts."""
 
+import itertools
 from typing import Any
 
 from asking import Deck, ask, must, near
@@ -26,7 +27,7 @@ from relations import (
 import extrados
 
 
-@relation("rocking", SLIDERS, 0.0, awaits="A4", examples=(SLIDES,))
+@relation("rocking", SLIDERS, 0.0, examples=(SLIDES,))
 def rocking_of_a_block_that_slides(deck: Deck, within: float) -> None:
     """What slides before it rocks does not rock: no plain verdict by rocking."""
     moving = changed(deck, motion={"kind": "sine-pulse", "amplitude": "1.5 g", "period": 0.6})
@@ -55,7 +56,6 @@ TALL = {"structure": {"kind": "block", "width": 1.0, "height": 2.0}, "joints": {
     " ".join(DROPPED),
     st.tuples(RECTANGLES, st.sampled_from(DROPPED)),
     0.0,
-    awaits="A4",
     examples=tuple(((1.0, 2.0), k) for k in DROPPED[:2]),
 )
 def friction_is_not_dropped(size: tuple, kind: str, within: float) -> None:
@@ -84,9 +84,10 @@ def friction_is_not_dropped(size: tuple, kind: str, within: float) -> None:
     must("friction" in said.replace("joints.friction", ""), f"{kind} says nothing of a friction of {friction}")
 
 
-@relation("rocking", st.tuples(number(0.5, 1.5), number(4.0, 6.0), number(0.8, 1.3), number(1.5, 2.5)), 0.0, awaits="A7", examples=(
-    (1.15, 4.62, 1.165, 1.725),
-))  # fmt: skip
+@relation(
+    "rocking", st.tuples(number(0.5, 1.5), number(4.0, 6.0), number(0.8, 1.3), number(1.5, 2.5)), 0.0, awaits="A7",
+    examples=((1.005, 5.01, 1.0525, 1.625), (1.15, 4.62, 1.165, 1.725)),
+)  # fmt: skip
 def chaos_is_told(width: float, slenderness: float, amplitude: float, frequency: float, within: float) -> None:
     """Where amplitudes 1e-5 g apart end otherwise, every such run says that last digits decide."""
     deck = {"structure": {"kind": "block", "width": width, "height": width * slenderness}, "joints": {"friction": 0.9}}
@@ -106,7 +107,8 @@ def chaos_is_told(width: float, slenderness: float, amplitude: float, frequency:
         for k in range(8)
     ]
     ok(*runs)
-    if len({r.results.outcome for r in runs}) > 1:
+    turns = sum(a.results.outcome != b.results.outcome for a, b in itertools.pairwise(runs))
+    if turns > 1:  # one alone is the edge of collapse
         silent = sum(not r.results.decided_by_last_digits for r in runs)
         must(silent == 0, f"{silent} of {len(runs)} say nothing of it: {[r.results.outcome for r in runs]}")
 
@@ -132,7 +134,7 @@ def a_push_is_no_verdict_on_a_peak(deck: Deck, within: float) -> None:
     )
 
 
-@relation("failure-domain rocking", st.tuples(number(1.0, 8.0), number(0.1, 0.12), number(170.0, 180.0)), 0.0, awaits="A16", share=0.3, examples=(
+@relation("failure-domain rocking", st.tuples(number(1.0, 8.0), number(0.1, 0.12), number(170.0, 180.0)), 0.0, share=0.3, examples=(
     (1.0, 0.1, 175.0),
 ))  # fmt: skip
 def the_impact_rule_is_told(radius: float, share: float, embrace: float, within: float) -> None:
