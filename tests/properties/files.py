@@ -82,7 +82,7 @@ def a_section_through_files(deck: Deck, within: float) -> None:
             near(form, one.capacity, back.capacity, within, 1.0)
 
 
-@relation("tilt", decks(*SOLIDS), 1e-4, awaits="A11", examples=(
+@relation("tilt", decks(*SOLIDS), 1e-4, examples=(
     {"structure": {"kind": "cross-vault", "radius": 5.0, "thickness": 0.8, "embrace": 140.0, "voussoirs": 4}, "joints": {"friction": 0.7}},
 ))  # fmt: skip
 def solids_through_compas(deck: Deck, within: float) -> None:
@@ -165,7 +165,7 @@ CORNER = {"structure": {"kind": "wall", "unit_length": 0.5, "unit_height": 0.25,
                         "legs": [{"length": 1.5}, {"length": 1.5, "turn": "left"}]}, "joints": {"friction": 0.65}}  # fmt: skip
 
 
-@relation("tilt", st.tuples(decks("wall"), st.integers(0, 10**6)), 0.01, awaits="A10", examples=((CORNER, 1),))
+@relation("tilt", st.tuples(decks("wall"), st.integers(0, 10**6)), 0.01, examples=((CORNER, 1),))
 def noise_of_solids(deck: Deck, seed: int, within: float) -> None:
     """Corners of solids that stray by 10 micrometres."""
     text = extrados.export({**deck, "analysis": [{"kind": "tilt", "direction": 90.0}]}, "compas")
@@ -199,7 +199,6 @@ def bevelled_corners(width: float, slenderness: float, dx: float, dy: float, wit
     "rocking fragility motion",
     st.tuples(number(0.01, 0.05), st.sampled_from(["rocking", "dem"])),
     0.0,
-    awaits="A14",
     examples=((0.02, "rocking"),),
 )
 def offsets_of_records_are_told(offset: float, kind: str, within: float) -> None:
@@ -209,12 +208,12 @@ def offsets_of_records_are_told(offset: float, kind: str, within: float) -> None
     with tempfile.TemporaryDirectory() as name:
         deck = {"structure": {"kind": "block", "width": 0.6, "height": 1.2}, "motion": recorded(Path(name), 0.01, wave)}
         told = ask(deck, "motion", Path(name)).warnings
-        must("drift" in told, f"motion says nothing of it: {told}")
+        must("baseline" in told, f"motion says nothing of it: {told}")
         said = ask(deck, kind, Path(name), **({} if kind == "rocking" else {"end_time": 1.0, **RIGID})).warnings
-    must("drift" in said, f"{kind} says nothing of it: {said}")
+    must("baseline" in said, f"{kind} says nothing of it: {said}")
 
 
-@relation("tilt", sections("block", "column", "brickwork", "blocks"), 1e-6, awaits="A11", examples=(SLIDES,))
+@relation("tilt", sections("block", "column", "brickwork", "blocks"), 1e-6, examples=(SLIDES,))
 def layers_that_are_switched_off(deck: Deck, within: float) -> None:
     """A drawing's frozen layers, layers that are off, and invisible entities are not masonry."""
     deck = drawn(deck)
@@ -244,7 +243,7 @@ def layers_that_are_switched_off(deck: Deck, within: float) -> None:
     near("weight", *(a.results.weight_N for a in found), within)
 
 
-@relation("motion", st.tuples(st.integers(200, 400), number(0.1, 0.5)), 0.0, awaits="A14", examples=((300, 0.2),))
+@relation("motion", st.tuples(st.integers(200, 400), number(0.1, 0.5)), 0.0, examples=((300, 0.2),))
 def columns_without_a_time_are_refused(count: int, amplitude: float, within: float) -> None:
     """Three columns of numbers without a time are not one series."""
     waves = amplitude * np.sin(np.arange(count)[:, None] * [0.1, 0.13, 0.17])

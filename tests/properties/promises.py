@@ -159,7 +159,6 @@ def the_impact_rule_is_told(radius: float, share: float, embrace: float, within:
     "local-mechanism",
     st.tuples(number(0.2, 0.6), number(1.0, 10.0), st.sampled_from(["parapet", "wall"])),
     0.0,
-    awaits="A13",
     examples=((0.3, 2.0, "parapet"),),
 )
 def clauses_within_their_scope(thickness: float, height: float, mechanism: str, within: float) -> None:
@@ -170,7 +169,7 @@ def clauses_within_their_scope(thickness: float, height: float, mechanism: str, 
     for name, check in answer.results.checks.items():
         if check.code == "ASCE 41":
             must(
-                check.demand is None or not check.verdict,
+                check.verdict not in ("holds", "fails"),
                 f"{name}: {check.demand} against {check.capacity}: {check.verdict}",
             )
 
