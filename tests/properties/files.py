@@ -21,9 +21,10 @@ from extrados.decks.reader import read_text
 
 @relation("tilt local-mechanism", ANY, 1e-12)
 def a_deck_through_json(deck: Deck, within: float) -> None:
-    """What summary.json keeps of a deck is that deck."""
+    """What summary.json keeps of a deck is that deck; of defaults, those that stand by themselves."""
     resolved = json.loads(json.dumps(run({**deck, "analysis": [asked_of(deck)]}).summary["deck"]["resolved"]))
     back = {name: filled(resolved[name]) for name in ("structure", "material", "joints")}
+    back["structure"] = {k: v for k, v in back["structure"].items() if k in deck["structure"]}
     alike("through JSON", statics(deck), statics(back), within)
 
 

@@ -90,19 +90,11 @@ def filled(there: Any) -> Any:
     return [filled(v) for v in there] if isinstance(there, list) else there
 
 
-#: Of results: what depends on the way to the answer, or on the order of what is equal
+#: Of results: what depends on the way to the answer, on the order of what is equal, or on which of many lines of thrust it is
 OF_THE_WAY = (
-    "gap",
-    "residual",
-    "joint",
-    "hinge",
-    "touching",
-    "steps",
-    "factor_bytes",
-    "opening_contacts",
-    "fastest",
-    "sliding",
-)
+    "gap", "residual", "joint", "hinge", "touching", "steps", "factor_bytes", "opening_contacts", "fastest", "sliding", "reactions",
+    "required_friction",
+)  # fmt: skip
 
 
 def alike(told: str, one: Answer, other: Answer, within: float) -> None:
