@@ -1,15 +1,22 @@
-"""How many faults in Fortran and C the quick tests see: faults are planted one at a time in a copy, built and tested.
+"""How many faults the tests see: faults are planted one at a time in a copy, built and tested.
 
     python tools/seeded_faults.py [--count 80] [--seed 1] [--place build/faults] [--again] [--room ROOM] [--only FILE:LINE]
+    python tools/seeded_faults.py --suite properties [--python] [--count 30]
 
-A fault is a changed sign or operator, constant, comparison or bound of a loop, at a place drawn from the seed; every
-room gets its share. A fault counts as caught where the build, a quick test of its room or a case fails; without a fault
-all of them pass, which is seen to first. What becomes of each fault is kept in the place, and a run that was broken off
+In Fortran and C a fault is a changed sign or operator, constant, comparison or bound of a loop; in Python (`--python`), at
+the joins of strategies alone, a changed sign, a dropped key or filter, another set of blocks, a unit factor or an outcome. Its place
+is drawn from the seed; every room gets its share. A fault counts as caught where the build, a quick test of its room or a case
+fails; with `--suite properties` where the build or the property suite alone fails (tests/properties), of the kernels at faults
+of the joins, and of Python by the relations that run through the changed function, the quickest first. Without a fault all
+pass, which is seen to first. What becomes of each fault is kept in the place, and a run that was broken off
 goes on from there; `--again` tries those anew that were not caught, after tests were written. Those that are not caught
 are printed with their place, and all are noted for the verification book.
 """
 
 import argparse
+import ast
+import hashlib
+import io
 import json
 import os
 import random
@@ -19,8 +26,10 @@ import signal
 import subprocess
 import sys
 import time
+import tokenize
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent))
@@ -88,6 +97,49 @@ FAULTS = {
     "bound": [(r"(?<=\bdo \w = )1(?=, )", "2"), (r"(?<=\bdo [ijk] = )(\w+), (\w+)$", r"\1, \2 - 1")],
 }
 IN_C = {" == ": " != "}
+#: Faults of Python, whose texts and comments are left as they are
+IN_PYTHON = {
+    "sign": [(r"(?<=[\w)\]]) \+ (?=[\w(\[])", " - "), (r"(?<=[\w)\]]) - (?=[\w(\[])", " + "), (r"(?<=[=(,] )-(?=[a-z(])", "")],
+    "key": [(r", (?!strict\b)\w+=[\w.]+(?=[,)])", "")],
+    "filter": [(r"(?<=.) if (?:(?!\belse\b)[^\[\]{}:])+(?=[\]})])", ""), (r"(?<=[)\]]) & (?=\()", " | ")],
+    "set": [(r"\bmin\(", "max("), (r"\bmax\(", "min("), (r"\[0\]", "[-1]"), (r"\[-1\]", "[0]"), (r"\ball\(", "any("), (r"\bany\(", "all("),
+            (r"\.a\b(?! ?=)", ".b"), (r"\.b\b(?! ?=)", ".a")],
+    "unit": [(r" / GRAVITY", ""), (r" \* GRAVITY", ""), (r"\b1e3\b", "1e6"), (r"\.depth\b(?! ?=)", ".depth * 2.0"), (r"radians\(", "degrees("), (r"degrees\(", "radians(")],
+}  # fmt: skip
+#: Outcomes and what they are taken for; these are texts
+OUTCOMES = {
+    '"stands"': '"collapses"', '"collapses"': '"stands"', '"cannot-stand"': '"open"', '"open"': '"stands"', '"collapse"': '"recovery"',
+    '"recovery"': '"no-hinging"', '"upper"': '"lower"', '"holds"': '"fails"', '"fails"': '"holds"', '"no-sliding"': '"sliding"', '"left"': '"right"',
+}  # fmt: skip
+#: Where strategies join: what makes views of a building, hands them to the core, and makes verdicts of what comes back
+JOINS = (
+    "analyses/conclude.py", "analyses/run.py", "analyses/left_out.py", "analyses/motion_source.py", "analyses/assess/asking.py",
+    "analyses/assess/words.py", "analyses/assess/reasons.py", "analyses/codes/kinematics.py", "analyses/codes/local_mechanism.py",
+    "analyses/codes/mechanisms.py", "analyses/codes/ntc.py", "analyses/codes/walls.py", "analyses/dem/measures.py",
+    "analyses/dem/model.py", "analyses/dem/motion.py", "analyses/dem/runs.py", "analyses/dem/solid_model.py", "analyses/dem/standing.py", "analyses/dem/tilt.py",
+    "analyses/limit/applied.py", "analyses/limit/asked.py", "analyses/limit/common.py", "analyses/limit/moving_load.py", "analyses/limit/solids.py",
+    "analyses/limit/supports.py", "analyses/limit/thrust.py", "analyses/limit/tilt.py", "analyses/rocking/block.py", "analyses/rocking/driver.py",
+    "analyses/rocking/failure_domain.py", "analyses/rocking/mechanism.py", "analyses/rocking/stack.py", "analyses/statistics/fragility.py", "analyses/statistics/levels.py",
+    "analyses/statistics/summaries.py", "building/building.py", "building/properties.py", "building/ties.py", "building/geometry/assembly.py", "building/geometry/chains.py",
+    "building/geometry/compas.py", "building/geometry/contacts.py", "building/geometry/polygons.py", "building/geometry/rigid.py",
+    "building/geometry/solids/assembly.py", "building/geometry/solids/contacts.py", "building/geometry/solids/sections.py", "building/rockers/arch.py",
+    "building/rockers/block.py", "building/rockers/frame.py", "building/rockers/mechanism.py", "building/rockers/rocker.py", "building/rockers/stack.py",
+    "building/templates/arch.py", "building/templates/block.py", "building/templates/brickwork.py", "building/templates/masonry.py", "building/templates/stack.py",
+    "results/verdict.py", "results/codes.py", "results/dem.py", "results/rocking.py", "results/statistics.py", "running/survey.py",
+)  # fmt: skip
+#: Kernels at the joins, and the modules of the core that hand them their numbers
+KERNELS = {
+    "fortran/api/api_arch.f90": "arch", "fortran/api/api_dem.f90": "dem", "fortran/api/api_dem3.f90": "dem3",
+    "fortran/api/api_dem_run.f90": "dem", "fortran/api/api_limit.f90": "limit", "fortran/api/api_mechanism.f90": "mechanism",
+    "fortran/api/api_rocking.f90": "rocking", "fortran/api/api_stack.f90": "stack", "fortran/api/api_soft_base.f90": "soft_base",
+    "fortran/mechanism/blow.f90": "mechanism", "fortran/mechanism/impact.f90": "mechanism", "fortran/mechanism/linkage.f90": "mechanism",
+    "fortran/mechanism/table.f90": "mechanism", "fortran/dem/contacts.f90": "dem", "fortran/dem/joint.f90": "dem", "fortran/dem/law.f90": "dem",
+    "fortran/dem/moreau.f90": "dem", "fortran/dem/rigid.f90": "dem", "fortran/dem/loading.f90": "dem", "fortran/dem3/patch.f90": "dem3", "fortran/dem3/law.f90": "dem3",
+    "fortran/dem3/moreau.f90": "dem3", "fortran/nonsmooth/impulses.f90": "dem", "fortran/limit/vertex.f90": "limit",
+}  # fmt: skip
+PACKAGE = "python/extrados"
+#: Share of the whole count of the property suite that a fault is tried with
+SHARE = "0.25"
 
 
 @dataclass(frozen=True)
@@ -104,6 +156,11 @@ class Fault:
     def room(self) -> str:
         """The room that the file belongs to."""
         return "/".join(self.file.split("/")[:2])
+
+    @property
+    def in_python(self) -> bool:
+        """Whether it needs no build."""
+        return self.file.endswith(".py")
 
     def __str__(self) -> str:
         return f"{self.file}:{self.line}: {self.kind}: {self.old.strip()}  ->  {self.new.strip()}"
@@ -139,20 +196,75 @@ def faults_of(path: Path) -> list[Fault]:
     return found
 
 
-def draw(count: int, seed: int, rooms: Iterable[str] = ROOMS) -> list[Fault]:
-    """Faults of rooms, of all kinds: each room by the root of what it holds, its kinds in turn."""
-    by_room = {}
-    for room in rooms:
-        files = sorted([*(apart.ROOT / room).glob("*.f90"), *(apart.ROOT / room).glob("*.c")])
-        by_room[room] = [fault for path in files for fault in faults_of(path)]
+def python_faults_of(path: Path) -> list[Fault]:
+    """Every fault that could be planted in a file of Python: in functions, outside of texts, comments and what only warns."""
+    text, name = path.read_text(encoding="utf-8"), path.relative_to(apart.ROOT).as_posix()
+    lines = text.split("\n")
+    bare, outcomes = list(lines), []
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        (first, start), (last, end) = token.start, token.end
+        if token.type == tokenize.STRING and token.string in OUTCOMES and first == last:
+            outcomes.append((first, start, end, OUTCOMES[token.string]))
+        if token.type in (tokenize.STRING, tokenize.COMMENT):
+            for number in range(first, last + 1):
+                line = bare[number - 1]
+                left, right = start if number == first else 0, end if number == last else len(line)
+                bare[number - 1] = line[:left] + "\0" * (right - left) + line[right:]
+    inside = {
+        number for node in ast.walk(ast.parse(text)) if isinstance(node, ast.FunctionDef)
+        for number in range(node.body[0].lineno, (node.end_lineno or 0) + 1)
+    }  # fmt: skip
+    found = []
+    for number in sorted(inside):
+        line, code = lines[number - 1], bare[number - 1]
+        if re.match(r"\s*(raise|assert|def|@|import|from)\b", code) or "warn" in code or "Array(" in code:
+            continue
+        for kind, changes in IN_PYTHON.items():
+            for pattern, new in changes:
+                for place in re.finditer(pattern, code):
+                    changed = line[: place.start()] + new + line[place.end() :]
+                    if kind != "filter" or " for " in code[: place.start()] or "&" in place[0]:
+                        found.append(Fault(kind, name, number, line, changed))
+    for number, start, end, put in outcomes:
+        line = lines[number - 1]
+        if number in inside and "fact(" not in line:
+            found.append(Fault("outcome", name, number, line, line[:start] + put + line[end:]))
+    return [fault for fault in found if _is_python([*lines[: fault.line - 1], fault.new, *lines[fault.line :]])]
+
+
+def _is_python(lines: list[str]) -> bool:
+    try:
+        ast.parse("\n".join(lines))
+    except SyntaxError:
+        return False
+    return True
+
+
+def draw(count: int, seed: int, rooms: Iterable[str] = ROOMS, python: bool = False, joins: bool = False) -> list[Fault]:
+    """Faults of rooms, of all kinds: each room by the root of what it holds, its kinds in turn; joins: at the joins alone."""
+    by_room: dict[str, list[Fault]] = {}
+    if python:
+        for join in JOINS:
+            room = "/".join(join.split("/")[:-1])
+            by_room.setdefault(room, []).extend(python_faults_of(apart.ROOT / PACKAGE / join))
+    else:
+        for room in rooms:
+            files = sorted([*(apart.ROOT / room).glob("*.f90"), *(apart.ROOT / room).glob("*.c")])
+            by_room[room] = [fault for path in files for fault in faults_of(path)]
+    if joins and not python:
+        by_room = {}
+        for file in KERNELS:
+            by_room.setdefault("/".join(file.split("/")[:2]), []).extend(faults_of(apart.ROOT / file))
     weight = {room: len(there) ** 0.5 for room, there in by_room.items()}
     chosen = []
     for room, there in by_room.items():
         rng = random.Random(f"{seed} {room}")  # of its own: what changes in a room draws nothing else in the others
-        share = max(2, round(count * weight[room] / sum(weight.values())))
-        kinds = {kind: [f for f in there if f.kind == kind] for kind in FAULTS}
+        share = max(1 if joins else 2, round(count * weight[room] / sum(weight.values())))
+        kinds = {kind: [f for f in there if f.kind == kind] for kind in sorted({f.kind for f in there})}
         for options in kinds.values():
             rng.shuffle(options)
+        if joins:  # few of a room: its kinds in no order
+            kinds = dict(rng.sample(sorted(kinds.items(), key=lambda item: item[0]), len(kinds)))
         while share and any(kinds.values()):
             for options in kinds.values():
                 if share and options:
@@ -189,6 +301,72 @@ def commands(place: Path, room: str) -> list[tuple[list[str], str]]:
     ]
 
 
+@cache  # found before the first fault is planted
+def touched(place: Path) -> list[tuple[str, float, set[tuple[str, int]]]]:
+    """Tests of the property suite, their seconds, and the functions that they run through: file and first line. Found once,
+    by a run without a fault, which must pass."""
+    whole = hashlib.sha256()
+    for path in sorted([*(place / "tests" / "properties").glob("*.py"), *(place / PACKAGE).rglob("*.py")]):
+        whole.update(path.read_bytes())
+    kept = place / f"touched-{whole.hexdigest()[:12]}.jsonl"
+    if not kept.exists():
+        half = kept.with_suffix(".part")
+        half.unlink(missing_ok=True)
+        environment = {**os.environ, "OMP_NUM_THREADS": "1", "EXTRADOS_TOUCHED": str(half), "EXTRADOS_TRIALS": SHARE}
+        words = [apart.python(place), "-m", "pytest", "-q", "-n", "0", "-p", "no:cacheprovider", "tests/properties"]
+        run = subprocess.run(words, cwd=place, env=environment, capture_output=True, text=True, errors="replace")
+        if run.returncode:
+            sys.exit(f"the property suite fails without a fault:\n{run.stdout[-3000:]}")
+        half.rename(kept)
+    rows = map(json.loads, kept.read_text(encoding="utf-8").splitlines())
+    return sorted(
+        ((r["test"], r["seconds"], {(file, line) for file, line in r["touched"]}) for r in rows), key=lambda r: r[1]
+    )
+
+
+def relations_of(place: Path, fault: Fault) -> list[str]:
+    """The tests of the property suite that run through the changed function or beside the changed kernel, the quickest first;
+    then, of a kernel, all others."""
+    rows = touched(place)
+    if not fault.in_python:
+        core = f"core/{KERNELS.get(fault.file, '')}"
+        near = [test for test, _, there in rows if any(file.startswith(core) for file, _ in there)]
+        return near + [test for test, _, _ in rows if test not in near]
+    file = fault.file.removeprefix(f"{PACKAGE}/")
+    tree = ast.parse((place / fault.file).read_text(encoding="utf-8"))
+    around = [
+        n for n in ast.walk(tree) if isinstance(n, ast.FunctionDef) and n.lineno <= fault.line <= (n.end_lineno or 0)
+    ]
+    first = max((min([n.lineno, *(d.lineno for d in n.decorator_list)]) for n in around), default=0)
+    return [test for test, _, there in rows if (file, first) in there]
+
+
+def failing_relation(place: Path, fault: Fault, patience: int) -> str:
+    """The first test of the property suite that fails with a fault planted, "" where none does."""
+    chosen = relations_of(place, fault)
+    if not chosen:
+        return ""
+    environment = {**os.environ, "OMP_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1", "EXTRADOS_TRIALS": SHARE}
+    words = [apart.python(place), "-m", "pytest", "-q", "-x", "-n", "0", "-p", "no:cacheprovider", *chosen]
+    try:
+        run = subprocess.run(
+            words, cwd=place, env=environment, capture_output=True, text=True, errors="replace", timeout=patience,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (patience, patience)),
+        )  # fmt: skip
+    except subprocess.TimeoutExpired:
+        return "a test that does not end"
+    if run.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
+        return "a test that does not end"
+    failed = re.search(r"^(?:FAILED|ERROR) (\S+)", run.stdout, re.M)
+    return (
+        ""
+        if run.returncode == 0
+        else failed[1]
+        if failed
+        else f"exit {run.returncode}: {(run.stdout + run.stderr)[-200:]}"
+    )
+
+
 def failing(place: Path, room: str, patience: int) -> str:
     """The first test of a room that fails, "" where none does."""
     environment = {**os.environ, "OMP_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
@@ -205,15 +383,16 @@ def failing(place: Path, room: str, patience: int) -> str:
     return ""
 
 
-def caught_by(place: Path, fault: Fault, patience: int) -> str:
-    """The test that fails with a fault planted, "" where none does."""
+def caught_by(place: Path, fault: Fault, patience: int, properties: bool = False) -> str:
+    """The test that fails with a fault planted, "" where none does; properties: of the property suite alone."""
     plant(place, fault)
     try:
-        try:
-            apart.build(place)
-        except subprocess.CalledProcessError:
-            return "the build"
-        return failing(place, fault.room, patience)
+        if not fault.in_python:
+            try:
+                apart.build(place)
+            except subprocess.CalledProcessError:
+                return "the build"
+        return failing_relation(place, fault, patience) if properties else failing(place, fault.room, patience)
     finally:
         plant(place, fault, back=True)
 
@@ -228,28 +407,39 @@ def main() -> int:
     parser.add_argument("--again", action="store_true", help="the faults anew that were not caught")
     parser.add_argument("--room", choices=list(ROOMS), help="faults of one room alone")
     parser.add_argument("--only", help="FILE:LINE, the faults of one line")
+    parser.add_argument("--suite", choices=["quick", "properties"], default="quick", help="which tests are to see them")
+    parser.add_argument(
+        "--python", action="store_true", help="faults in Python at the joins, seen by the property suite"
+    )
     options = parser.parse_args()
+    properties = options.suite == "properties"
+    if options.python and not properties:
+        parser.error("--python needs --suite properties")
     place = options.place.resolve()
     place.mkdir(parents=True, exist_ok=True)
     apart.copy(place)
     apart.build(place, "-Dbuildtype=plain", "-Doptimization=1")
-    chosen = draw(options.count, options.seed, [options.room] if options.room else ROOMS)
+    chosen = draw(options.count, options.seed, [options.room] if options.room else ROOMS, options.python, properties)
     if options.only:
         file, line = options.only.split(":")
-        chosen = [fault for fault in faults_of(apart.ROOT / file) if fault.line == int(line)]
-    kept = place / "fates.json"
+        every = python_faults_of if file.endswith(".py") else faults_of
+        chosen = [fault for fault in every(apart.ROOT / file) if fault.line == int(line)]
+    name = "fates.json" if not properties else f"fates-properties-{'python' if options.python else 'kernels'}.json"
+    kept = place / name
     fates: dict[str, str] = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
     todo = [f for f in chosen if options.only or str(f) not in fates or (options.again and not fates[str(f)])]
     todo.sort(key=lambda fault: fault.room)  # the tests of a room pass without a fault before its first is planted
+    if properties and todo:
+        touched(place)  # which passes without a fault
     for k, fault in enumerate(todo, start=1):
-        if f"{fault.room} as it is" not in fates:
+        if not properties and f"{fault.room} as it is" not in fates:
             apart.build(place)  # without the last fault
             if by := failing(place, fault.room, 10 * options.patience):
                 sys.exit(f"{fault.room}: {by} fails without a fault")
             print(f"{fault.room}: its tests pass", flush=True)
             fates[f"{fault.room} as it is"] = "nothing"
         begin = time.monotonic()
-        by = fates[str(fault)] = caught_by(place, fault, options.patience)
+        by = fates[str(fault)] = caught_by(place, fault, options.patience, properties)
         seconds = time.monotonic() - begin
         print(f"{k}/{len(todo)} {f'caught by {by}' if by else 'NOT CAUGHT'} ({seconds:.0f} s) {fault}", flush=True)
         kept.write_text(json.dumps(fates, indent=1), encoding="utf-8")
@@ -258,9 +448,12 @@ def main() -> int:
     if not (options.only or options.room):
         notes = apart.ROOT / "build" / "trials"
         notes.mkdir(parents=True, exist_ok=True)
-        row = {"what": "faults planted in Fortran and C that no quick test sees", "tried": len(chosen),
-               "failures": len(missed), "notes": missed}  # fmt: skip
-        (notes / "seeded-faults.json").write_text(json.dumps(row, indent=1), encoding="utf-8")
+        where, file = "in Fortran and C that no quick test sees", "seeded-faults.json"
+        if properties:
+            where = f"at the joins in {'Python' if options.python else 'Fortran'} that the property suite alone does not see"
+            file = f"seeded-faults-properties-{'python' if options.python else 'kernels'}.json"
+        row = {"what": f"faults planted {where}", "tried": len(chosen), "failures": len(missed), "notes": missed}
+        (notes / file).write_text(json.dumps(row, indent=1), encoding="utf-8")
     return len(missed)
 
 

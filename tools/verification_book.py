@@ -32,6 +32,7 @@ from verification_quantities import QUANTITIES, quantity_of  # noqa: E402
 from extrados.schema.files import SHIPPED  # noqa: E402
 
 TRIALS = "## Trials"
+RELATIONS = "## Relations between strategies"
 TITLES = {
     "exact": "Verification: exact solutions",
     "peer": "Verification: independent programs, and unlike methods of this one",
@@ -252,6 +253,28 @@ def trials(book: str) -> list[str]:
             "| looked for | tried | found | |\n|---|---|---|---|", *sorted(lines.values()), ""]  # fmt: skip
 
 
+def relations() -> list[str]:
+    """The relations of the property suite: each with the analyses that it asks, and its exception."""
+    sys.path[:0] = [
+        str(ROOT / "tests" / name) for name in ("properties", "trials") if str(ROOT / "tests" / name) not in sys.path
+    ]
+    from test_properties import EACH
+    from test_properties import RELATIONS as REGISTRY
+
+    rows = [
+        f"| {r.name} | {r.holds.__doc__.strip()} | {', '.join(r.asks)} | {r.within:g} | "
+        f"{r.exception}{f'broken today, awaits {r.awaits}' if r.awaits else ''} |"
+        for r in REGISTRY.values()
+    ]
+    whole = sum(round(EACH * r.share) for r in REGISTRY.values() if not r.awaits)
+    return [
+        RELATIONS, "",
+        f"{len(REGISTRY)} relations hold between the results of different analyses of one random building, or of two buildings of which one",
+        f"follows from the other. `make verify` draws about {whole:,} buildings of all kinds; the last count is in the table of trials.", "",
+        "| relation | statement | analyses | tolerance | exception |\n|---|---|---|---|---|", *rows, "",
+    ]  # fmt: skip
+
+
 def with_trials_alone(book: str) -> str:
     """The book with the section of the trials written anew, and all else as it was."""
     return book.split(f"{TRIALS}\n")[0].rstrip() + "\n\n" + "\n".join(trials(book))
@@ -274,7 +297,7 @@ def pages(rows: list[Found], book: str) -> str:
             parts += of_curves(of) if kind == "experiment" else []
             parts += table(of)
             parts += of_loads(of) if kind == "experiment" else []
-    return "\n".join([*parts, *trials(book)])
+    return "\n".join([*parts, *relations(), *trials(book)])
 
 
 def checksum(paths: Iterable[Path]) -> str:

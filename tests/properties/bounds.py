@@ -1,0 +1,214 @@
+"""What is never more than something else: stouter sections, friction, ties, strengths, cuts, bounds, energies."""
+
+import itertools
+import math
+
+import numpy as np
+from asking import Deck, ask, at_most, must, near
+from buildings import SMALL, SOLIDS, arches, changed, cut, decks, drawn, number, pulses, sections
+from hypothesis import reject
+from hypothesis import strategies as st
+from relations import CRACKS, GIVES_UP, MASONRY, PUSH, RECTANGLES, RIGID, STONES, UNSETTLED, WEAK, ok, relation, statics
+
+#: What makes a structure of a kind stouter
+STOUT = {"arch": ("thickness",), "pointed-arch": ("thickness",), "elliptical-arch": ("thickness",), "block": ("width",),
+         "column": ("width", "top_width"), "brickwork": ("unit_length",)}  # fmt: skip
+
+
+@relation("tilt", st.tuples(decks(*STOUT), number(1.01, 1.5)), 2e-3)
+def stouter(deck: Deck, factor: float, within: float) -> None:
+    """A stouter section bears no less."""
+    keys = {k: deck["structure"][k] * factor for k in STOUT[deck["structure"]["kind"]]}
+    at_most("stouter", ask(deck, "tilt").capacity, ask(changed(deck, structure=keys), "tilt").capacity, within)
+
+
+@relation("tilt", st.tuples(STONES, number(0.05, 0.6), number(0.01, 0.5)), 1e-5)
+def rougher(deck: Deck, friction: float, more: float, within: float) -> None:
+    """More friction bears no less, and no sliding at all most."""
+    found = [statics(changed(deck, joints={"friction": mu})) for mu in (friction, friction + more, "no-sliding")]
+    if deck["structure"]["kind"] in SOLIDS and found[2].status == "refused":
+        found = found[:2]
+    for less, most in itertools.pairwise(found):
+        if "refused" in (less.outcome, most.outcome):
+            continue
+        at_most("rougher", less.capacity, most.capacity, within, 1e-2)
+
+
+TIED = st.tuples(decks("arch", "pointed-arch", "elliptical-arch", "column"), number(0.001, 0.3), number(1.0, 3.0))
+
+
+@relation("tilt", TIED, 1e-5)
+def a_stronger_tie(deck: Deck, force: float, factor: float, within: float) -> None:
+    """A tie bears no less than none, and a stronger one no less than a weak one."""
+    section = drawn(deck)
+    blocks = section["structure"]["block"]
+    if len(blocks) < 2:
+        reject()
+    ends = [np.mean(blocks[k]["points"], axis=0).tolist() for k in (0, -1)]
+    bare = ask(section, "tilt")
+    ok(bare)
+    weight = bare.results.weight_N
+    tie = {"start": ends[0], "end": ends[1], "works_in": "tension"}
+    found = [
+        bare,
+        *(ask({**section, "ties": [{**tie, "yield_force": f * weight}]}, "tilt") for f in (force, force * factor)),
+    ]
+    for less, most in itertools.pairwise(found):
+        at_most("a tie", less.capacity, most.capacity, within)
+
+
+@relation("tilt", st.tuples(decks("arch", "column", "block"), number(3.0, 100.0), number(1.1, 4.0)), 1e-4)
+def stronger_stone(deck: Deck, strength: float, factor: float, within: float) -> None:
+    """A greater compressive strength bears no less, and an unlimited one most. strength: over the mean pressure on the ground."""
+    bare = ask(deck, "tilt")
+    ok(bare)
+    stones = drawn(deck)["structure"]
+    length = sum(math.dist(row[:2], row[2:]) for row in stones["ground"])
+    pressure = bare.results.weight_N / (length * stones["depth"])
+    weak, strong = (
+        ask(changed(deck, material={"compressive_strength": strength * f * pressure}), "tilt") for f in (1.0, factor)
+    )
+    for less, most in ((weak, strong), (strong, bare)):
+        if less.answers or less.outcome == "cannot-stand":
+            at_most("stronger", less.capacity, most.capacity, within)
+
+
+@relation("tilt", st.tuples(sections(*SMALL, "arch"), st.integers(0, 20), number(0.2, 0.8)), 1e-5)
+def a_cut(deck: Deck, block: int, share: float, within: float) -> None:
+    """A new joint through a block lets it move in more ways: it bears no more."""
+    at_most("cut", ask(cut(deck, block, share), "tilt").capacity, ask(deck, "tilt").capacity, within)
+
+
+@relation("tilt", decks("brickwork", "blocks", "column", "arch", "stack", friction=number(0.2, 0.9, 14)), 1e-4)
+def dilatancy_helps(deck: Deck, within: float) -> None:
+    """Associated friction bears no less than friction without dilatancy."""
+    less, most = ask(deck, "tilt", friction_rule="non-associated", starts=3), ask(deck, "tilt")
+    if less.outcome in ("refused", "failed"):
+        reject()
+    at_most("non-associated", less.capacity, most.capacity, within)
+
+
+@relation("tilt", decks(*SOLIDS), 1e-5)
+def bounds_of_solids(deck: Deck, within: float) -> None:
+    """Bounds from within and around enclose the capacity, and its certificate is kept."""
+    answer = ask(deck, "tilt", direction=0.0, rose=4, pyramids=8)
+    ok(answer)
+    r = answer.results
+    at_most("lower bound", r.pyramids.lower_g or 0.0, r.collapse_acceleration_g, within)
+    if r.pyramids.upper_g is not None:
+        at_most("upper bound", r.collapse_acceleration_g, r.pyramids.upper_g, within)
+    near("virtual work", r.upper_bound_g, r.collapse_acceleration_g, within)
+    at_most("residuals", max(r.duality_gap, r.equilibrium_residual, r.friction_residual, r.overlap_residual), 1e-5, 0.0)
+    at_most("least of all directions", r.least_acceleration_g, r.collapse_acceleration_g, within)
+
+
+@relation("tilt thrust", sections(friction=st.just("no-sliding")), 1e-5, exception=GIVES_UP)
+def equilibrium_at_collapse(deck: Deck, within: float) -> None:
+    """Reactions carry the weight and the push; both bounds meet; beyond the interval nothing is admissible."""
+    answer = ask(deck, "tilt")
+    ok(answer)
+    r = answer.results
+    if r.collapse_acceleration_g > 4.8:
+        reject()  # `thrust` takes 5 g at most
+    up = sum(one.vertical_N for one in r.reactions)
+    along = sum(one.horizontal_N for one in r.reactions)
+    near("vertical reactions", up, r.weight_N, within)
+    near("horizontal reactions", abs(along), r.collapse_acceleration_g * r.weight_N, within, 1e-3 * r.weight_N)
+    at_most("gap of the bounds", r.duality_gap, 1e-6, 0.0)
+    for gamma, stands in ((0.98 * r.collapse_acceleration_g, True), (1.02 * r.collapse_acceleration_g + 1e-3, False)):
+        there = ask(deck, "thrust", gamma=gamma)
+        must(
+            UNSETTLED in there.said or (there.outcome == "stands") == stands,
+            f"a thrust line at {gamma} g of {r.collapse_acceleration_g}: {there.outcome}",
+        )
+
+
+@relation("rocking dem", st.tuples(decks("block", "column", "stack"), pulses(0.1, 0.8)), 1e-3)
+def energies(deck: Deck, motion: Deck, within: float) -> None:
+    """No energy is won: what friction, dampers and impacts take is never negative, and the ledger closes."""
+    moving = changed(deck, motion=motion)
+    for told, keys in (("rigid contacts", RIGID), ("springs", {"joints": {"normal_stiffness": 1e8}})):
+        r = ask(moving, "dem", end_time=1.0, **keys)
+        if r.answers:
+            scale = max(r.results.peak_kinetic_energy_J, 1.0)
+            at_most(f"{told}: friction", 0.0, r.results.friction_loss_J, within, scale)
+            at_most(f"{told}: damping", 0.0, r.results.damping_loss_J, within, scale)
+            at_most(f"{told}: residual", r.results.energy_residual_ratio, 0.02, 0.0)
+    if (r := ask(moving, "rocking")).answers:
+        at_most("impacts", 0.0, r.results.energy_lost_at_impacts_J, within, abs(r.results.energy_supplied_J) + 1e-6)
+        at_most("rocking: residual", r.results.energy_residual_ratio, 1e-4, 0.0)
+
+
+@relation("sla pushover", decks("panel", "building", material=MASONRY), 1e-6)
+def dissipation(deck: Deck, within: float) -> None:
+    """Saw-tooth laws dissipate: energies are not negative, residuals small, displacements within a tenth of the size."""
+    if deck["structure"]["kind"] == "building":
+        answer = ask(deck, "pushover", **PUSH)
+        size = sum(deck["structure"]["storeys"])
+    else:
+        answer = ask(deck, "sla", mesh={"size": 0.4}, events=60)
+        size = deck["structure"]["height"]
+    ok(answer)
+    r = answer.results
+    at_most("crack energy", 0.0, r.crack_energy_J, 0.0)
+    if r.dissipated_energy_J is not None:
+        at_most("dissipated energy", 0.0, r.dissipated_energy_J, within, abs(r.external_work_J or 0.0) + 1e-9)
+    if r.peak_displacement_m is not None:
+        at_most("displacement at the peak", abs(r.peak_displacement_m), 0.1 * size, 0.0)
+
+
+@relation("sla tilt", arches().map(lambda s: {"structure": s}), 0.02, awaits="A3", share=0.3, examples=(
+    {"structure": {"kind": "arch", "radius": 10.0, "thickness": 1.07, "embrace": 180.0, "voussoirs": 40}},
+    {"structure": {"kind": "arch", "radius": 10.0, "thickness": 1.05, "embrace": 180.0, "voussoirs": 40}},
+))  # fmt: skip
+def dry_stones_by_elements(deck: Deck, within: float) -> None:
+    """Stones with dry joints bear no more by elements than by limit analysis."""
+    most = ask(deck, "tilt").capacity[0]
+    answer = ask(changed(deck, motion=WEAK), "sla", events=300, directions=["+"])
+    if not answer.answers or answer.results.peak_acceleration_g is None:
+        must(not (most == 0.0 and answer.outcome == "stands"), "it cannot stand, and stands by elements")
+        return
+    at_most("elements", answer.results.peak_acceleration_g, most, within, 0.1)
+
+
+MORTAR = {"cohesion": 1e3, "shear_energy": 10.0, "tension": 1e3, "fracture_energy": 5.0}
+
+
+SOLE = {"structure": {"kind": "building", "storeys": [3.0], "beds": [{"name": "sole", "storey": 1, "z": 0.0}], "walls": [
+    {"name": name, "start": start, "end": end, "thickness": 0.4} for name, start, end in (
+        ("south", [0.0, 0.0], [4.0, 0.0]), ("east", [4.0, 0.0], [4.0, 4.0]), ("north", [4.0, 4.0], [0.0, 4.0]), ("west", [0.0, 4.0], [0.0, 0.0]))]},
+    "joints": {"friction": 0.4, **MORTAR}, "material": CRACKS}  # fmt: skip
+
+
+@relation("pushover", decks("building", friction=number(0.2, 0.6), material=MASONRY).map(
+    lambda d: changed(d, structure={"beds": [{"name": "sole"}]}, joints=MORTAR)
+), 0.02, awaits="A8", share=0.2, examples=(SOLE,))  # fmt: skip
+def no_more_than_coulomb(deck: Deck, within: float) -> None:
+    """On a weak sole the base shear stays below friction times the weight and cohesion times the area, or says that it does not."""
+    answer = ask(deck, "pushover", direction=0.0, mesh={"size": 1.0, "layers": 3}, events=20000)
+    ok(answer)
+    r = answer.results
+    area = sum(math.dist(w["start"], w["end"]) * w["thickness"] for w in deck["structure"]["walls"])
+    most = deck["joints"]["friction"] * r.weight_N + deck["joints"]["cohesion"] * area
+    if r.greatest_load_N is not None and r.greatest_load_N > (1.0 + within) * most:
+        must(
+            answer.outcome not in ("stands", "not-applicable") and "friction" in answer.warnings,
+            f"{r.greatest_load_N:.4g} N of at most {most:.4g} N, said: {answer.warnings}",
+        )
+
+
+@relation("rocking", st.tuples(RECTANGLES, st.sampled_from(["winkler", "two-spring"])), 0.02)
+def a_stiff_base(size: tuple, foundation: str, within: float) -> None:
+    """A very stiff base is a rigid one; a softer one bears less."""
+    width, height = size
+    deck = {"structure": {"kind": "block", "width": width, "height": height}, "joints": {"friction": 2.0},
+            "motion": {"kind": "sine-pulse", "amplitude": "0.05 g", "period": 0.5}}  # fmt: skip
+    capacity = []
+    for stiffness in (1e9, 1e13):
+        answer = ask(
+            changed(deck, supports={"stiffness": stiffness, "foundation": foundation}), "rocking", end_time=0.02
+        )
+        ok(answer)
+        capacity.append(answer.results.soft_base.capacity_g)
+    near("stiff", capacity[1], width / height, within)
+    at_most("soft", capacity[0], capacity[1], 1e-6)

@@ -1,0 +1,362 @@
+"""A model of what assess concludes, checked over random tables of rows: verdict, ranking and reasons follow from the rows."""
+
+import itertools
+import math
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, Phase, given, settings
+from hypothesis import strategies as st
+
+from extrados.analyses.assess import strategies
+from extrados.analyses.assess.asking import row_of, scaled_margin
+from extrados.analyses.assess.driver import _Work
+from extrados.analyses.assess.hazard import Demanded
+from extrados.analyses.context import Context
+from extrados.decks.reader import make_deck
+from extrados.results.assess import Assess, StrategyVerdict
+from extrados.results.limit import Fracture, Tilt
+from extrados.results.model import Result
+from extrados.results.rocking import Rocking, RuleOutcome
+from extrados.results.statistics import Ensemble, OverLevels
+from extrados.results.verdict import KindResults, Verdict, judge
+from extrados.running.survey import Assessed, decks_of
+from trials import count_of
+
+QUICK = settings(
+    max_examples=count_of(500, 60),
+    database=None,
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=list(HealthCheck),
+    phases=(Phase.generate, Phase.shrink),
+)
+OUTCOMES = ("stands", "collapses", "cannot-stand", "open", "not-applicable")
+BOUNDS = st.sampled_from([None, "exact", "upper", "lower"])
+FACTORS = st.integers(1, 80).map(lambda k: k / 20.0)
+NAMES = [s.name for s in strategies.ALL]
+
+
+@st.composite
+def rows(draw: st.DrawFn) -> StrategyVerdict:
+    """A row of the table: one that was asked with any verdict, or one without a result."""
+    strategy = strategies.of(draw(st.sampled_from(NAMES)))
+    status = draw(st.sampled_from(["ok", "ok", "ok", "refused", "failed", "left out"]))
+    outcome = draw(st.sampled_from(OUTCOMES)) if status == "ok" else "not-applicable"
+    margin = low = high = None
+    if outcome in ("stands", "collapses", "open") and draw(st.booleans()):
+        above = 1.0 if outcome == "stands" else 0.0 if outcome == "collapses" else draw(st.sampled_from([0.0, 1.0]))
+        margin = round(above + draw(st.integers(1, 19)) / 20.0 * (3.0 if above else 1.0), 4)
+        if draw(st.booleans()):
+            margin, low, high = None, margin, round(margin + 0.1, 4)
+    elif outcome == "cannot-stand":
+        margin = 0.0
+    return StrategyVerdict(
+        strategy=strategy.name, label=strategy.label, part=None, status=status, reason="" if status == "ok" else "no wish", axis=strategy.axis,
+        demand=0.2 if status == "ok" else None, capacity=draw(FACTORS) if status == "ok" else None, unit="g", outcome=outcome,
+        bound=None, violated=[], margin=margin, margin_at_least=low, margin_below=high, parameters="", assumes="",
+        statement=f"The verdict of {strategy.label}.",
+    )  # fmt: skip
+
+
+TABLES = st.lists(rows(), max_size=9, unique_by=lambda row: row.strategy)
+DECK = make_deck({
+    "structure": {"kind": "arch", "radius": 5.0, "thickness": 0.8, "embrace": 150.0, "voussoirs": 9},
+    "motion": {"kind": "sine-pulse", "amplitude": "0.2 g", "period": 0.4}, "analysis": [{"kind": "assess"}],
+})  # fmt: skip
+CONTEXT = Context(DECK, 1)
+
+
+def concluded(table: list[StrategyVerdict], results: dict[str, Result] | None = None) -> Assess:
+    """What an assessment makes of rows, and results, that it did not ask for."""
+    work = _Work(CONTEXT, DECK.analyses[0])
+    work.rows, work.results = {row.strategy: row for row in table}, results or {}
+    result = Result("assess")
+    work.conclude(result)
+    return result.results
+
+
+def turns(row: StrategyVerdict) -> float:
+    """The least factor on the hazard at which a row may turn to collapse, as it says."""
+    if row.margin is not None:
+        return row.margin
+    known = row.margin_at_least if row.outcome == "stands" else row.margin_below
+    return math.inf if known is None else known
+
+
+@QUICK
+@given(TABLES)
+def test_the_overall_answer_follows_from_the_rows(table: list[StrategyVerdict]) -> None:
+    found = concluded(table)
+    judged = {row.outcome for row in table if row.status == "ok"} - {"not-applicable"}
+    if "cannot-stand" in judged:
+        want = "cannot stand"
+    elif {"stands", "collapses"} <= judged:
+        want = "depends"
+    elif judged == {"stands"} or judged == {"collapses"}:
+        want = f"{judged.pop()} under all"
+    else:
+        want = "open"
+    assert found.overall == want
+    verdict = found.judged(Demanded(0.2, "sine", 0.4, 0.2))
+    assert verdict.outcome == {
+        "stands under all": "stands",
+        "collapses under all": "collapses",
+        "cannot stand": "cannot-stand",
+    }.get(want, "open")
+    for row in table:
+        if row.status == "ok" and row.outcome != "not-applicable" and (len(judged) > 1 or want == "open"):
+            assert row.label in found.statement or (want == "cannot stand" and row.outcome == "collapses")
+        if row.status != "ok":
+            assert row.label in found.statement
+    assert [(r.strategy, r.outcome) for r in found.verdicts] == [(r.strategy, r.outcome) for r in table]
+
+
+@QUICK
+@given(TABLES)
+def test_the_least_margin_is_that_of_the_rows(table: list[StrategyVerdict]) -> None:
+    found = concluded(table)
+    known = {row.strategy: turns(row) for row in table if row.status == "ok" and row.outcome != "not-applicable"}
+    least = min(known.values(), default=math.inf)
+    if least == math.inf:
+        assert found.least_margin is None and found.least_margin_strategy is None
+    else:
+        assert found.least_margin == least and known[found.least_margin_strategy] == least
+        assert found.overall != "stands under all" or least >= 1.0
+        assert found.overall not in ("collapses under all", "cannot stand") or least <= 1.1
+
+
+@QUICK
+@given(TABLES)
+def test_agreement_and_reasons_follow_from_the_rows(table: list[StrategyVerdict]) -> None:
+    found = concluded(table)
+    judged = {row.strategy: row for row in table if row.status == "ok" and row.outcome != "not-applicable"}
+    assert set(found.agreement) == set(judged)
+    differing = set()
+    for a, b in itertools.combinations(judged, 2):
+        one, other = judged[a], judged[b]
+        said = found.agreement[a][b]
+        assert said == found.agreement[b][a]
+        collapse = {"collapses", "cannot-stand"}
+        alike = one.outcome == other.outcome or {one.outcome, other.outcome} == collapse
+        if not alike:
+            assert said == ("open" if "open" in (one.outcome, other.outcome) else "disagree")
+        else:
+            assert said in ("agree", "apart")
+        if said != "agree":
+            differing.add(frozenset((a, b)))
+    explained = {frozenset(pair) for reason in found.reasons for pair in reason.explains}
+    assert explained <= differing
+    assert {frozenset(pair) for pair in found.unexplained} == differing - explained
+
+
+ENDS = st.sampled_from(["no-hinging", "recovery", "collapse"])
+RULES = ("thesis", "energy-safe", "inelastic")
+
+
+@QUICK
+@given(TABLES, FACTORS, FACTORS, st.none() | FACTORS, st.tuples(ENDS, ENDS, ENDS), st.booleans())
+def test_reasons_follow_from_the_results(
+    table: list[StrategyVerdict],
+    right: float,
+    left: float,
+    cracked: float | None,
+    ends: tuple[str, str, str],
+    chaotic: bool,
+) -> None:
+    """Rules on a crack, on impacts and on last digits: spoken where their numbers show it, of the pairs that they explain."""
+    asked = {row.strategy: row for row in table if row.status == "ok"}
+    fracture = None if cracked is None else Fracture.model_construct(stands=None, collapse_acceleration_g=cracked)
+    by_rule = [
+        RuleOutcome.model_construct(rule=rule, restitution=0.8, outcome=end)
+        for rule, end in zip(RULES, ends, strict=True)
+    ]
+    results = {
+        "tilt": Tilt.model_construct(collapse_acceleration_g=right, collapse_acceleration_opposite_g=left, fracture=fracture),
+        "rocking": Rocking.model_construct(
+            outcome=ends[2], outcomes_by_rule=by_rule, decided_by_last_digits=chaotic, peak_rotation_ratio=0.3
+        ),
+    }  # fmt: skip
+    found = concluded(table, {name: Result(name, results=r) for name, r in results.items() if name in asked})
+    differing = {
+        tuple(sorted((a, b))) for a, there in found.agreement.items() for b, said in there.items() if said != "agree"
+    }
+    told = {reason.rule: {tuple(sorted(pair)) for pair in reason.explains} for reason in found.reasons}
+    dynamic = {
+        pair for pair in differing if set(pair) <= {"rocking", "assessment", "probability", "dem"} and "rocking" in pair
+    }
+    split = len({end == "collapse" for end in ends}) == 2
+    assert told.get("impact-rule", set()) == (dynamic if split else set())
+    assert told.get("last-digits", set()) == (dynamic if chaotic else set())
+    order = {"cannot-stand": 0, "collapses": 1, "open": 2, "stands": 3}
+    weaker = {
+        pair
+        for pair in differing
+        if "tilt" in pair and order[asked["tilt"].outcome] < min(order[asked[n].outcome] for n in pair if n != "tilt")
+    }
+    if cracked is None or not (cracked < min(right, left) and min(right, left) > 0.2):
+        assert "crack" not in told
+    else:
+        assert weaker <= told.get("crack", set()) <= differing
+
+
+@QUICK
+@given(
+    st.none() | FACTORS,
+    st.none() | FACTORS,
+    st.sampled_from([None, *OUTCOMES]),
+    BOUNDS,
+    st.lists(st.just("It slides."), max_size=1),
+)
+def test_a_verdict_is_no_better_than_what_it_rests_on(demand, capacity, outcome, bound, violated) -> None:
+    found = judge("It is so.", demand, capacity, "g", outcome, bound, violated)
+    assert (found.demand, found.capacity, found.unit, found.bound, found.violated) == (
+        demand,
+        capacity,
+        "g",
+        bound,
+        violated,
+    )
+    whole = demand is not None and capacity is not None
+    assert (found.ratio == capacity / demand) if whole else found.ratio is None
+    assert all(text in found.statement for text in ["It is so.", *violated])
+    if violated:
+        assert found.outcome not in ("stands", "collapses")
+    elif outcome is not None:
+        assert found.outcome == outcome
+    elif not whole:
+        assert found.outcome == "not-applicable"
+    else:
+        want = "stands" if demand < capacity else "collapses"
+        undecided = (bound, want) in {("upper", "stands"), ("lower", "collapses")}
+        assert found.outcome == ("open" if undecided else want)
+
+
+class Judged(KindResults):
+    """Results of any strategy, with a verdict of their own."""
+
+    verdict: Verdict
+
+    def judged(self, demand: Demanded) -> Verdict:
+        return self.verdict
+
+
+VERDICTS = st.builds(
+    lambda demand, capacity, bound, violated: judge("So it is.", demand, capacity, "g", None, bound, violated),
+    FACTORS, FACTORS, BOUNDS, st.lists(st.just("It slides."), max_size=1),
+)  # fmt: skip
+
+
+@QUICK
+@given(VERDICTS, st.sampled_from(NAMES))
+def test_a_row_says_what_its_strategy_says(verdict: Verdict, name: str) -> None:
+    strategy = strategies.of(name)
+    row = row_of(
+        strategy, Result(strategy.kind, results=Judged(verdict=verdict)), "so", Demanded(0.2, "sine", 0.4, 0.2), 0.05
+    )
+    for same in ("demand", "capacity", "unit", "outcome", "bound", "violated", "statement"):
+        assert getattr(row, same) == getattr(verdict, same)
+    assert row.status == "ok" and row.strategy == name
+    assert row.margin == (verdict.ratio if strategy.axis in ("acceleration", "pulse", "check") else None)
+    for status in ("refused", "failed", "interrupted"):
+        bare = row_of(strategy, Result(strategy.kind, status, "no"), "", Demanded(0.2, "sine", 0.4, 0.2), 0.05)
+        assert bare.status in ("refused", "failed") and bare.outcome == "not-applicable" and bare.reason == "no"
+
+
+@pytest.mark.xfail(
+    strict=True, reason="awaits A12: rows of a wall or of a cracked buttress drop the bound and what is violated"
+)
+@QUICK
+@given(VERDICTS, st.sampled_from(["left", "right", None]), FACTORS)
+def test_no_row_stands_by_an_upper_bound_or_beside_what_is_violated(
+    verdict: Verdict, wall: str | None, cracked: float
+) -> None:
+    class Pushed(Tilt):
+        def judged(self, demand: Demanded) -> Verdict:
+            return verdict
+
+    fracture = Fracture.model_construct(stands=None, collapse_acceleration_g=cracked)
+    results = Pushed.model_construct(
+        collapse_acceleration_g=cracked, collapse_acceleration_opposite_g=cracked, fracture=fracture
+    )
+    row = row_of(
+        strategies.of("tilt"), Result("tilt", results=results), "", Demanded(0.2, "sine", 0.4, 0.2), 0.05, wall
+    )
+    assert not (row.outcome == "stands" and (row.bound == "upper" or row.violated))
+    assert not (row.outcome == "collapses" and (row.bound == "lower" or row.violated))
+
+
+@QUICK
+@given(st.integers(0, 40), st.integers(0, 40), st.sampled_from([0.02, 0.05, 0.2]))
+def test_a_share_of_collapses_decides_by_its_bounds(count: int, collapsed: int, acceptable: float) -> None:
+    collapsed = min(collapsed, count)
+
+    class Shares(Ensemble):
+        def judged(self, demand: Demanded) -> Verdict:
+            return judge("A share.")
+
+    strategy = strategies.of("probability")
+    results = Shares.model_construct(count=count, collapsed=collapsed)
+    row = row_of(strategy, Result("fragility", results=results), "", Demanded(0.2, "sine", 0.4, 0.2), acceptable)
+    share = collapsed / count if count else None
+    assert row.demand == share and row.capacity == acceptable
+    assert row.outcome == (
+        "open" if share is None else "stands" if share <= acceptable else "collapses" if share > 0.5 else "open"
+    )
+
+
+@QUICK
+@given(st.lists(st.tuples(FACTORS, st.booleans()), min_size=1, max_size=8, unique_by=lambda pair: pair[0]))
+def test_the_margin_of_a_motion_lies_below_the_first_factor_that_collapses(pairs: list[tuple[float, bool]]) -> None:
+    pairs.sort()
+    results = OverLevels.model_construct(
+        levels=[level for level, _ in pairs], collapsed=[int(down) for _, down in pairs]
+    )
+    low, high = scaled_margin(results)
+    down = [level for level, falls in pairs if falls]
+    below = [level for level, _ in pairs if not down or level < down[0]]
+    assert (low, high) == (max(below, default=None), min(down, default=None))
+
+
+OVERALL = st.sampled_from(["stands under all", "collapses under all", "cannot stand", "depends", "open"])
+BUILDINGS = st.builds(
+    lambda overall, margin, status: Assessed("a", overall if status == "ok" else "", margin if status == "ok" else np.nan, "", status, "", Path()),
+    OVERALL, st.just(np.nan) | FACTORS, st.sampled_from(["ok", "ok", "failed", "refused"]),
+)  # fmt: skip
+
+
+@QUICK
+@given(st.lists(BUILDINGS, max_size=8))
+def test_a_ranking_puts_the_worst_first(buildings: list[Assessed]) -> None:
+    ranked = sorted(buildings, key=lambda b: b.order)
+    for worse, better in itertools.pairwise(ranked):
+        assert better.overall != "cannot stand" or worse.overall == "cannot stand"
+        if worse.overall == "stands under all" and not np.isfinite(worse.least_margin):
+            assert better.overall == "stands under all" and not np.isfinite(better.least_margin)
+        if (
+            np.isfinite(worse.least_margin)
+            and np.isfinite(better.least_margin)
+            and "cannot stand" not in (worse.overall, better.overall)
+        ):
+            assert worse.least_margin <= better.least_margin
+        if np.isfinite(worse.least_margin) and worse.overall != "cannot stand":
+            assert np.isfinite(better.least_margin) or better.overall == "stands under all"
+
+
+@settings(QUICK, max_examples=20)
+@given(st.sets(st.sampled_from("abcdef"), min_size=1, max_size=4), st.booleans())
+def test_a_folder_is_all_of_its_decks_and_nothing_else(names: set[str], common: bool) -> None:
+    with tempfile.TemporaryDirectory() as place:
+        structure = '[structure]\nkind = "block"\nwidth = 1.0\nheight = 3.0\n'
+        motion = '[motion]\nkind = "sine-pulse"\namplitude = "0.2 g"\nperiod = 0.5\n'
+        for name in names:
+            (Path(place) / f"{name}.toml").write_text(structure + ("" if common else motion))
+            (Path(place) / f"{name}.expect.toml").write_text("no deck")
+        if common:
+            (Path(place) / "common.toml").write_text(motion)
+        (Path(place) / "notes.txt").write_text("no deck")
+        found = decks_of(Path(place))
+    assert list(found) == sorted(names)
+    assert all("sine-pulse" in text and 'kind = "assess"' in text for text in found.values())

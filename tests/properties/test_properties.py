@@ -1,0 +1,150 @@
+"""Random buildings asked by all strategies: the relations of the registry hold.
+
+Short in the quick suite; `make verify` asks 2,000 buildings. A relation that breaks is shown with the smallest deck that
+still breaks it. Environment: EXTRADOS_TRIALS, the share of the whole count; EXTRADOS_SEED, another draw.
+"""
+
+import importlib
+import json
+import os
+import zlib
+from typing import Any
+
+import numpy as np
+import pytest
+import tomlkit
+from asking import ask
+from buildings import KINDS
+from hypothesis import HealthCheck, Phase, given, seed, settings
+from hypothesis.errors import UnsatisfiedAssumption
+from relations import RELATIONS, Relation
+
+from extrados import kinds
+from trials import NOTES, SHARE, count_of
+
+#: The chapters of the registry
+CHAPTERS = ("invariance", "files", "proportion", "bounds", "agreement", "promises")
+for chapter in CHAPTERS:
+    importlib.import_module(chapter)
+#: Buildings that a whole run asks at least, and each relation of share 1; in the quick suite, those of a costly relation none
+WHOLE, EACH, QUICK = 2000, 36, 2
+COSTLY = 0.3
+SEED = int(os.environ.get("EXTRADOS_SEED", "1"))
+#: What each relation was asked: name -> cases; and those that broke
+ASKED: dict[str, int] = {}
+BROKEN: list[str] = []
+
+
+def text_of(case: Any) -> str:
+    """A case as decks in TOML, as far as it holds decks."""
+    parts = case if isinstance(case, tuple) else (case,)
+    shown = []
+    for part in parts:
+        part = json.loads(json.dumps(part, default=lambda v: v.tolist() if isinstance(v, np.ndarray) else repr(v)))
+        shown.append(tomlkit.dumps(part) if isinstance(part, dict) and "structure" in part else repr(part))
+    return "\n".join(shown)
+
+
+def checked(relation: Relation, case: Any) -> None:
+    """One case, counted; a rejection outside of hypothesis is none."""
+    ASKED[relation.name] = ASKED.get(relation.name, 0) + 1
+    try:
+        relation.check(case)
+    except UnsatisfiedAssumption:
+        ASKED[relation.name] -= 1
+        raise
+
+
+def examples(relation: Relation) -> None:
+    """The cases that broke it once."""
+    for case in relation.examples:
+        try:
+            checked(relation, case)
+        except UnsatisfiedAssumption:
+            raise RuntimeError(f"{relation.name}: an example gives nothing to compare\n{text_of(case)}") from None
+        except AssertionError as error:
+            raise AssertionError(f"{relation.name}: {error}\n{text_of(case)}") from error
+
+
+def random_cases(relation: Relation, count: int) -> None:
+    """As many random cases; the smallest that breaks it is shown."""
+    last: list[Any] = []
+
+    @seed(zlib.crc32(relation.name.encode()) + SEED)
+    @settings(
+        max_examples=count, database=None, deadline=None, suppress_health_check=list(HealthCheck), report_multiple_bugs=False,
+        phases=(Phase.generate, Phase.shrink), print_blob=False,
+    )  # fmt: skip
+    @given(relation.case)
+    def one(case: Any) -> None:
+        last[:] = [case]
+        checked(relation, case)
+
+    try:
+        one()
+    except Exception as error:
+        BROKEN.append(relation.name)
+        shown = text_of(last[0]) if last else ""
+        raise AssertionError(f"{relation.name}: {error}\n\nThe smallest case:\n{shown}") from error
+
+
+def expected(relation: Relation) -> Any:
+    """A relation that a known fault breaks is expected to be broken by its examples."""
+    marks = (
+        [pytest.mark.xfail(reason=f"awaits {relation.awaits}", strict=True, raises=AssertionError)]
+        if relation.awaits
+        else []
+    )
+    return pytest.param(relation, id=relation.name, marks=marks)
+
+
+def test_every_kind_of_structure_is_drawn() -> None:
+    assert set(KINDS) == set(kinds.STRUCTURES)
+
+
+def test_every_known_fault_has_a_deck() -> None:
+    assert len(RELATIONS) >= 40
+    for relation in RELATIONS.values():
+        assert relation.holds.__doc__ and (relation.examples or not relation.awaits), relation.name
+        assert set(relation.asks) <= set(kinds.ANALYSES), relation.name
+
+
+@pytest.mark.parametrize("relation", [expected(r) for r in RELATIONS.values() if r.examples])
+def test_what_broke_once(relation: Relation) -> None:
+    examples(relation)
+
+
+@pytest.mark.parametrize("relation", [pytest.param(r, id=r.name) for r in RELATIONS.values() if not r.awaits])
+def test_relation(relation: Relation) -> None:
+    whole = round(EACH * relation.share)
+    if count := count_of(whole, 0 if relation.share < COSTLY else QUICK):
+        random_cases(relation, count)
+
+
+@pytest.mark.verify
+def test_how_many_buildings_were_asked() -> None:
+    """The count of a whole run, for the verification book; after all others of this file, in the same process."""
+    asked = sum(ASKED.values())
+    awaited = sorted({item for r in RELATIONS.values() for item in r.awaits.split()})
+    if SHARE >= 1.0:
+        NOTES.mkdir(parents=True, exist_ok=True)
+        note = f"{len(RELATIONS)} relations, {len(KINDS)} kinds of structure"
+        row = {"what": "random buildings of which strategies say what cannot all be true", "tried": asked, "failures": len(BROKEN),
+               "notes": [note, *BROKEN, *([f"known faults that break them: {', '.join(awaited)}"] if awaited else [])]}  # fmt: skip
+        (NOTES / "properties.json").write_text(json.dumps(row, indent=1), encoding="utf-8")
+        assert asked >= WHOLE
+
+
+def test_a_broken_relation_shows_the_smallest_deck() -> None:
+    """The machine itself: a relation that no building keeps."""
+    from hypothesis import strategies as st
+
+    def never(deck: dict, within: float) -> None:
+        assert ask(deck, "tilt").capacity[0] < 0.3, "bears too much"
+
+    decks = st.integers(2, 30).map(lambda k: {"structure": {"kind": "block", "width": k / 20, "height": 1.0}})
+    with pytest.raises(
+        AssertionError,
+        match=r"bears too much(.|\n)*The smallest case:\n\[structure\]\nkind = \"block\"\nwidth = 0\.3\n",
+    ):
+        random_cases(Relation("never", ("tilt",), decks, never, 0.0), 50)
