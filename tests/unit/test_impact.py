@@ -140,7 +140,9 @@ def test_rules_that_differ_are_told_with_their_outcomes() -> None:
     assert set(told) == {"thesis", "energy-safe", "inelastic"}
     assert told["thesis"].restitution == 1.0 > told["inelastic"].restitution > told["energy-safe"].restitution
     assert told["inelastic"].outcome == run["rocking"].outcome
-    assert any("impact rules differ" in text for text in run.results[0].warnings)
+    same = {one.outcome for one in told.values()} == {run["rocking"].outcome}
+    word = "The impact rules differ" if same else "The impact rule decides the outcome"
+    assert sum(word in text for text in run.results[0].warnings) == 1
     near = extrados.run(deck(0.15, 150.0, 0.05))
     assert "outcomes_by_rule" not in near["rocking"]
     given = extrados.run(deck(0.1, 157.5, 0.05, 0.5))

@@ -370,7 +370,7 @@ class _Work:
             )
             if found is not None and found.results.judged(self.asker.demand(self.peak)).outcome != row.outcome:
                 self._keep("dem-nudged", found)
-                told = f"{row.statement} A motion {factor:.6f} times as strong ends otherwise: it is decided by its last digits."
+                told = f"{row.statement} The response is chaotic: the motion times {factor:.6f} has another outcome."
                 self.rows["dem"] = row.model_copy(update={"outcome": "open", "statement": told})
                 return True
         return False

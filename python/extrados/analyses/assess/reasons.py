@@ -99,7 +99,7 @@ class Facts:
 
 #: Reasons in a few words
 HEADLINES = {
-    "static-peak": "how long the peak lasts", "impact-rule": "what an impact loses", "last-digits": "the last digits of the motion",
+    "static-peak": "how long the peak lasts", "impact-rule": "the energy loss at impacts", "last-digits": "a chaotic response",
     "sine-for-record": "what the motion holds beside its strongest sine", "sliding": "sliding of the stones",
     "drums": "stones that move by themselves", "hinges-elsewhere": "hinges that form elsewhere",
     "membrane-without-sliding": "elements that cannot slide", "tension": "tension that elements bear",
@@ -153,7 +153,7 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
     needed = facts.needed_s(amplitude)
     told = f"{amplitude:.3g} g" if factor == 1.0 else f"{amplitude:.3g} g (the motion times {factor:.3g})"
     text = (
-        f"Statics takes the peak of {told} as if it lasted for ever; the motion passes the {capacity:.3g} g of "
+        f"Static analysis applies the peak of {told} as a sustained load; the motion exceeds the {capacity:.3g} g of "
         f"{facts.rows[weakest].label} {count} time{'s' if count != 1 else ''}, for {longest:.3g} s at most"
     )
     numbers = {
@@ -288,8 +288,8 @@ def impact_rule(facts: Facts, pairs: list[Pair]) -> Reason | None:
     numbers = {f"restitution_{o.rule}".replace("-", "_"): o.restitution for o in r.outcomes_by_rule}
     return reason(
         "impact-rule", mine,
-        f"What an impact loses decides: rocking falls by {told(falls)} and stands by {told(stands)}. Discrete elements lose "
-        "what their damping takes, which is neither.", **numbers,
+        f"The energy loss at impacts decides: rocking collapses by {told(falls)} and recovers by {told(stands)}. Discrete elements "
+        "lose energy by the damping of their contacts, which is neither rule.", **numbers,
     )  # fmt: skip
 
 
@@ -332,7 +332,7 @@ def last_digits(facts: Facts, pairs: list[Pair]) -> Reason | None:
 
 
 def elements_of_last_digits(facts: Facts, pairs: list[Pair]) -> Reason | None:
-    """Elements are decided by the last digits of the motion."""
+    """The discrete-element response is chaotic."""
     dem, nudged = facts.of("dem"), facts.probes.get("dem-nudged")
     mine = [p for p in pairs if "dem" in p]
     if not mine or not isinstance(dem, DemRun) or nudged is None or not isinstance(nudged.results, DemRun):
@@ -340,8 +340,8 @@ def elements_of_last_digits(facts: Facts, pairs: list[Pair]) -> Reason | None:
     here, there = dem.peak_displacement_m, nudged.results.peak_displacement_m
     return reason(
         "last-digits", mine,
-        f"Discrete elements under this motion are decided by its last digits: their stones move by {here:.3g} m, under a motion stronger or "
-        f"weaker by a millionth by {there:.3g} m. A single run of them is one draw.", displacement_m=here, displacement_nudged_m=there,
+        f"The discrete-element response is chaotic here: blocks move by {here:.3g} m, and by {there:.3g} m with a change of 1e-6 in the "
+        "motion. Treat one run as one sample.", displacement_m=here, displacement_nudged_m=there,
     )  # fmt: skip
 
 

@@ -187,17 +187,22 @@ def _answer(r: out.Assessment, worst: out.AssessedImpulse | None, what: str) -> 
         f"starting at {first.start_s:.2f} s. "
     )
     which = (
-        "it" if worst.rank == 1 else f"impulse {worst.rank} ({abs(worst.amplitude_g):.3f} g, {worst.period_s:.3f} s)"
+        "the primary impulse"
+        if worst.rank == 1
+        else f"impulse {worst.rank} ({abs(worst.amplitude_g):.3f} g, {worst.period_s:.3f} s)"
     )
     if worst.margin is None:
-        text += f"By the criterion all impulses are too short to bring the {what} down. "
+        text += f"Predicted for the {what}: no collapse. All impulses are too short to cause collapse. "
     elif r.verdict == "fails":
-        text += f"The {what} is predicted to fail: {which} reaches {1 / worst.margin:.2f} times the failing amplitude. "
+        text += f"Predicted for the {what}: collapse. The amplitude of {which} is {1 / worst.margin:.2f} times the failing one. "
     else:
-        text += f"The {what} is predicted to stand: {which} would have to be {worst.margin:.2f} times stronger. "
+        text += (
+            f"Predicted for the {what}: no collapse. The amplitude of {which} would have to be {worst.margin:.2f} times larger to "
+            "cause collapse. "
+        )
     also = "also " if r.static_verdict == r.verdict else ""
-    static = f"{also}predicts failure" if r.static_verdict == "fails" else f"{also}predicts that it stands"
+    static = "collapse" if r.static_verdict == "fails" else "no collapse"
     return (
-        text
-        + f"A static check ({r.peak_ground_acceleration_g:.3f} g against {r.uplift_acceleration_g:.3f} g) {static}."
+        f"{text}Limit analysis with the peak of {r.peak_ground_acceleration_g:.3f} g as a sustained load (collapse acceleration "
+        f"{r.uplift_acceleration_g:.3f} g) {also}predicts {static}."
     )

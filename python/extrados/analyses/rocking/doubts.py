@@ -140,9 +140,9 @@ def doubts(context: Context, options: Rocking, rocker: Rocker, response: Respons
     if rules:
         told = ", ".join(f'"{one.rule}" {one.restitution:.3f}: {one.outcome}' for one in rules)
         same = {one.outcome for one in rules} == {response.outcome}
-        word = "the outcome is the same" if same else "outcomes differ"
-        warnings.append(f"the impact rules differ by more than {DIFFER:g} for this structure and {word} ({told})")
-        if not same:
+        if same:
+            warnings.append(f"The impact rules differ by more than {DIFFER:g}, and the outcome is the same: {told}.")
+        else:
             violated.append(f"The impact rule decides the outcome: {told}.")
     for (c_v, why), one in zip(more, outcome[len(rivals) :], strict=True):
         if one:
