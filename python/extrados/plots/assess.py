@@ -74,12 +74,12 @@ def _margins(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
         ax.set_yticks(range(len(rows)), [v.label for v in rows])
         ax.set_ylim(len(rows) - 0.4, -0.6)
         ax.grid(axis="y", visible=False)
-        ax.set_xlabel("factor on the hazard at which the verdict turns to fall")
+        ax.set_xlabel("critical scale factor of the hazard")
         ax.set_title("Margins of all strategies")
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-margins")
     return saved, (
-        "How many times the hazard each strategy bears: left of the dashed line it falls under the hazard itself. Bars: the "
+        "Critical scale factor of the hazard by each strategy: left of the dashed line the hazard itself causes collapse. Bars: the "
         "margin lies between their ends; arrows: beyond the point, not looked for."
     )
 

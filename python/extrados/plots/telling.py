@@ -97,7 +97,11 @@ def _assessed(run: Stored, name: str) -> list[Block]:
             (1.5, 0.9, 0.8, 0.85, 0.9, 0.9, 3.6),
         )
     )
-    found.append(Words("The margin is the factor on the hazard at which the verdict turns to fall: above 1 it stands."))
+    found.append(
+        Words(
+            "The margin is the critical scale factor of the hazard: below 1 the strategy gives collapse under the hazard itself."
+        )
+    )
     if r.reasons:
         found.append(Heading("Why they differ", 2))
         labels = {v.strategy: v.label for v in r.verdicts}

@@ -123,7 +123,9 @@ class Assess(KindResults):
     probes: list[Probe] = fact("further runs")
     sensitivity: list[TurningValue] = maybe("what the verdicts hang on, the most decisive first")
     not_done: list[str] = fact("what the budget did not allow, and further runs that decided nothing")
-    least_margin: float | None = fact("least factor on the hazard at which a strategy turns to fall; null: none known")
+    least_margin: float | None = fact(
+        "least critical scale factor of the hazard of all strategies; 0 where the building cannot stand; null: none known"
+    )
     least_margin_strategy: str | None = fact("whose it is")
     budget_s: float = fact("time that it was given", "s")
 

@@ -353,7 +353,7 @@ def chance(facts: Facts, pairs: list[Pair]) -> Reason | None:
         return None
     return reason(
         "chance", mine,
-        f"Of {row.parameters.split(' (coef')[0]}, {100 * row.demand:.0f} % come down under the hazard itself: a single run of one building "
+        f"Of {row.parameters.split(' (coef')[0]}, {100 * row.demand:.0f} % collapse under the hazard itself: a single run of one building "
         "under one motion is one draw of these.", share=row.demand,
     )  # fmt: skip
 
