@@ -84,6 +84,7 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
     "damping and stiffness of contacts": (r"damping_ratio", r"critical_beta", r"joint_stiffness"),
     "time and number of impacts": (r"impact_times", r"impacts$", r"half_cycle", r"collapse_time"),
     "rotation": (r"rotation_rad", r"peak_rotation_upper", r"critical_rotation", r"rotation_ratio"),
+    "slip": (r"_slip_m$",),
     "outcome in words": (r"outcome$", r"\.verdict$"),
 }
 
