@@ -56,7 +56,6 @@ SLIPPERY = {
     "tilt dem rocking assessment fragility local-mechanism failure-domain sla",
     certificates(),
     0.0,
-    awaits="A2",
     examples=(THIN, SLIPPERY),
 )
 def certificates_of_collapse(deck: Deck, within: float) -> None:
@@ -162,7 +161,7 @@ def one_block_by_every_strategy(width: float, height: float, within: float) -> N
     )
 
 
-@relation("tilt dem", SLIDERS, 2e-3, awaits="A6", examples=(SLIDES,))
+@relation("tilt dem", SLIDERS, 2e-3, examples=(SLIDES,))
 def a_block_that_slides(deck: Deck, within: float) -> None:
     """Friction below b/h: it slides at the friction coefficient, which is no collapse."""
     mu = deck["joints"]["friction"]
@@ -493,7 +492,7 @@ DRUM = {"structure": {"kind": "blocks", "block": [{"name": "drum", "points": [[-
 
 
 @relation(
-    "tilt thrust dem rocking local-mechanism", st.tuples(sections("column", "brickwork", "arch"), WEIGHTLESS), 0.0, awaits="A2",
+    "tilt thrust dem rocking local-mechanism", st.tuples(sections("column", "brickwork", "arch"), WEIGHTLESS), 0.0,
     examples=((DRUM, "local-mechanism"),),
 )  # fmt: skip
 def stones_without_weight(deck: Deck, kind: str, within: float) -> None:

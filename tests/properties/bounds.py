@@ -157,7 +157,7 @@ def dissipation(deck: Deck, within: float) -> None:
         at_most("displacement at the peak", abs(r.peak_displacement_m), 0.1 * size, 0.0)
 
 
-@relation("sla tilt", arches().map(lambda s: {"structure": s}), 0.02, awaits="A3", share=0.3, examples=(
+@relation("sla tilt", arches().map(lambda s: {"structure": s}), 0.02, share=0.3, examples=(
     {"structure": {"kind": "arch", "radius": 10.0, "thickness": 1.07, "embrace": 180.0, "voussoirs": 40}},
     {"structure": {"kind": "arch", "radius": 10.0, "thickness": 1.05, "embrace": 180.0, "voussoirs": 40}},
 ))  # fmt: skip
@@ -182,7 +182,7 @@ SOLE = {"structure": {"kind": "building", "storeys": [3.0], "beds": [{"name": "s
 
 @relation("pushover", decks("building", friction=number(0.2, 0.6), material=MASONRY).map(
     lambda d: changed(d, structure={"beds": [{"name": "sole"}]}, joints=MORTAR)
-), 0.02, awaits="A8", share=0.2, examples=(SOLE,))  # fmt: skip
+), 0.02, share=0.2, examples=(SOLE,))  # fmt: skip
 def no_more_than_coulomb(deck: Deck, within: float) -> None:
     """On a weak sole the base shear stays below friction times the weight and cohesion times the area, or says that it does not."""
     answer = ask(deck, "pushover", direction=0.0, mesh={"size": 1.0, "layers": 3}, events=20000)

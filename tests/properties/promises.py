@@ -85,7 +85,7 @@ def friction_is_not_dropped(size: tuple, kind: str, within: float) -> None:
 
 
 @relation(
-    "rocking", st.tuples(number(0.5, 1.5), number(4.0, 6.0), number(0.8, 1.3), number(1.5, 2.5)), 0.0, awaits="A7",
+    "rocking", st.tuples(number(0.5, 1.5), number(4.0, 6.0), number(0.8, 1.3), number(1.5, 2.5)), 0.0,
     examples=((1.005, 5.01, 1.0525, 1.625), (1.15, 4.62, 1.165, 1.725)),
 )  # fmt: skip
 def chaos_is_told(width: float, slenderness: float, amplitude: float, frequency: float, within: float) -> None:
@@ -121,7 +121,7 @@ def little_damping(deck: Deck, ratio: float, within: float) -> None:
     must(answer.status == "ok", f"{answer.status}: {answer.said}")
 
 
-@relation("pushover", decks("building", material=MASONRY).map(lambda d: changed(d, motion=WEAK)), 0.0, awaits="A15", examples=(
+@relation("pushover", decks("building", material=MASONRY).map(lambda d: changed(d, motion=WEAK)), 0.0, examples=(
     changed({k: v for k, v in SOLE.items() if k != "joints"}, motion=WEAK, structure={"beds": []}),
 ))  # fmt: skip
 def a_push_is_no_verdict_on_a_peak(deck: Deck, within: float) -> None:
@@ -174,7 +174,7 @@ def clauses_within_their_scope(thickness: float, height: float, mechanism: str, 
             )
 
 
-@relation("tilt", decks("brickwork", "blocks", friction=number(0.2, 0.5)), 0.0, awaits="A12", share=0.5, examples=(
+@relation("tilt", decks("brickwork", "blocks", friction=number(0.2, 0.5)), 0.0, share=0.5, examples=(
     {"structure": {"kind": "brickwork", "unit_length": 0.5, "unit_height": 0.25, "units": 4, "courses": 5}, "joints": {"friction": 0.3}},
 ))  # fmt: skip
 def dilatant_capacities_are_called_so(deck: Deck, within: float) -> None:
