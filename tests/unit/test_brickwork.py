@@ -315,3 +315,22 @@ def test_the_most_central_line_of_the_smallest_wall_ends() -> None:
         ]
     assert found.status == "ok" and found.results.geometric_safety_factor is None, "through all middles"
     assert found.results.central.greatest_eccentricity_ratio < 1e-3
+
+
+def test_a_wall_without_its_most_central_line_keeps_its_bounds(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    wall = {"kind": "brickwork", "unit_length": 0.3, "unit_height": 0.15, "units": 2, "courses": 2}
+
+    def asked(gamma: float) -> extrados.running.run.Run:
+        deck = {"structure": wall, "joints": {"friction": 0.7}, "analysis": {"kind": "thrust", "gamma": gamma}}
+        return extrados.run(deck, out=tmp_path / f"{gamma:g}")
+
+    whole = asked(0.1).results[0]
+
+    def gives_up(*_: object, **__: object) -> None:
+        raise NoAnswer("the most central thrust line did not settle")
+
+    monkeypatch.setattr(LimitAnalysis, "central", gives_up)
+    found = asked(0.1).results[0]
+    assert found.status == "ok" and any("did not settle" in w for w in found.warnings) and found.results.central is None
+    assert found.results.admissible_interval_g == whole.results.admissible_interval_g and "admissible" in found.answer
+    assert asked(0.8).results[0].status == "refused"
