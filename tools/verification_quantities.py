@@ -6,7 +6,7 @@ import re
 QUANTITIES: dict[str, tuple[str, ...]] = {
     "code check": (r"(?:local-mechanism|code-checks)\S*\.", r"checks\."),
     "ground motion and spectrum": (r"^motion", r"^shake-table"),
-    "displacement": (r"dowel", r"displacement_m$", r"permanent_elongation"),
+    "displacement": (r"dowel", r"slip_m$", r"displacement_m$", r"permanent_elongation"),
     "tail of a load curve": (r"measured\.tail_ratios", r"\.last_load_N$"),
     "event of sequentially linear analysis": (
         r"first_event",

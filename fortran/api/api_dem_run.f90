@@ -18,8 +18,8 @@ contains
       use dem_run, only : run_options
       integer(c_int64_t), intent(in) :: handle
       !> End time [s], step [s] or 0, fraction of the critical step, settling tolerance, farthest settlement [m] or 0,
-      !> collapse [m] or 0, limit of the energy residual, beta while it settles [s], rotation [rad] and loss of height [m]
-      !> of a body that has collapsed
+      !> collapse [m] or 0, limit of the energy residual, beta while it settles [s], rotation [rad] and
+      !> loss of height [m] of a body that has collapsed
       real(c_double), intent(in) :: limits(10)
       integer(c_int), intent(in) :: settle_steps              !! at most; 0: no settling
       integer(c_int), intent(in) :: stop_at_rest              !! 1: end once all is quiet

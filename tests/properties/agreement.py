@@ -16,6 +16,8 @@ import extrados
 from extrados.decks.reader import make_deck
 
 #: Strategies that say whether a building stands by its weight or under a motion, by what they are called
+#: Outcomes of `rocking` in the words of `dem`
+ELEMENTS_SAY = {"no-hinging": "at-rest", "recovery": "rocked", "collapse": "collapse"}
 STANDING: dict[str, dict[str, Any]] = {
     "rigid contacts": {"kind": "dem", "end_time": 1.0, **RIGID}, "springs": {"kind": "dem", "end_time": 1.0, "joints": {"normal_stiffness": 1e9}},
     "rocking": {"kind": "rocking"}, "assessment": {"kind": "assessment", "impulses": 1}, "fragility": {"kind": "fragility", "count": 4, "bootstrap": 0},
@@ -56,7 +58,6 @@ SLIPPERY = {
     "tilt dem rocking assessment fragility local-mechanism failure-domain sla",
     certificates(),
     0.0,
-    awaits="A2",
     examples=(THIN, SLIPPERY),
 )
 def certificates_of_collapse(deck: Deck, within: float) -> None:
@@ -162,7 +163,7 @@ def one_block_by_every_strategy(width: float, height: float, within: float) -> N
     )
 
 
-@relation("tilt dem", SLIDERS, 2e-3, awaits="A6", examples=(SLIDES,))
+@relation("tilt dem", SLIDERS, 2e-3, examples=(SLIDES,))
 def a_block_that_slides(deck: Deck, within: float) -> None:
     """Friction below b/h: it slides at the friction coefficient, which is no collapse."""
     mu = deck["joints"]["friction"]
@@ -222,14 +223,14 @@ def rocking_by_two_strategies(size: tuple, ratio: float, period: float, within: 
     peak = max(abs(v) for v in other.results.peak_rotation_rad.values())
     near("peak rotation", abs(one.results.peak_rotation_rad), peak, within, 0.05 * one.results.critical_rotation_rad)
     must(
-        one.results.outcome == other.results.outcome,
+        ELEMENTS_SAY[one.results.outcome] == other.results.outcome,
         f"{one.results.outcome} by rocking, {other.results.outcome} by elements",
     )
     weak = changed(deck, motion={"amplitude": f"{0.9 * width / height:.4g} g"})
     quiet = [ask(weak, "rocking"), ask(weak, "dem", end_time=period, time_step=1e-3, **RIGID)]
     ok(*quiet)
     for answer in quiet:
-        must(answer.results.outcome == "no-hinging", f"{answer.results.outcome} below b/h")
+        must(answer.results.outcome in ("no-hinging", "at-rest"), f"{answer.results.outcome} below b/h")
 
 
 @relation("failure-domain rocking", st.tuples(decks("block", "arch"), number(0.3, 1.2)), 0.0)
@@ -493,7 +494,7 @@ DRUM = {"structure": {"kind": "blocks", "block": [{"name": "drum", "points": [[-
 
 
 @relation(
-    "tilt thrust dem rocking local-mechanism", st.tuples(sections("column", "brickwork", "arch"), WEIGHTLESS), 0.0, awaits="A2",
+    "tilt thrust dem rocking local-mechanism", st.tuples(sections("column", "brickwork", "arch"), WEIGHTLESS), 0.0,
     examples=((DRUM, "local-mechanism"),),
 )  # fmt: skip
 def stones_without_weight(deck: Deck, kind: str, within: float) -> None:

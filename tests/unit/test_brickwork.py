@@ -1,6 +1,7 @@
 """Walls laid in running bond: geometry, capacity against an outside programme, macro-blocks, chains among free blocks."""
 
 import json
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
+import extrados
 from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
 from extrados.building.errors import BadGeometry
@@ -190,7 +192,7 @@ def test_what_falls_without_lintels() -> None:
          "openings": [{"x": [0.4, 1.2], "y": [0.0, 0.8]}]},
         {"kind": "tilt"}, joints={"friction": 0.5},
     )  # fmt: skip
-    assert result.status == "refused" and "nothing but friction bears unit 2 of course 5" in result.reason
+    assert result.verdict.outcome == "cannot-stand" and "Nothing but friction bears unit 2 of course 5" in result.answer
 
 
 def test_regions_of_another_density() -> None:
@@ -301,3 +303,34 @@ def test_stacks_and_loads_on_a_wall() -> None:
     assert load["collapse_load_N"] == pytest.approx(450.0 * GRAVITY, rel=1e-6)
     (tapered,) = run({"kind": "column", "width": 0.4, "top_width": 1.4, "height": 3.0}, {"kind": "moving-load"})
     assert tapered["worst_place_m"] == pytest.approx(-0.7, abs=1e-6) or tapered["worst_place_m"] == pytest.approx(0.7)
+
+
+def test_the_most_central_line_of_the_smallest_wall_ends() -> None:
+    """Its joints may come to carry nothing, where the programmes no longer tell nearer parts apart."""
+    wall = {"kind": "brickwork", "unit_length": 0.3, "unit_height": 0.15, "units": 2, "courses": 2}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        found = extrados.run({"structure": wall, "joints": {"friction": 0.7}, "analysis": {"kind": "thrust"}}).results[
+            0
+        ]
+    assert found.status == "ok" and found.results.geometric_safety_factor is None, "through all middles"
+    assert found.results.central.greatest_eccentricity_ratio < 1e-3
+
+
+def test_a_wall_without_its_most_central_line_keeps_its_bounds(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    wall = {"kind": "brickwork", "unit_length": 0.3, "unit_height": 0.15, "units": 2, "courses": 2}
+
+    def asked(gamma: float) -> extrados.running.run.Run:
+        deck = {"structure": wall, "joints": {"friction": 0.7}, "analysis": {"kind": "thrust", "gamma": gamma}}
+        return extrados.run(deck, out=tmp_path / f"{gamma:g}")
+
+    whole = asked(0.1).results[0]
+
+    def gives_up(*_: object, **__: object) -> None:
+        raise NoAnswer("the most central thrust line did not settle")
+
+    monkeypatch.setattr(LimitAnalysis, "central", gives_up)
+    found = asked(0.1).results[0]
+    assert found.status == "ok" and any("did not settle" in w for w in found.warnings) and found.results.central is None
+    assert found.results.admissible_interval_g == whole.results.admissible_interval_g and "admissible" in found.answer
+    assert asked(0.8).results[0].status == "refused"

@@ -20,9 +20,7 @@ def ratios(bridge: str) -> dict[str, float | None]:
     for row in rows:
         model = row["source"].split(":")[0]
         if row["quantity"] == "moving-load.safety_factor":
-            found[model] = 1.0 / row["value"]
-        elif row["quantity"] == "moving-load.status":
-            found[model] = None
+            found[model] = 1.0 / row["value"] if row["value"] > 0.0 else None
     return found
 
 

@@ -51,8 +51,13 @@ def test_exit_codes(tmp_path) -> None:
     wrong = extrados("run", deck(tmp_path, ARCH + '[analysis]\nkind = "tlit"\n'))
     assert wrong.returncode == 2 and "deck.toml:8: analysis.kind" in wrong.stderr and "Traceback" not in wrong.stderr
     thin = ARCH.replace("1.5", "1.0").replace("157.5", "180.0").replace("voussoirs = 7", "voussoirs = 36")
-    refused = extrados("run", deck(tmp_path, thin + '[analysis]\nkind = "tilt"\n'), "--out", str(tmp_path / "o"))
-    assert refused.returncode == 3 and "t/R 0.10746" in refused.stdout
+    proven = extrados("run", deck(tmp_path, thin + '[analysis]\nkind = "tilt"\n'), "--out", str(tmp_path / "p"))
+    assert proven.returncode == 0 and "cannot stand" in proven.stdout
+    told = json.loads((tmp_path / "p" / "summary.json").read_text())["analyses"][0]
+    assert told["status"] == "ok" and told["verdict"]["outcome"] == "cannot-stand"
+    weightless = deck(tmp_path, ARCH + '[material]\ndensity = 0.0\n[analysis]\nkind = "tilt"\n')
+    refused = extrados("run", weightless, "--out", str(tmp_path / "o"))
+    assert refused.returncode == 3 and "give a density above zero" in refused.stdout
     assert json.loads((tmp_path / "o" / "summary.json").read_text())["analyses"][0]["status"] == "refused"
     missing = extrados("run", str(tmp_path / "none.toml"))
     assert missing.returncode == 2 and "no such file" in missing.stderr

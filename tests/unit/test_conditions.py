@@ -7,7 +7,7 @@ import extrados
 from extrados.analyses.context import Context
 from extrados.analyses.motion_source import source_of
 from extrados.analyses.rocking.block import toe_forces
-from extrados.analyses.rocking.doubts import CHAOTIC, growth
+from extrados.analyses.rocking.doubts import CHAOTIC, NUDGES, growth, perturbed, turning
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.block import BlockModel
 from extrados.building.rockers.joint_forces import JointForces
@@ -231,18 +231,22 @@ def test_every_mechanism_of_the_vault_is_watched_at_all_joints() -> None:
         assert base == pytest.approx([-one.side * gamma * weight, weight], rel=1e-6)
 
 
-def grown(model: BlockModel, motion, scale: float, end: float) -> tuple[float, str]:
-    """Growth of a perturbation of 1e-6 and the outcome."""
-    runs = [history(model.body, motion.ground, end, 0.01, scale=scale * (1.0 + k)) for k in (0.0, -1e-6, 1e-6)]
-    return growth([run.rotation for run in runs], tuple(model.alpha)), runs[0].outcome
+def grown(model: BlockModel, motion, scale: float, end: float) -> tuple[float, float]:
+    """Growth of a perturbation of 1e-6, and the least perturbation that turns the outcome."""
+    run, *others = (history(model.body, motion.ground, end, 0.01, scale=scale * k) for k in (1.0, *perturbed()))
+    found = growth([one.rotation for one in (run, *others[:2])], tuple(model.alpha))
+    return found, turning(run.outcome, [one.outcome for one in others])
 
 
 def test_chaos_is_told_by_growth() -> None:
-    """1 x 5 m, 2 Hz, 1 g + k 1e-5 g: outcomes are scattered, and 39 of 40 runs say so, many that two nudges leave as they are."""
+    """1 x 5 m, 2 Hz, 1 g + k 1e-5 g: outcomes are scattered, and 39 of 40 runs say so by growth, many that two nudges leave as they are."""
     model, motion = BlockModel(make_block(1.0, 5.0)), pulses.harmonic(1.0, 2.0, 20.0)
-    found = [grown(model, motion, (1.0 + k * 1e-5) * GRAVITY, 60.0) for k in range(40)]
-    assert 5 < sum(outcome == "collapse" for _, outcome in found) < 35
+    scales = [(1.0 + k * 1e-5) * GRAVITY for k in range(40)]
+    outcomes = [history(model.body, motion.ground, 60.0, 0.01, scale=scale).outcome for scale in scales]
+    assert 5 < outcomes.count("collapse") < 35
+    found = [grown(model, motion, scale, 60.0) for scale in scales]
     assert sum(value > CHAOTIC for value, _ in found) >= 39
+    assert all(value > CHAOTIC or turns > 0.0 for value, turns in found)
     shake = {"kind": "harmonic", "amplitude": "1.00003 g", "frequency": 2.0, "duration": 20.0}
     run = extrados.run(
         {
@@ -269,12 +273,33 @@ def test_ordinary_runs_are_not_chaotic() -> None:
         uplift = float(model.uplift[0]) * GRAVITY
         for motion in sines:
             for factor in (1.3, 2.0, 3.0, 4.5):
-                value, _ = grown(model, motion, factor * uplift, motion.end + 10.0)
-                flagged["sine"] += value > CHAOTIC
+                value, turns = grown(model, motion, factor * uplift, motion.end + 10.0)
+                flagged["sine"] += value > CHAOTIC or turns > 0.0
         for factor in (1.3, 1.6, 2.0, 3.0, 4.5):
-            value, _ = grown(model, record, factor * uplift / record.peak, record.end + 10.0)
-            flagged["record"] += value > CHAOTIC
+            value, turns = grown(model, record, factor * uplift / record.peak, record.end + 10.0)
+            flagged["record"] += value > CHAOTIC or turns > 0.0
     assert flagged["sine"] == 0 and flagged["record"] <= 4
+
+
+def test_a_window_of_collapse_among_recoveries_is_told() -> None:
+    """1.0525 g + k 1e-5 g: k = 2, 3, 4 collapse, k = 0, 1, 5, 6, 7 recover. A perturbation of 1e-6 leaves the three where they are."""
+    model, motion = BlockModel(make_block(1.005, 1.005 * 5.01)), pulses.harmonic(1.0, 1.625, 10.0)
+    ends = []
+    for k in range(8):
+        scale = (1.0525 + k * 1e-5) * GRAVITY
+        value, turns = grown(model, motion, scale, 20.0)
+        ends.append(history(model.body, motion.ground, 20.0, 0.01, scale=scale).outcome)
+        assert value > CHAOTIC or turns > 0.0, f"k = {k}"
+    assert [k for k, outcome in enumerate(ends) if outcome == "collapse"] == [2, 3, 4]
+
+
+def test_the_least_perturbation_that_turns_an_outcome() -> None:
+    others = ["recovery", "no-hinging", "recovery", "collapse"] + 6 * ["recovery"]
+    assert (
+        turning("recovery", others) == turning("no-hinging", others) == NUDGES[1]
+        and turning("collapse", others) == NUDGES[0]
+    )
+    assert turning("collapse", 10 * ["collapse"]) == turning("recovery", 10 * ["no-hinging"]) == 0.0
 
 
 def test_growth_counts_until_the_balance() -> None:

@@ -47,7 +47,7 @@ def test_side_by_side_or_one_after_the_other(tmp_path, monkeypatch) -> None:
     """The same bytes; a process with threads of its own draws alone."""
     run = extrados.run(DECK, tmp_path / "one", figures=True)
     monkeypatch.setattr(threading, "active_count", lambda: 2)
-    monkeypatch.setattr(report.multiprocessing, "get_context", lambda *_: pytest.fail("it forked"))
+    monkeypatch.setattr(report, "side_by_side", lambda *_: pytest.fail("it forked"))
     run.write(tmp_path / "two")
     names = sorted(p.name for p in (tmp_path / "one" / "figures").iterdir())
     assert names and names == sorted(p.name for p in (tmp_path / "two" / "figures").iterdir())

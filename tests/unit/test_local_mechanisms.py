@@ -456,3 +456,59 @@ def test_a_mechanism_whose_stones_crush_is_not_said_to_slide() -> None:
     assert found.results.multiplier == pytest.approx(
         extrados.run({**deck, "analysis": {"kind": "tilt"}})["tilt"].collapse_acceleration_g
     )
+
+
+OWN = {"kind": "local-mechanism", "mechanism": "building"}
+
+
+def test_a_building_that_slides_apart_cannot_stand_by_its_own_mechanism() -> None:
+    """Oppenheim's arch needs a friction of 0.206 at rest: the proof of limit analysis, as of `tilt`."""
+    arch = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}
+    deck = {"structure": arch, "joints": {"friction": 0.2}, "analysis": [{"kind": "tilt"}, OWN]}
+    tilt, own = extrados.run(deck).results
+    assert tilt.verdict.outcome == own.verdict.outcome == "cannot-stand"
+    assert own.results.certificate == tilt.results.certificate and "0.206" in own.answer
+
+
+def test_a_stone_without_a_weight_is_refused_by_its_own_mechanism() -> None:
+    column = {"kind": "column", "width": 0.3, "height": 0.45, "drums": 1}
+    found = extrados.run({"structure": column, "material": {"density": 0.0}, "analysis": OWN}).results[0]
+    assert found.status == "refused" and "material.density" in found.reason
+
+
+def test_a_tie_that_holds_what_cannot_stand_is_no_proof_of_collapse() -> None:
+    """An arch below the least thickness stands by a tie that yields: its rocking mechanism, without ties, proves nothing."""
+    deck = {
+        "structure": {"kind": "arch", "radius": 10.0, "thickness": 0.9, "embrace": 180, "voussoirs": 20},
+        "ties": [{"start": [-9.9, 1.0], "end": [9.9, 1.0], "yield_force": 1e6, "stiffness": 1e8}],
+        "motion": {"kind": "sine-pulse", "amplitude": "0.05 g", "period": 1.0},
+        "analysis": [{"kind": "tilt"}, OWN, {"kind": "rocking"}],
+    }
+    tilt, own, rocking = extrados.run(deck).results
+    assert tilt.verdict.outcome == "stands"
+    for found in (own, rocking):
+        assert found.verdict.outcome == "open" and "restraints" in found.verdict.violated[0]
+    bare = extrados.run({k: v for k, v in deck.items() if k != "ties"}).results
+    assert {found.verdict.outcome for found in bare} == {"cannot-stand"}
+
+
+def test_a_mechanism_without_a_known_motion_keeps_what_needs_none() -> None:
+    """alpha_0, e* and a_0* of a stocky arch continue those of arches a little less stocky, whose motion is known."""
+
+    def arch(thickness: float, friction: float = 2.0):
+        structure = {"kind": "arch", "radius": 1.0, "thickness": thickness, "embrace": 170.0, "voussoirs": 6}
+        return extrados.run(
+            {"structure": structure, "joints": {"friction": friction}, "analysis": [OWN, {"kind": "tilt"}]}
+        )
+
+    stocky, warned = arch(0.2932), arch(0.2932).analyses[0]["warnings"]
+    found = stocky["local-mechanism"]
+    assert found.zero_displacement_m is None and any("d_0*" in w for w in warned)
+    assert found.multiplier == pytest.approx(stocky["tilt"].collapse_acceleration_g, rel=1e-9)
+    near, nearer = (arch(t)["local-mechanism"] for t in (0.28, 0.29))
+    for key in ("multiplier", "participating_part", "activation_acceleration_g"):
+        ahead = nearer[key] + (0.2932 - 0.29) / 0.01 * (nearer[key] - near[key])
+        assert found[key] == pytest.approx(ahead, rel=1e-3), key
+    slides = arch(0.2932, 0.5)
+    assert slides["local-mechanism"].bound == "upper"
+    assert slides["local-mechanism"].multiplier == pytest.approx(slides["tilt"].collapse_acceleration_g, rel=1e-9)

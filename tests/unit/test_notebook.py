@@ -26,8 +26,11 @@ def test_a_run_is_a_short_table_and_its_main_figure() -> None:
 
 
 def test_what_was_refused_says_so() -> None:
-    deck = tomllib.loads(NEW_DECK.replace("thickness = 0.75", "thickness = 0.2"))
-    assert "refused: " in extrados.run(deck)._repr_html_()
+    deck = tomllib.loads(NEW_DECK)
+    assert "refused: " in extrados.run(deck | {"material": {"density": 0.0}})._repr_html_()
+    thin = tomllib.loads(NEW_DECK.replace("thickness = 0.75", "thickness = 0.2"))
+    page = extrados.run(thin)._repr_html_()
+    assert "refused: " not in page and "The structure cannot stand: it collapses under its own weight." in page
 
 
 def test_the_widget_answers_like_the_page(tmp_path: Path) -> None:

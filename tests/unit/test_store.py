@@ -24,6 +24,7 @@ def sample() -> Result:
     result = Result("rocking-spectrum", answer="words")
     result.results = RockingSpectrum(
         family=["alpha 10 deg"],
+        conditions=[],
         overturned=np.array([3]),
         longest_overturning_period_s=[float("nan")],
         size_m=np.arange(3.0),

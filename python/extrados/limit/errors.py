@@ -19,7 +19,8 @@ class CannotStand(Exception):
     """A certificate proves collapse under self-weight; the text says where equilibrium fails, and the proof.
 
     motion: the collapse motion of the certificate, velocities (blocks, 3) of the centroids in x, y and rotation, of
-    arbitrary scale; None where another proof was found. neglects: joint properties that the proof sets to zero.
+    arbitrary scale; None where another proof was found. neglects: joint properties that the proof sets to zero, and
+    "restraints" and "passive pressure" where it neglects those.
     """
 
     def __init__(
@@ -27,3 +28,8 @@ class CannotStand(Exception):
     ):
         super().__init__(text)
         self.motion, self.neglects = motion, neglects
+
+
+def without_restraints(proof: CannotStand) -> CannotStand:
+    """The proof, of a view of the building without what holds it besides weight and joints."""
+    return CannotStand(str(proof), proof.motion, (*proof.neglects, "restraints", "passive pressure"))

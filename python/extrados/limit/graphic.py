@@ -86,7 +86,8 @@ def _meet(point: np.ndarray, ray: np.ndarray, load: np.ndarray, otherwise: np.nd
 def section_forces(
     assembly: Assembly, block: int, levels: np.ndarray, state: State, loads: Loads, sway: float = 1.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Forces (k, 2) [N] that cross horizontal sections of a block downward, and the x where they do (k) [m].
+    """Forces (k, 2) [N] that cross horizontal sections of a block downward, and the x where they do (k) [m], NaN
+    where no vertical force crosses.
 
     Sums the forces on the part above each level: its joints there and its loads, less the weight below.
     sway: the part of gamma that accelerates the weight.
@@ -113,4 +114,7 @@ def section_forces(
     total[:, 0] -= side * weight
     total[:, 1] += weight
     total[:, 2] += first + side * second
-    return total[:, :2], (total[:, 2] + levels * total[:, 0]) / total[:, 1]
+    x = np.divide(
+        total[:, 2] + levels * total[:, 0], total[:, 1], out=np.full(len(levels), np.nan), where=total[:, 1] != 0.0
+    )
+    return total[:, :2], x

@@ -51,7 +51,7 @@ SETTLED = 1e-9
 # Of the joints' length: room for a line through a place that rounding has found
 HAIR = 1e-9
 
-# Of the joints' length: to which the most central line of a wall is found.
+# Of the joints' length: to which the most central line of a wall, and one at which the programmes stall, is found.
 LEAST_PART = 1e-3
 
 
@@ -489,6 +489,9 @@ class LimitAnalysis:
             if best is not None and (abs(part - new) < SETTLED or high - low < SETTLED):
                 return best, high
             part = 0.5 * (low + high) if creeps else high
+        # Where joints come to carry nothing the programmes do not tell nearer parts apart.
+        if best is not None and high - low < LEAST_PART:
+            return best, high if high > LEAST_PART else 0.0
         raise NoAnswer("the most central thrust line did not settle")
 
     def _central_of_wall(self, gamma: float) -> tuple[State, float]:
@@ -524,11 +527,11 @@ class LimitAnalysis:
         return best, high if high > LEAST_PART else 0.0
 
     def _unclipped(self, solution: Solution, corners: np.ndarray) -> State:
-        """State whose line may leave the joints: positions below 0 or above 1."""
-        normal, shear = (corners[:, 0] + corners[:, 1]) * self.loads.scale, corners[:, 2] * self.loads.scale
-        position = corners[:, 1] * self.loads.scale / np.maximum(normal, 1e-300)
-        x = solution.x
-        return State(float(x[self.system.unknowns - 1]), normal, shear, position, x[self.system.shares])
+        """State whose line may leave the joints: positions below 0 or above 1; at the middle of joints that carry nothing."""
+        normal, x = corners[:, 0] + corners[:, 1], solution.x
+        position = np.divide(corners[:, 1], normal, out=np.full(len(normal), 0.5), where=normal > CARRIES)
+        gamma, scale = float(x[self.system.unknowns - 1]), self.loads.scale
+        return State(gamma, normal * scale, corners[:, 2] * scale, position, x[self.system.shares])
 
     def recentred(self, state: State, moving: list[int]) -> State:
         """A collapse state with the joints that do not move as far from their ends as may be.

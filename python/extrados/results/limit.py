@@ -326,13 +326,12 @@ class MovingLoad(KindResults):
         text = f"Collapse load {self.collapse_load_N / 1e3:.4g} kN at the most dangerous place"
         bound: Bound | None = "upper" if self.dilating_joints else None
         more = f" Joints slide: {DILATANT}." if self.dilating_joints else ""
-        if self.characteristic:
-            more += f" {CHARACTERISTIC}"
+        judged = f"{more} {CHARACTERISTIC}" if self.characteristic else more
         violated = self.violated or ()
         if self.load_N is None and self.adequacy_factor is not None:
             factored = "" if self.characteristic else "factored "
             return judge(
-                f"Adequacy factor {self.adequacy_factor:.3g} on the {factored}train at the most dangerous place.{more}",
+                f"Adequacy factor {self.adequacy_factor:.3g} on the {factored}train at the most dangerous place.{judged}",
                 1.0, self.adequacy_factor, bound=bound, violated=violated,
             )  # fmt: skip
         if self.load_N is None:
@@ -340,7 +339,7 @@ class MovingLoad(KindResults):
                 f"{text}; the deck gives no load to compare with.{more}", None, self.collapse_load_N, "N", bound=bound
             )
         return judge(
-            f"{text}, {self.safety_factor:.3g} times the load of {self.load_N / 1e3:.4g} kN.{more}",
+            f"{text}, {self.safety_factor:.3g} times the load of {self.load_N / 1e3:.4g} kN.{judged}",
             self.load_N, self.collapse_load_N, "N", bound=bound, violated=violated,
         )  # fmt: skip
 

@@ -158,7 +158,7 @@ class Rocking(KindResults):
         "under each impact rule, where their c_v differ by more than 1.3, and by what discrete elements keep where the blow is unsafe"
     )
     decided_by_last_digits: bool = fact(
-        "whether the run is chaotic: sensitive to perturbations of 1e-6 of the motion, which end in another outcome or grow beyond 1e4"
+        "whether last digits decide: a perturbation of the motion by 1e-6 grows beyond 1e4, or one of 1e-6 to 1e-4 ends in another outcome"
     )
     perturbation_growth: float = fact(
         "greatest separation of histories, over the critical rotation, under a motion scaled by 1 +- 1e-6, over that perturbation"

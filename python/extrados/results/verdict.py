@@ -67,7 +67,9 @@ class SelfWeight(KindResults):
     collapse_acceleration_g: float = fact("0: the building carries no horizontal acceleration", "g")
     safety_factor: float = fact("0: the building collapses before the demand acts")
     certificate: str = fact("where equilibrium fails, and the proof")
-    neglected: list[str] = fact("strengths of the deck that the proof neglects; with any the outcome is open")
+    neglected: list[str] = fact(
+        "strengths, restraints and pressures of the deck that the proof neglects; with any the outcome is open"
+    )
 
     def statement(self) -> str:
         """The result in words."""

@@ -325,7 +325,7 @@ def last_digits(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if not mine or not isinstance(r, Rocking) or not r.decided_by_last_digits:
         return None
     return reason(
-        "last-digits", mine, "Rocking under this motion is chaotic: sensitive to perturbations of 1e-6. One run is one sample. Its greatest "
+        "last-digits", mine, "Rocking under this motion is chaotic: sensitive to perturbations of 1e-6 to 1e-4. One run is one sample. Its greatest "
         f"rotation is {100 * r.peak_rotation_ratio:.0f} % of the critical one.",
         rotation_ratio=r.peak_rotation_ratio,
     )  # fmt: skip

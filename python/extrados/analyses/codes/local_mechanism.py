@@ -1,6 +1,6 @@
 """local-mechanism: facades, corners, gables, parapets, towers and any building's own mechanism by the rules of codes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,14 +15,16 @@ from extrados.analyses.codes.walls import WallPart, wall_parts
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import limit_of
 from extrados.analyses.limit.tables import Tilt
+from extrados.building.building import Building
 from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.rockers.mechanism import MechanismModel
+from extrados.building.rockers.mechanism import MechanismModel, NoMotion
 from extrados.building.rockers.restraints import Restraints, members_of
 from extrados.building.templates.plan import Plan
 from extrados.building.ties import Tie
 from extrados.core import mechanism as core_mechanism
 from extrados.core.restraints import FREE
-from extrados.limit.errors import CannotStand
+from extrados.limit.answer import cannot_stand
+from extrados.limit.errors import CannotStand, Immovable, NoEquilibrium
 from extrados.limit.linkage import laden
 from extrados.results import codes as out
 from extrados.results.model import Array, Result, TableData
@@ -34,6 +36,9 @@ STEPS = 61
 WEAKER = 0.99
 #: e* by stones and by rigid links that differ by less than this share are alike
 ALIKE = 0.02
+DILATES = (
+    "The multiplier of a mechanism that slides is an upper bound: by the flow rule its joints dilate by their friction."
+)
 
 
 @dataclass(frozen=True)
@@ -214,67 +219,111 @@ def _of_stones(context: Context, options: LocalMechanism) -> list[_Turning]:
     """The collapse mechanisms of the deck's stones to the sides that no wall stops, with their finite motion."""
     building = context.building
     stones: Assembly = building.blocks()
+    building.refuse_weightless(stones)
     model = MechanismModel(stones)
-    reach = tuple((float(t.numbers[2]), float(t.numbers[3])) for t in model.tables)
-    held = Restraints(members_of(building, stones, model.linkages), model.linkages, (reach[0], reach[1]))
     wall = building.supports.abutting_wall
     sides = [k for k, against in enumerate(("right", "left")) if wall != against]
+    try:
+        reach = tuple((float(t.numbers[2]), float(t.numbers[3])) for t in model.tables)
+    except NoMotion as error:
+        if not all(isinstance(r, Tie) for r in building.restraints):
+            raise
+        context.warnings.append(f"d_0* and the nonlinear checks are not given: {error}")
+        found = [_at_rest(context, options, side) for side in sides]
+        context.warnings += [DILATES] if any(turning.bound for turning in found) else []
+        return found
+    held = Restraints(members_of(building, stones, model.linkages), model.linkages, (reach[0], reach[1]))
     return [_side(context, options, model, held, side) for side in sides]
 
 
 def _side(context: Context, options: LocalMechanism, model: MechanismModel, held: Restraints, side: int) -> _Turning:
     """The mechanism to side 0 (+x) or 1 (-x): that which turns, or a weaker one that limit analysis finds."""
     building, stones = context.building, model.assembly
-    assert building.structure is not None
     mass, _, _ = laden(stones)
     weight = mass * GRAVITY
-    words = f"the mechanism of the {building.structure.word}"
     one, sense = model.linkages[side], (1.0, -1.0)[side]
     turned = np.linspace(0.0, model.tables[side].critical, STEPS)
     c = model.coefficients((1, -1)[side], turned)
     alpha = (np.abs(c.gravity_moment) + _held(held, side, turned)) / (np.abs(c.drive) * GRAVITY)
-    weaker = _weaker(context, side, float(alpha[0]))
-    if weaker is None:
-        field = sense * model.fields[side]
-        chain = in_chain(field, stones.size)
-        moving = weight[chain], field[chain, 0]
-        parts = core_mechanism.follow(one, turned)[0][:, :, 0]
-        travel = sense * ((parts - parts[0]) @ one.mass) * GRAVITY / float(moving[0] @ moving[1])
-        found = capacity(float(alpha[0]), *moving, float(travel[-1]), model.uplift[side])
-        links = capacity(found.alpha0, one.mass * GRAVITY, core_mechanism.follow(one, [0.0])[1][0, :, 0], None)
-        if abs(links.part / found.part - 1.0) > ALIKE:
-            context.warnings.append(
-                f"e* takes each stone as a weight of its own: {found.part:.3g}. With one weight for each of the {len(one.mass)} rigid links of "
-                f"the chain, as [C8.7.1.1] defines P_k, e* is {links.part:.3g}, and a_0* {100.0 * (found.part / links.part - 1.0):+.0f} %."
-            )
-        # only limit analysis looks for the mechanism that ties leave; dampers and added hinges it does not know
-        bound = None if all(isinstance(r, Tie) for r in building.restraints) else "upper"
-        if bound:
-            context.warnings.append(
-                "The mechanism is the one without dampers and added hinges, which then resist it: its multiplier is an upper bound."
-            )
-        return _Turning(
-            found, (np.asarray(spectral(*moving, travel)), alpha), words, _place(stones, chain, options), bound
-        )
-    multiplier, field, slides = weaker
+    if (weaker := _weaker(context, options, side, float(alpha[0]))) is not None:
+        return weaker
+    field = sense * model.fields[side]
     chain = in_chain(field, stones.size)
-    found = capacity(multiplier, weight[chain], field[chain, 0], None)
+    moving = weight[chain], field[chain, 0]
+    parts = core_mechanism.follow(one, turned)[0][:, :, 0]
+    travel = sense * ((parts - parts[0]) @ one.mass) * GRAVITY / float(moving[0] @ moving[1])
+    found = capacity(float(alpha[0]), *moving, float(travel[-1]), model.uplift[side])
+    links = capacity(found.alpha0, one.mass * GRAVITY, core_mechanism.follow(one, [0.0])[1][0, :, 0], None)
+    if abs(links.part / found.part - 1.0) > ALIKE:
+        context.warnings.append(
+            f"e* takes each stone as a weight of its own: {found.part:.3g}. With one weight for each of the {len(one.mass)} rigid links of "
+            f"the chain, as [C8.7.1.1] defines P_k, e* is {links.part:.3g}, and a_0* {100.0 * (found.part / links.part - 1.0):+.0f} %."
+        )
+    # only limit analysis looks for the mechanism that ties leave; dampers and added hinges it does not know
+    bound: Bound | None = None if all(isinstance(r, Tie) for r in building.restraints) else "upper"
+    if bound:
+        context.warnings.append(
+            "The mechanism is the one without dampers and added hinges, which then resist it: its multiplier is an upper bound."
+        )
+    return _Turning(
+        found, (np.asarray(spectral(*moving, travel)), alpha), _words(building), _place(stones, chain, options), bound
+    )
+
+
+def _words(building: Building) -> str:
+    assert building.structure is not None
+    return f"the mechanism of the {building.structure.word}"
+
+
+def _weaker(context: Context, options: LocalMechanism, side: int, turning: float) -> _Turning | None:
+    """The mechanism that limit analysis finds, None where its multiplier is not less than `turning`, that of the one which turns."""
+    try:
+        found = _at_rest(context, options, side)
+    except Immovable:
+        return None
+    if found.found.alpha0 > WEAKER * turning:
+        return None
+    building = context.building
     why, without = "limit analysis finds a weaker mechanism", "it"
-    if slides:
+    if found.bound:
         why, without = f"its joints slide, at a friction of {building.joints.friction},", "sliding"
     elif building.material.compressive_strength is not None:
         why, without = "its stones crush at the hinges", "crushing"
+        found = replace(found, words=f"{found.words}, which crushes,")
     context.warnings.append(
-        f"{why} before it turns (multiplier {float(alpha[0]):.4g} without {without}): the displacement that it bears is not known"
+        f"{why} before it turns (multiplier {turning:.4g} without {without}): the displacement that it bears is not known"
     )
-    if slides:
-        context.warnings.append(
-            "The multiplier of a mechanism that slides is an upper bound: by the flow rule its joints dilate by their friction."
-        )
+    if found.bound:
+        context.warnings.append(DILATES)
+    return found
+
+
+def _at_rest(context: Context, options: LocalMechanism, side: int) -> _Turning:
+    """The mechanism to side 0 (+x) or 1 (-x) by limit analysis with the deck's friction, compressive strength and ties, as it
+    begins: its finite motion is not known. CannotStand where the building collapses under its own weight."""
+    building = context.building
+    stones: Assembly = building.blocks()
+    mass, place, _ = laden(stones)
+    limit, sense = limit_of(building, Tilt(kind="tilt")), (1, -1)[side]
+    try:
+        state, mechanism = limit.collapse(sense)
+    except Immovable:
+        raise
+    except NoEquilibrium:
+        raise cannot_stand(limit) from None
+    multiplier = sense * state.gamma
+    if multiplier <= 0.0:
+        raise cannot_stand(limit)
+    field = mechanism.velocity.copy()
+    arm = place - stones.centroid
+    field[:, :2] += field[:, 2, None] * np.column_stack([-arm[:, 1], arm[:, 0]])
+    field *= np.sign(mass @ field[:, 0])
+    chain = in_chain(field, stones.size)
+    found = capacity(multiplier, mass[chain] * GRAVITY, field[chain, 0], None)
+    slides = bool(limit.dilating(mechanism))
     return _Turning(
-        found, (np.zeros(1), np.array([multiplier])),
-        f"{words}, which {'slides' if slides else 'crushes'}," if without != "it" else words, _place(stones, chain, options),
-        "upper" if slides else None,
+        found, (np.zeros(1), np.array([multiplier])), f"{_words(building)}{', which slides,' if slides else ''}",
+        _place(stones, chain, options), "upper" if slides else None,
     )  # fmt: skip
 
 
@@ -292,21 +341,6 @@ def _place(stones: Assembly, chain: np.ndarray, options: LocalMechanism) -> tupl
     if options.base_height is not None:
         z = options.base_height
     return z, (options.building_height or top) if z > 0.0 else None
-
-
-def _weaker(context: Context, side: int, turning: float) -> tuple[float, np.ndarray, bool] | None:
-    """Multiplier of limit analysis to one side with the deck's friction, compressive strength and ties, the velocities (blocks, 3) of
-    its mechanism at the centres of the blocks with their fill, and whether joints slide in it; None where they do not make it less
-    than `turning`, that of the mechanism which turns."""
-    stones = context.building.blocks()
-    mass, place, _ = laden(stones)
-    state, mechanism = limit_of(context.building, Tilt(kind="tilt")).collapse((1, -1)[side])
-    if abs(state.gamma) > WEAKER * turning:
-        return None
-    field = mechanism.velocity.copy()
-    arm = place - stones.centroid
-    field[:, :2] += field[:, 2, None] * np.column_stack([-arm[:, 1], arm[:, 0]])
-    return abs(state.gamma), field * np.sign(mass @ field[:, 0]), bool(len(mechanism.sliding))
 
 
 def _held(held: Restraints, side: int, rotation: np.ndarray) -> np.ndarray:

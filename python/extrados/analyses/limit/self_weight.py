@@ -29,7 +29,12 @@ def collapses_at_rest(kind: str, proof: CannotStand, building: Building) -> Resu
 
 
 def _strength(building: Building, name: str) -> str:
-    """A strength of the joints that the proof neglects, in words with its greatest value; "" where all are zero."""
+    """What the proof neglects, in words, a strength with its greatest value; "" where the building has none of it."""
+    if name == "restraints":
+        return "the restraints of the deck (ties, dampers, hinges)" if building.restraints else ""
+    if name == "passive pressure":
+        earth = building.blocks().earth
+        return "the passive pressure of the fill" if earth is not None and earth.passive > 0.0 else ""
     try:
         values = building.joint_property(name)
     except NoView:

@@ -37,6 +37,8 @@ def run(context: Context, options: Thrust) -> Result:
     try:
         if chain is not None:
             ends = dict(zip(("least", "most"), limit.thrust(assembly.chains[chain], options.gamma), strict=True))
+        elif not low <= options.gamma <= high:
+            raise NoEquilibrium
         states, part = _with_central(limit, options.gamma, ends, result)
     except NoEquilibrium:
         raise Refused(
@@ -60,12 +62,12 @@ def run(context: Context, options: Thrust) -> Result:
         chain=chain,
         admissible_interval_g=[low, high],
         geometric_safety_factor=safety,
-        least_part_of_joints=part,
         weight_N=answer.loads.scale,
         depth_m=assembly.depth,
         dilating=bool(limit.dilating(answer.mechanism) or limit.dilating(answer.back_mechanism)),
         duality_gap=answer.gap,
         **lines,
+        **({} if part is None else {"least_part_of_joints": part}),
     )
     result.results = r
     result.arrays = geometry_arrays(assembly) | tie_arrays(context.building, answer.loads, states)
@@ -82,13 +84,11 @@ def run(context: Context, options: Thrust) -> Result:
 def _with_central(
     limit: LimitAnalysis, gamma: float, ends: dict[str, State], result: Result
 ) -> tuple[dict[str, State], float | None]:
-    """The states with the most central one, and the part of the joints that holds it; without it, and a warning, where
-    lines of least and greatest thrust are there and it does not settle."""
+    """The states with the most central one, and the part of the joints that holds it; without it, and with a warning, where
+    it does not settle though a state is admissible."""
     try:
         central, part = limit.central(gamma, start=list(ends.values()))
     except (NoAnswer, NoEquilibrium) as error:
-        if not ends:
-            raise
         result.warnings.append(f"the most central line is left out: {error}")
         return ends, None
     return {**ends, "central": central}, part
@@ -122,8 +122,8 @@ def _words(r: out.Thrust, assembly: Assembly) -> str:
         needs = f"{keeps} and needs a friction of {needed:.2f}"
     if r.chain is None:
         text = (
-            f"At {r.gamma_g:g} g the most central state {needs}. No stones form an arch or a stack here, so no chain has "
-            "a least and a greatest thrust."
+            f"At {r.gamma_g:g} g {f'the most central state {needs}' if needs else 'a state is admissible'}. No stones form an arch or "
+            "a stack here, so no chain has a least and a greatest thrust."
         )
     else:
         tied = r.least.crown_N is not None

@@ -1,5 +1,5 @@
 """How sure the outcome of a rocking run is: under the other impact rules, where the blow at all joints is known to lose too
-much, and under a perturbation of the motion by a millionth."""
+much, and under perturbations of the motion from a millionth to a ten thousandth."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,6 +20,9 @@ NUDGE = 1e-6
 #: Growth of a perturbation beyond which a run is chaotic: one of a millionth parts histories by a hundredth of the critical
 #: rotation. In 192 runs of six blocks under five records and three sines 16 grow so much (tests/unit/test_conditions.py)
 CHAOTIC = 1e4
+#: No instrument tells motions apart that differ by so little: half a decade after the other, for windows of outcomes among
+#: others are as narrow as that
+NUDGES = (NUDGE, 3.2e-6, 1e-5, 3.2e-5, 1e-4)
 #: A motion repeats itself where it is this much like itself a period later, over so many periods
 ALIKE, OFTEN = 0.5, 4.0
 
@@ -52,8 +55,25 @@ def growth(runs: Sequence[np.ndarray], critical: tuple[float, float]) -> float:
     return float(np.abs(share[1:] - share[0]).max(initial=0.0)) / NUDGE
 
 
-def chaos_told(found: float) -> str:
-    """The violated condition of a chaotic run."""
+def perturbed() -> list[float]:
+    """Factors on the motion: 1 plus and minus each of NUDGES, those of NUDGE first."""
+    return [1.0 + sign * nudge for nudge in NUDGES for sign in (-1.0, 1.0)]
+
+
+def turning(outcome: str, others: Sequence[str]) -> float:
+    """Least of NUDGES under which collapse turns into recovery or back, of the outcomes under `perturbed` motions; 0 where none does."""
+    return next(
+        (NUDGES[i // 2] for i, other in enumerate(others) if (other == "collapse") != (outcome == "collapse")), 0.0
+    )
+
+
+def chaos_told(found: float, turns: float) -> str:
+    """The violated condition of a chaotic run, from the growth of a perturbation and the least one that turns its outcome."""
+    if found <= CHAOTIC and turns > NUDGE:
+        return (
+            f"Sensitive to perturbations of {turns:.1g}: scaled by 1 plus or minus that, the motion ends in another outcome. One run is "
+            "one sample: use fragility."
+        )
     return (
         f"Chaotic: sensitive to perturbations of 1e-6. Scaled by 1 plus or minus {NUDGE:g}, the motion ends in another outcome, or the "
         f"rotation differs by up to {100.0 * min(1.0, found * NUDGE):.2g} % of the critical one. One run is one sample: use fragility."
@@ -115,8 +135,17 @@ def doubts(context: Context, options: Rocking, rocker: Rocker, response: Respons
     if any(probe.interrupted for probe in probes):
         return nothing
     grown = growth([response.rotation, *(probe.rotation for probe in probes)], rocker.critical)
-    chaotic = grown > CHAOTIC or any(probe.outcome != response.outcome for probe in probes)
-    violated = [chaos_told(grown)] if chaotic else []
+    factors = perturbed()[len(probes) :]
+    nudged = ensemble(
+        [rocker.body], [context.motion.ground], np.zeros(len(factors), dtype=int), np.zeros(len(factors), dtype=int), factors,
+        end_time, start_rotation=rocker.start_rotation, tolerance=options.tolerance, threads=context.threads,
+    )  # fmt: skip
+    if nudged.interrupted:
+        return nothing
+    others = [response.outcome if place == FAILED else OUTCOMES[place] for place in nudged.outcome]
+    turns = turning(response.outcome, [*(probe.outcome for probe in probes), *others])
+    chaotic = grown > CHAOTIC or turns > 0.0
+    violated = [chaos_told(grown, turns)] if chaotic else []
     rivals: dict[str, tuple[float, Body]] = rocker.model.rivals(DIFFER)
     more = _keeping_more(context, rocker, response)
     bodies = [rocker.held(body) for _, body in rivals.values()]

@@ -4,7 +4,7 @@ import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import geometry_arrays
-from extrados.analyses.rocking.doubts import CHAOTIC, NUDGE, chaos_told, growth
+from extrados.analyses.rocking.doubts import CHAOTIC, chaos_told, growth, perturbed, turning
 from extrados.analyses.rocking.history import LARGEST, ROOM, count, drawn_times
 from extrados.analyses.rocking.shapes import film, pictures
 from extrados.analyses.rocking.tables import Rocking
@@ -52,11 +52,11 @@ def run(context: Context, options: Rocking) -> Result:
     if r.events_found > room and not r.interrupted:
         room = r.events_found
         r = rock()
-    grown, chaotic = 0.0, False
+    grown, turns = 0.0, 0.0
     if not r.interrupted:
-        probes = [rock(1.0 + sign * NUDGE) for sign in (-1.0, 1.0)]
-        grown = growth([one.rotation for one in (r, *probes)], (model.critical(1), -model.critical(-1)))
-        chaotic = grown > CHAOTIC or any(one.outcome != r.outcome for one in probes)
+        probes = [rock(factor) for factor in perturbed()]
+        grown = growth([one.rotation for one in (r, *probes[:2])], (model.critical(1), -model.critical(-1)))
+        turns = turning(r.outcome, [one.outcome for one in probes])
     rigid: tuple[str, float] | None = None
     if not r.interrupted:
         side = 0 if ratio >= 0.0 else 1
@@ -66,11 +66,11 @@ def run(context: Context, options: Rocking) -> Result:
         )  # fmt: skip
         if not same.interrupted and same.outcome[0] != FAILED:
             rigid = OUTCOMES[same.outcome[0]], float(same.peak[0])
-    return _result(context, options, model, r, (grown, chaotic), rigid)
+    return _result(context, options, model, r, (grown, turns), rigid)
 
 
 def _result(
-    context: Context, options: Rocking, model: SoftBaseModel, r: SoftBaseResponse, chaos: tuple[float, bool],
+    context: Context, options: Rocking, model: SoftBaseModel, r: SoftBaseResponse, chaos: tuple[float, float],
     rigid: tuple[str, float] | None,
 ) -> Result:  # fmt: skip
     potential = r.potential - model.potential(model.rest)
@@ -101,7 +101,8 @@ def _result(
         "greatest_pressure_Pa": float(r.most.max(initial=0.0)) / model.block.depth
     }  # fmt: skip
     vertical = model.periods
-    violated = [chaos_told(chaos[0])] if chaos[1] else []
+    chaotic = chaos[0] > CHAOTIC or chaos[1] > 0.0
+    violated = [chaos_told(*chaos)] if chaotic else []
     if flies.any():
         violated.append(
             f"The base does not press in {100.0 * flies.mean():.2g} % of the time: the block is airborne, and its sides are assumed not to "
@@ -116,7 +117,7 @@ def _result(
         energy_residual_ratio=float(np.abs(energy - energy[:1] - r.ledger).max(initial=0.0)) / scale, steps=r.steps,
         rejected_steps=0, restitution=None, critical_rotation_rad=critical[0], critical_rotation_left_rad=-critical[1],
         frequency_parameter_rad_s=float(model.rigid.frequency[0]), uplift_acceleration_g=uplift,
-        required_friction=float(friction.max(initial=0.0)), decided_by_last_digits=chaos[1],
+        required_friction=float(friction.max(initial=0.0)), decided_by_last_digits=chaotic,
         perturbation_growth=chaos[0], violated=violated,
         soft_base=out.SoftBaseRocking(
             foundation="two-spring" if model.core.edges else "winkler", rocking_period_s=vertical[0],

@@ -4,7 +4,7 @@ import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import geometry_arrays
-from extrados.analyses.rocking.doubts import CHAOTIC, NUDGE, chaos_told, growth
+from extrados.analyses.rocking.doubts import CHAOTIC, chaos_told, growth, perturbed, turning
 from extrados.analyses.rocking.history import LARGEST, count, drawn_times
 from extrados.analyses.rocking.shapes import film, pictures
 from extrados.analyses.rocking.tables import Rocking
@@ -42,13 +42,12 @@ def run(context: Context, options: Rocking) -> Result:
 
     r = rock()
     if r.interrupted:
-        return _result(context, options, model, r, 0.0, False)
-    probes = [rock(1.0 + sign * NUDGE) for sign in (-1.0, 1.0)]
-    lower = [one.rotation[:, 0] for one in (r, *probes)]
-    upper = [one.rotation[:, 1] - one.rotation[:, 0] for one in (r, *probes)]
+        return _result(context, options, model, r, 0.0, 0.0)
+    probes = [rock(factor) for factor in perturbed()]
+    lower = [one.rotation[:, 0] for one in (r, *probes[:2])]
+    upper = [one.rotation[:, 1] - one.rotation[:, 0] for one in (r, *probes[:2])]
     grown = max(growth(lower, (model.whole[0], model.whole[0])), growth(upper, (model.alone[0], model.alone[0])))
-    chaotic = grown > CHAOTIC or any(one.outcome != r.outcome for one in probes)
-    return _result(context, options, model, r, grown, chaotic)
+    return _result(context, options, model, r, grown, turning(r.outcome, [one.outcome for one in probes]))
 
 
 def modes(state: np.ndarray) -> np.ndarray:
@@ -60,7 +59,7 @@ def modes(state: np.ndarray) -> np.ndarray:
 
 
 def _result(
-    context: Context, options: Rocking, model: StackModel, r: StackResponse, grown: float, chaotic: bool
+    context: Context, options: Rocking, model: StackModel, r: StackResponse, grown: float, turns: float
 ) -> Result:  # fmt: skip
     energy = r.kinetic + r.potential
     scale = max(float(np.abs(energy).max(initial=0.0)), abs(r.work), 1e-300)
@@ -77,7 +76,8 @@ def _result(
     result.reason = f"interrupted at {r.stop_time:.3f} s" if r.interrupted else ""
     uplifts = [k for kind, _, k in r.events if kind == "uplift"]
     fell = r.outcome == "collapse"
-    violated = [chaos_told(grown)] if chaotic else []
+    chaotic = grown > CHAOTIC or turns > 0.0
+    violated = [chaos_told(grown, turns)] if chaotic else []
     if flies.any():
         violated.append(
             f"A joint parts as a whole from {r.time[flies.argmax()]:.3f} s on: rocking without flight is assumed. Use dem."

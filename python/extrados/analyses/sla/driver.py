@@ -31,6 +31,8 @@ from extrados.results.sla import PREFIXES
 
 #: States that an animation shows
 FILM = 80
+#: Joints up to which limit analysis takes little beside the elements
+MOST_JOINTS = 3000
 
 
 def run(context: Context, options: Sla) -> Result:
@@ -59,6 +61,8 @@ def _run(context: Context, options: Sla) -> Result:
         return Chain(context, "sla", [options, of, damage, model.freedoms, *mesh_of])
 
     stones = context.building.meshed_by_stones
+    if options.constant is None and stones and _dry(context.building):
+        certify(context.building)
     try:
         if options.stages:
             curves = run_stages(model, options, context.threads, context.progress, chain)
@@ -88,6 +92,12 @@ def _run(context: Context, options: Sla) -> Result:
         again = "; --resume goes on from them" if context.checkpoint is not None else ""
         result.status, result.reason = "interrupted", f"interrupted; the events up to then are kept{again}"
     return result
+
+
+def _dry(building: Building) -> bool:
+    """Whether limit analysis knows all that holds the joints of a building, and these are few enough to ask it beforehand."""
+    strengths = [float(np.nanmax(building.joint_property(name), initial=0.0)) for name in ("cohesion", "tension")]
+    return not any(strengths) and len(building.blocks().a) <= MOST_JOINTS
 
 
 def certify(building: Building) -> None:

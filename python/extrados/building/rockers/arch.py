@@ -13,7 +13,7 @@ from extrados.core import arch as core_arch
 from extrados.core import mechanism as core_mechanism
 from extrados.core.rocking import Body, arch_body
 from extrados.limit.answer import cannot_stand
-from extrados.limit.errors import CannotStand
+from extrados.limit.errors import CannotStand, without_restraints
 from extrados.limit.linkage import Linkage, linkage
 from extrados.limit.programme import LimitAnalysis, Mechanism, State
 from extrados.limit.solver import Immovable, NoEquilibrium
@@ -116,12 +116,13 @@ class ArchModel:
         if state is None or state.gamma <= 0.0:
             a = self.arch
             least = minimum_thickness(float(np.degrees(a.embrace)), a.voussoirs)
-            proof = cannot_stand(self.limit)
+            proof = without_restraints(cannot_stand(self.limit))
             raise CannotStand(
                 f"the effective thickness is {a.thickness:.4g} m (t/R {a.thickness / a.radius:.4f}), the least for "
                 f"{np.degrees(a.embrace):g} deg and {a.voussoirs} voussoirs is {least * a.radius:.4g} m (t/R {least:.5f}); "
                 f"{proof}",
                 proof.motion,
+                proof.neglects,
             )
         return state, mechanism
 

@@ -16,6 +16,7 @@ from extrados.core.errors import CoreError
 from extrados.core.mechanism import Coefficients, Table, table_body
 from extrados.core.rocking import Body
 from extrados.limit.answer import cannot_stand
+from extrados.limit.errors import without_restraints
 from extrados.limit.linkage import CannotRock, Linkage, laden, linkage
 from extrados.limit.loads import tilt_loads
 from extrados.limit.programme import LimitAnalysis, Mechanism, State
@@ -35,6 +36,10 @@ LOST = 0.2
 OVERLAP = 1e-9
 #: Rotations up to the critical one at which hinges are looked at.
 LOOKS = 60
+
+
+class NoMotion(NoView):
+    """The mechanism is known at rest, but not its finite motion."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +82,7 @@ class MechanismModel:
         except Immovable as error:
             raise NoView(f"it does not rock: {error}", WHOLE) from None
         except NoEquilibrium:
-            raise cannot_stand(limit) from None
+            raise without_restraints(cannot_stand(limit)) from None
         return found
 
     @cached_property
@@ -99,7 +104,7 @@ class MechanismModel:
             try:
                 table = core_mechanism.table(one)
             except CoreError as error:
-                raise NoView(
+                raise NoMotion(
                     f"the mechanism to {WORD[side]} cannot be carried through its motion: {error}", WHOLE
                 ) from None
             uplift = side * table.gravity_moment / (table.drive * GRAVITY)

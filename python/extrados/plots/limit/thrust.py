@@ -15,6 +15,8 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     blocks = section.outlines(run, name)
     colours = {"least": style.THRUST, "central": "#444444", "most": style.HINGE}
     lines_of = {which: line for which in colours if (line := getattr(r, which)) is not None}
+    if not lines_of:  # a wall whose most central state did not settle
+        return []
     colours = {which: colours[which] for which in lines_of}
     arched = r.chain is not None
     sizes = {"width": 12.0, "columns": 2, "width_ratios": [1.4, 1]} if arched else {"width": 6.0}
