@@ -386,3 +386,16 @@ def test_a_column_taken_as_one_body_says_where_its_drums_part() -> None:
         outside[i] = max(-share, share - 1.0) if force @ rotate @ [0.0, 1.0] > 0.0 else np.inf
     below = np.abs(a["rotation"]) < result.results.critical_rotation_rad
     assert a["time"][((outside > 0.01) & below).argmax()] == pytest.approx(first.time_s, abs=0.015)
+
+
+def test_a_block_at_rest_needs_the_friction_of_its_motion() -> None:
+    """A squat block that does not rock is pushed along by the whole peak: 0.4 g needs a friction of 0.4."""
+    deck = {
+        "structure": {"kind": "block", "width": 2.0, "height": 1.2},
+        "joints": {"friction": 0.9},
+        "motion": {"kind": "sine-pulse", "amplitude": "0.4 g", "period": 0.8},
+        "analysis": {"kind": "rocking"},
+    }
+    found = extrados.run(deck).results[0]
+    assert found.results.required_friction == pytest.approx(0.4, abs=1e-3)
+    assert "The block slides instead where friction is below 0.40." in found.answer

@@ -1,5 +1,6 @@
 """Figures can be read: no text is cut by the edge or lies over another. Here a few; of all cases in tests/verification."""
 
+import itertools
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 from figure_faults import Watch, faults
 
 import extrados
+from extrados.analyses.assess.hazard import Demanded
 from extrados.plots import report, style
 from extrados.plots.sla import near_the_peak
 
@@ -54,3 +56,23 @@ def test_a_plateau_of_a_mechanism_does_not_shrink_its_curve() -> None:
     assert near_the_peak(displacement, load) == pytest.approx(0.2)
     assert near_the_peak(-displacement, load) == pytest.approx(0.2)
     assert near_the_peak(np.zeros(1), np.zeros(1)) == 0.0
+
+
+def test_an_ensemble_without_runs_has_no_histogram(tmp_path: Path) -> None:
+    """Buildings of the sample that part along their joints rock as nothing: no share, and a report without a histogram."""
+    rows = [[0.0, 0.6, 1.2, 2.0], [0.0, 0.3, 0.9, 1.5, 2.0]]
+    stones = [
+        {"name": f"{k} {n}", "points": [[x, 0.3 * k], [y, 0.3 * k], [y, 0.3 * k + 0.3], [x, 0.3 * k + 0.3]]}
+        for k, row in enumerate(rows)
+        for n, (x, y) in enumerate(itertools.pairwise(row))
+    ]
+    run = extrados.run(
+        {
+            "structure": {"kind": "blocks", "block": stones},
+            "motion": {"kind": "sine-pulse", "amplitude": "0.3 g", "period": 0.5},
+            "analysis": [{"kind": "fragility", "uncertain": {"imperfection": 0.01}, "count": 3}],
+        }
+    )
+    r = run.results[0].results
+    assert r.count == 0 and r.collapse_probability is None and r.judged(Demanded(0.3)).outcome == "open"
+    assert all("histogram" not in figure[0] for figures in report.draw(run, tmp_path).values() for figure in figures)

@@ -166,6 +166,27 @@ def test_a_box_slides_at_coulombs_limit(beds: bool) -> None:
     )
 
 
+def test_a_sole_under_some_walls_does_not_lift_the_limit_of_all() -> None:
+    """Walls without a bed joint resist by the friction and cohesion of [joints], those on one by its own."""
+    structure = {"kind": "building", "storeys": [3.0], "walls": WALLS, "beds": [{"name": "sole", "walls": ["a", "b"]}]}
+    push = {"kind": "pushover", "mesh": {"size": 0.5, "layers": 3}, "events": 9000, "ripple": 0.2}
+    weight = 1800 * GRAVITY * 16.0 * 0.3 * 3.0
+    for of_sole in (0.4, 0.2):
+        joints = {**SOLE, "types": [{"joints": ["sole"], "friction": of_sole}]}
+        deck = {"structure": structure, "material": BRICK, "joints": joints, "analysis": [push]}
+        found = extrados.run(deck).results[0]
+        r = found.results
+        limit = (0.4 + of_sole) / 2.0 * weight + 1e3 * 4.8
+        assert r.sliding_level == "the base of storey 1" and not any("not checked" in text for text in found.warnings)
+        assert r.capacity_N == r.sliding_capacity_N == pytest.approx(limit, rel=1e-6 if of_sole == 0.4 else 0.03)
+
+
+def test_friction_that_limits_a_push_is_among_its_assumptions() -> None:
+    found = box(beds=False, events=50)
+    assert found.assumptions["joints.friction"].value == 0.4 and found.assumptions["joints.cohesion"].value == 1e3
+    assert not any("joints.friction" in text or "joints.cohesion" in text for text in found.warnings)
+
+
 def test_what_cannot_slide_is_not_capped() -> None:
     found = extrados.run(
         {
@@ -177,7 +198,7 @@ def test_what_cannot_slide_is_not_capped() -> None:
     r = found.results
     assert r.capacity_N == r.greatest_load_N and r.sliding_capacity_N is None and r.sliding is None
     assert r.judged(Demanded(0.1)).bound == "lower" and not r.judged(Demanded(0.1)).violated
-    assert any("sliding" in text for text in found.warnings)
+    assert any("Sliding" in text and "friction excludes" in text for text in found.warnings)
 
 
 def test_sliding_limits_of_storeys_and_of_bed_joints() -> None:

@@ -27,7 +27,7 @@ def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
     found = []
     if "stripe_level" in arrays:
         found += [_curve(run, name, folder), _incremental(run, name, folder)]
-    if "bin_edge" in arrays:
+    if "bin_edge" in arrays and run[name].count:
         found.append(_histogram(run, name, folder))
     if "intensity" in arrays and "grid" in arrays:
         found.append(_cloud(run, name, folder))

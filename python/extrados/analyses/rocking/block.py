@@ -35,7 +35,9 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     c_v = model.restitution
     needed = float(friction[~flying].max(initial=0.0))
     if response.joints is not None and np.isfinite(response.joints.friction):
-        needed = float(response.joints.friction)
+        # the joints are watched while it rocks; at rest the ground pushes it along too
+        still = friction[(response.rotation == 0.0) & ~flying]
+        needed = max(float(response.joints.friction), float(still.max(initial=0.0)))
     result = rocking_result(
         context,
         response,
@@ -61,7 +63,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     result.arrays |= {**geometry_arrays(model.block), **_snapshots(model, response, tangential, normal, index)}
     result.answer = (
         answer(context, response, f"The {rocker.word}", "overturns", rocker.uplift)
-        + f" It slides instead where friction is below {needed:.2f}."
+        + f" The {rocker.word} slides instead where friction is below {needed:.2f}."
     )
     return result
 

@@ -51,7 +51,10 @@ def _run(context: Context, options: Pushover) -> Result:
         context.warnings.append("nothing of it can crack: [material] has no tensile_strength, or no fracture_energy")
     elastic = _elastic(model, options)
     if model.mesh.walls and not sliding_limits(model, context.building, options, elastic["under"]):
-        context.warnings.append("sliding of the building on its levels is not checked: [joints] friction excludes it")
+        why = "the shear on a level is not known where displacements drive the walls"
+        if context.building.joints.coefficient is None:
+            why = "[joints] friction excludes it"
+        context.warnings.append(f"Sliding of the building on its levels is not checked: {why}.")
     numbers: dict[str, Any] = {}
     if options.stages:
         curves, numbers = _stages(context, result, model, options, elastic)

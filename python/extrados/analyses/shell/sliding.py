@@ -40,7 +40,8 @@ def sliding_limits(
     model: ShellModel, building: Building, options: Pushover, under: dict[str, np.ndarray]
 ) -> list[SlidingLimit]:
     """The bases of all storeys, and all heights at which bed joints cut all walls; none of a vault without walls, and none
-    of a level whose friction excludes sliding. under: report of all points under the constant loads (core.sla.REPORT)."""
+    of a level whose friction excludes sliding. At the base of a storey walls without a bed joint resist by the friction and
+    cohesion of [joints]. under: report of all points under the constant loads (core.sla.REPORT)."""
     mesh = model.mesh
     if not mesh.walls or model.driven:
         return []
@@ -53,21 +54,27 @@ def sliding_limits(
             beds.setdefault(z, []).append((joint.name, *of))
     found = []
     for storey, z in enumerate(mesh.levels[:-1].tolist(), 1):
-        if not any(abs(z - bed) < SAME for bed in beds):
-            friction, area = building.joints.coefficient, _area(model, z)
-            if friction is not None:
-                normal = _normal(model, z)
-                resistance = friction * normal + building.joints.cohesion * area
-                found.append((f"the base of storey {storey}", z, normal, area, resistance))
+        cut = [one for bed, of in beds.items() if abs(z - bed) < SAME for one in of]
+        friction, area, normal = building.joints.coefficient, _area(model, z), _normal(model, z)
+        jointed = sum(one[3] for one in cut)
+        if jointed < ALL * area and friction is not None and not any(np.isnan(one[1]) for one in cut):
+            rest = max(normal - sum(max(one[4], 0.0) for one in cut), 0.0)
+            resistance = _coulomb(cut) + friction * rest + building.joints.cohesion * (area - jointed)
+            found.append((f"the base of storey {storey}", z, normal, area, resistance))
     for z, cut in beds.items():
         area = sum(one[3] for one in cut)
         if area >= ALL * _area(model, z) and not any(np.isnan(one[1]) for one in cut):
             names = list(dict.fromkeys(one[0] for one in cut))
-            resistance = sum(friction * max(force, 0.0) + cohesion * own for _, friction, cohesion, own, force in cut)
+            resistance = _coulomb(cut)
             title = f"bed joint{'s' if len(names) > 1 else ''} {', '.join(names)}"
             found.append((title, z, sum(one[4] for one in cut), area, resistance))
     rows = [SlidingLimit(*one, _share(model, options, one[1])) for one in found]
     return [row for row in rows if row.shear_share > 0.0]
+
+
+def _coulomb(cut: list[tuple[str, float, float, float, float]]) -> float:
+    """Resistance to sliding [N] of bed joints, each by its friction, cohesion, area and normal force."""
+    return sum(friction * max(force, 0.0) + cohesion * area for _, friction, cohesion, area, force in cut)
 
 
 def _area(model: ShellModel, z: float) -> float:

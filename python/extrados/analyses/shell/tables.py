@@ -184,15 +184,21 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     algorithm: ClassVar = "update"
 
     def rests_on(self, building: "Building") -> dict[str, str | None]:
-        """Also, where it has joints, their friction, cohesion and tension."""
+        """Also, where it has joints, their friction, cohesion and tension; of walls in storeys friction and cohesion, which
+        limit their sliding."""
         found = super().rests_on(building)
+        if getattr(building.structure, "storeys", None):
+            found |= {"joints.friction": None, "joints.cohesion": None}
         if getattr(building.structure, "joint_names", []):
             found |= {"joints.friction": None, "joints.cohesion": None, "joints.tension": None}
         return found
 
     def reckons_with(self, building: "Building") -> set[str]:
-        """Walls, floors and shells have materials, and joints where the building says so; formulas of piers ask for a strength."""
+        """Walls, floors and shells have materials, and joints where the building says so; walls in storeys slide by friction
+        and cohesion; formulas of piers ask for a strength."""
         found = {*MATERIAL} - without_effect(building)
+        if getattr(building.structure, "storeys", None):
+            found |= {"joints.friction", "joints.cohesion"}
         if getattr(building.structure, "joint_names", []):
             found |= {name for name in INTERFACES if name != "supports.stiffness"}
             if building.joints.shear_stiffness is not None:
