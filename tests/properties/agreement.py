@@ -162,7 +162,7 @@ def one_block_by_every_strategy(width: float, height: float, within: float) -> N
     )
 
 
-@relation("tilt dem", SLIDERS, 2e-3, awaits="A6", examples=(SLIDES,))
+@relation("tilt dem", SLIDERS, 2e-3, examples=(SLIDES,))
 def a_block_that_slides(deck: Deck, within: float) -> None:
     """Friction below b/h: it slides at the friction coefficient, which is no collapse."""
     mu = deck["joints"]["friction"]
@@ -222,14 +222,14 @@ def rocking_by_two_strategies(size: tuple, ratio: float, period: float, within: 
     peak = max(abs(v) for v in other.results.peak_rotation_rad.values())
     near("peak rotation", abs(one.results.peak_rotation_rad), peak, within, 0.05 * one.results.critical_rotation_rad)
     must(
-        one.results.outcome == other.results.outcome,
+        {"recovery": "rocked"}.get(one.results.outcome, one.results.outcome) == other.results.outcome,
         f"{one.results.outcome} by rocking, {other.results.outcome} by elements",
     )
     weak = changed(deck, motion={"amplitude": f"{0.9 * width / height:.4g} g"})
     quiet = [ask(weak, "rocking"), ask(weak, "dem", end_time=period, time_step=1e-3, **RIGID)]
     ok(*quiet)
     for answer in quiet:
-        must(answer.results.outcome == "no-hinging", f"{answer.results.outcome} below b/h")
+        must(answer.results.outcome in ("no-hinging", "at-rest"), f"{answer.results.outcome} below b/h")
 
 
 @relation("failure-domain rocking", st.tuples(decks("block", "arch"), number(0.3, 1.2)), 0.0)

@@ -121,7 +121,7 @@ def little_damping(deck: Deck, ratio: float, within: float) -> None:
     must(answer.status == "ok", f"{answer.status}: {answer.said}")
 
 
-@relation("pushover", decks("building", material=MASONRY).map(lambda d: changed(d, motion=WEAK)), 0.0, awaits="A15", examples=(
+@relation("pushover", decks("building", material=MASONRY).map(lambda d: changed(d, motion=WEAK)), 0.0, examples=(
     changed({k: v for k, v in SOLE.items() if k != "joints"}, motion=WEAK, structure={"beds": []}),
 ))  # fmt: skip
 def a_push_is_no_verdict_on_a_peak(deck: Deck, within: float) -> None:
