@@ -9,7 +9,7 @@ from asking import Answer, Deck, ask, at_most, must, near, same
 from buildings import SECTIONS, SOLIDS, changed, decks, number, pulses, signed_area
 from hypothesis import reject
 from hypothesis import strategies as st
-from relations import GRAVITY, RECTANGLES, WEAK_SET, ok, relation
+from relations import EARTHQUAKES, GRAVITY, RECTANGLES, WEAK_SET, ok, relation
 
 from extrados import kinds
 from extrados.building.building import Building
@@ -353,3 +353,29 @@ def gaps_are_measured(width: float, height: float, gap: float, shift: float, wit
         any(abs(v - scale * gap) <= within * scale * gap for v in found for scale in (1.0, 1e3)),
         f"a gap of {gap}: {answer.said}",
     )
+
+
+COMPATIBLE = st.tuples(number(0.1, 0.6), st.integers(1, 10**6)).map(
+    lambda t: {"kind": "compatible", "code": "EN1998-1", "ground": "C", "acceleration": f"{t[0]:g} g", "duration": 3.0, "shortest": 0.1,
+               "longest": 0.8, "tolerance": 0.4, "seed": t[1]}
+)  # fmt: skip
+
+
+@relation("fragility rocking", st.tuples(decks("block"), st.one_of(COMPATIBLE, EARTHQUAKES)), 1e-6, share=0.5)
+def members_of_a_set(deck: Deck, motion: Deck, within: float) -> None:
+    """Each row of an ensemble is the single run of that member of the set."""
+    whole = ask(changed(deck, motion=motion), "fragility", count=3, bootstrap=0)
+    ok(whole)
+    columns = whole.result.tables["ensemble"].columns
+    for k in range(3):
+        alone = ask(changed(deck, motion={**motion, "member": k + 1}), "rocking")
+        ok(alone)
+        r = alone.results
+        near("peak ground acceleration", columns["pga"][k], r.peak_ground_acceleration_g, within)
+        if not r.decided_by_last_digits:
+            must(
+                columns["outcome"][k] in (r.outcome, "at rest"),
+                f"member {k + 1}: {columns['outcome'][k]} against {r.outcome}",
+            )
+            if r.outcome == "recovery":
+                near("peak rotation", columns["peak_ratio"][k], abs(r.peak_rotation_ratio), 1e-3, 1e-3)
