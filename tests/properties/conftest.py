@@ -20,15 +20,15 @@ def _touched(request: pytest.FixtureRequest) -> Iterator[None]:
     if not place:
         yield
         return
-    root, found, begin = str(Path(extrados.__file__).parent), set(), time.perf_counter()
+    root, seen, begin = str(Path(extrados.__file__).parent), set(), time.perf_counter()
 
-    def note(frame: Any, event: str, _: Any) -> None:
-        if event == "call" and frame.f_code.co_filename.startswith(root):
-            found.add((os.path.relpath(frame.f_code.co_filename, root), frame.f_code.co_firstlineno))
+    def note(frame: Any, event: str, _: Any) -> None:  # of each call, and of no line
+        seen.add(frame.f_code)
 
-    sys.setprofile(note)
+    sys.settrace(note)
     yield
-    sys.setprofile(None)
+    sys.settrace(None)
+    found = {(os.path.relpath(c.co_filename, root), c.co_firstlineno) for c in seen if c.co_filename.startswith(root)}
     row = {"test": request.node.nodeid, "seconds": time.perf_counter() - begin, "touched": sorted(found)}
     with open(place, "a", encoding="utf-8") as file:
         file.write(json.dumps(row) + "\n")

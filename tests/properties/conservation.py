@@ -1,0 +1,389 @@
+"""What is conserved and what closed forms say: masses, centres and inertias, multipliers of one body, tables and arrays."""
+
+import itertools
+import math
+from typing import Any
+
+import numpy as np
+from asking import Answer, Deck, ask, at_most, must, near, same
+from buildings import SECTIONS, SOLIDS, changed, decks, number, pulses, signed_area
+from hypothesis import reject
+from hypothesis import strategies as st
+from relations import EARTHQUAKES, GRAVITY, RECTANGLES, WEAK_SET, ok, relation
+
+from extrados import kinds
+from extrados.building.building import Building
+from extrados.decks.reader import make_deck
+
+
+def building(deck: Deck) -> Building:
+    """The building of a deck."""
+    return make_deck({**deck, "analysis": [{"kind": "tilt"}]}).building
+
+
+#: Kinds whose thickness is called depth
+DEEP = tuple(
+    k for k in SECTIONS if "depth" in kinds.table("structure", k).model_fields and k not in ("blocks", "bridge")
+)
+
+
+@relation("tilt", st.tuples(decks(*DEEP), number(0.2, 3.0), number(500.0, 3000.0)), 5e-3)
+def blocks_hold_what_their_outlines_do(deck: Deck, depth: float, density: float, within: float) -> None:
+    """Mass, centre and moment of inertia of each block are those of its outline, depth and density."""
+    there = changed(deck, structure={"depth": depth}, material={"density": density})
+    stones = building(there).blocks()
+    for k, outline in enumerate(stones.outlines):
+        area, centre, second = moments(outline)
+        size = math.sqrt(area)
+        near("mass", stones.mass[k], density * depth * area, within)
+        near("centre", stones.centroid[k], centre, within, size)
+        near("inertia", stones.inertia[k], density * depth * second, 4.0 * within)
+    total = density * depth * sum(abs(signed_area(o)) for o in stones.outlines)
+    answer = ask(there, "tilt")
+    ok(answer)
+    near("weight", answer.results.weight_N, total * GRAVITY, within)
+
+
+def moments(outline: np.ndarray) -> tuple[float, np.ndarray, float]:
+    """Area [m^2], centre [m] and polar second moment about it [m^4] of a polygon (n, 2)."""
+    x, y = (outline - outline[0]).T
+    u, v = np.roll(x, -1), np.roll(y, -1)
+    cross = x * v - u * y
+    area = 0.5 * cross.sum()
+    centre = np.array([cross @ (x + u), cross @ (y + v)]) / (6.0 * area)
+    second = cross @ (x * x + x * u + u * u + y * y + y * v + v * v) / 12.0
+    return abs(float(area)), centre + outline[0], abs(float(second)) - abs(float(area)) * float(centre @ centre)
+
+
+@st.composite
+def barrels(draw: st.DrawFn) -> Deck:
+    """Arches as barrels in space, of stones across their depth and skew in plan."""
+    deck = draw(decks("arch"))
+    return changed(
+        deck,
+        structure={
+            "depth": draw(number(0.5, 3.0)),
+            "voussoirs": draw(st.integers(5, 9)),
+            "stones_across": draw(st.integers(1, 3)),
+            "skew": draw(number(-40.0, 40.0, 8)),
+        },
+    )
+
+
+@relation("tilt", st.one_of(barrels(), decks(*SOLIDS)), 5e-3)
+def solids_hold_what_their_parts_do(deck: Deck, within: float) -> None:
+    """Mass, centre and tensor of inertia of each stone in space are those of its parts."""
+    there = changed(deck, material={"density": 1800.0})
+    stones = building(there).solids()
+    for k in range(len(stones.mass)):
+        volume, first, second = 0.0, np.zeros(3), np.zeros((3, 3))
+        for part in itertools.compress(stones.parts, stones.owner == k):
+            corner = part.vertices[part.triangles]
+            share = np.linalg.det(corner) / 6.0  # of tetrahedra from the origin
+            whole = corner.sum(axis=1)
+            volume += share.sum()
+            first += share @ whole / 4.0
+            second += (
+                np.einsum(
+                    "t,tij->ij",
+                    share,
+                    (np.einsum("tki,tkj->tij", corner, corner) + np.einsum("ti,tj->tij", whole, whole)),
+                )
+                / 20.0
+            )
+        centre = first / volume
+        about = second - volume * np.outer(centre, centre)
+        inertia = 1800.0 * (np.trace(about) * np.eye(3) - about)
+        near("mass", stones.mass[k], 1800.0 * volume, within)
+        near("centre", stones.centroid[k], centre, within, volume ** (1 / 3))
+        near("inertia", stones.inertia[k], inertia, 4.0 * within, np.trace(inertia))
+
+
+@relation("tilt", barrels(), 1e-5, share=0.5)
+def barrels_and_their_sections(deck: Deck, within: float) -> None:
+    """Along its span a barrel of any bond bears what its section bears; a skew one no more, for its joints bear sidewards too."""
+    square, section = changed(deck, structure={"skew": 0.0}), changed(deck, structure={"skew": 0.0, "stones_across": 1})
+    plane, space, skew = ask(section, "tilt"), *(ask(d, "tilt", direction=0.0, rose=4) for d in (square, deck))
+    same("in space", plane, space)
+    ok(plane, space)
+    near("in space", plane.capacity, space.capacity, within, 1e-3)
+    near("weight", plane.results.weight_N, space.results.weight_N, within)
+    must(skew.outcome in (plane.outcome, "cannot-stand"), f"skew: {skew.outcome} ({skew.said})")
+    at_most("skew", skew.capacity, plane.capacity, within, 1e-3)
+
+
+@st.composite
+def facades(draw: st.DrawFn) -> Deck:
+    """Tables of a wall that turns out of its plane, with all that rests on it, pushes it or holds it."""
+    height = draw(number(2.0, 8.0))
+    table: Deck = {"mechanism": "facade", "thickness": draw(number(0.2, 1.0)), "height": height, "width": draw(number(0.5, 5.0)),
+                   "hinge_height": draw(st.sampled_from([0.0, 0.5]))}  # fmt: skip
+    if draw(st.booleans()):
+        table["side_walls"] = {
+            "thickness": draw(number(0.2, 0.6)),
+            "crack_angle": draw(number(5.0, 40.0, 7)),
+            "count": draw(st.integers(1, 2)),
+        }
+    levels = number(1.0, height, 20)
+    table["floors"] = [
+        {"height": draw(levels), "load": draw(number(0.0, 3e4)), "pushing": draw(number(0.0, 2e4)), "thrust": draw(st.sampled_from([0.0, 200.0])),
+         "sways": draw(st.booleans()), **({"arm": draw(number(0.05, 0.2))} if draw(st.booleans()) else {})}
+        for _ in range(draw(st.integers(0, 2)))
+    ]  # fmt: skip
+    table["ties"] = [{"height": draw(levels), "force": draw(number(10.0, 3e3))} for _ in range(draw(st.integers(0, 1)))]
+    return table
+
+
+@relation("local-mechanism", facades(), 1e-6)
+def walls_by_virtual_work(table: Deck, within: float) -> None:
+    """alpha_0 and e* of one wall about its hinge are the sums of moments and masses of what the deck names."""
+    t, hinge = table["thickness"], table["hinge_height"]
+    h, density = table["height"] - hinge, 1900.0
+    wall = density * GRAVITY * t * h * table["width"]
+    rows = [(wall, 0.5 * t, 0.5 * h, True, True)]  # weight, arm, height, sways, rests
+    if side := table.get("side_walls"):
+        length = h * math.tan(math.radians(side["crack_angle"]))
+        wedge = side["count"] * density * GRAVITY * side["thickness"] * 0.5 * h * length
+        rows.append((wedge, t + length / 3.0, 2.0 / 3.0 * h, True, True))
+    outward = 0.0
+    for floor in table["floors"]:
+        level = floor["height"] - hinge
+        rows.append((floor["load"], floor.get("arm", 0.5 * t), level, floor["sways"], True))
+        rows.append((floor["pushing"], 0.0, level, True, False))
+        outward += floor["thrust"] * level
+    held = sum(tie["force"] * (tie["height"] - hinge) for tie in table["ties"])
+    back = sum(w * arm for w, arm, _, _, rests in rows if rests)
+    sway = [(w, level) for w, _, level, sways, _ in rows if sways]
+    drive = sum(w * level for w, level in sway)
+    if back - outward <= 0.0:
+        reject()
+    answer = ask({"material": {"density": density}}, "local-mechanism", **table, confidence_factor=1.2)
+    ok(answer)
+    r = answer.results
+    near("alpha_0", r.multiplier, (back + held - outward) / drive, within)
+    part = drive**2 / (sum(w for w, _ in sway) * sum(w * level**2 for w, level in sway))
+    near("e*", r.participating_part, part, within)
+    near("weight", r.swaying_weight_N, sum(w for w, _ in sway), within)
+    near("M*", r.participating_mass_kg, part * sum(w for w, _ in sway) / GRAVITY, within)
+    near("a_0*", r.activation_acceleration_g, r.multiplier / part / 1.2, within)
+
+
+TIES = st.tuples(RECTANGLES, number(0.3, 1.0), number(0.01, 0.5), st.sampled_from([-1.0, 1.0]))
+
+
+@relation("rocking tilt", TIES, 1e-5)
+def ties_by_rocking_and_limit_analysis(size: tuple, level: float, force: float, side: float, within: float) -> None:
+    """A block that a prestressed tie holds to one side begins to rock where limit analysis with the tie's force says."""
+    width, height = size
+    deck = {"structure": {"kind": "block", "width": width, "height": height}, "joints": {"friction": "no-sliding"}}
+    weight = 2000.0 * width * height * GRAVITY
+    middle = 0.5 * width if min(p[0] for p in building(deck).blocks().outlines[0]) >= 0.0 else 0.0
+    y = round(level * height, 4)
+    pull = round(force * 0.5 * width * weight / y, 3)  # of the moment that its weight resists by
+    tie = {
+        "start": [middle, y],
+        "ground": [middle + side * (width + 3.0), y],
+        "works_in": "tension",
+        "yield_force": pull,
+    }
+    held = {**deck, "ties": [{**tie, "stiffness": 1e6, "prestress": pull}]}
+    limit = ask({**deck, "ties": [tie]}, "tilt")
+    rocks = ask(
+        changed(held, motion={"kind": "sine-pulse", "amplitude": "0.3 g", "period": 0.5}), "rocking", end_time=1.0
+    )
+    ok(limit, rocks)
+    moment = weight * 0.5 * width
+    near(
+        "limit analysis", sorted(limit.capacity), [width / height, (moment + pull * y) / (0.5 * height * weight)], 1e-5
+    )
+    near("rocking", rocks.results.uplift_acceleration_g, (moment - pull * y) / (0.5 * height * weight), within)
+
+
+#: Analyses whose tables and arrays are compared, with a motion
+TOLD: dict[str, dict[str, Any]] = {
+    "rocking": {}, "dem": {"end_time": 0.5, "solver": "nonsmooth"}, "tilt": {}, "thrust": {}, "fragility": {"count": 4, "bootstrap": 0},
+    "failure-domain": {"durations": [0.3, 0.6], "amplitudes": 3, "accuracy": 0.05}, "local-mechanism": {"mechanism": "building"},
+    "moving-load": {"count": 5}, "supports": {"steps": 10}, "sla": {"events": 10}, "motion": {},
+}  # fmt: skip
+
+
+@relation(
+    " ".join(TOLD),
+    st.tuples(decks("block", "stack", "arch", "column", "brickwork"), pulses(0.1, 1.0), st.sampled_from(sorted(TOLD))),
+    1e-12,
+)
+def tables_and_arrays(deck: Deck, motion: Deck, kind: str, within: float) -> None:
+    """Columns of one table have one length, and are the arrays of their names; peaks are those of histories."""
+    whole = changed(deck, motion=WEAK_SET | {"mmi": 9} if kind == "fragility" else motion)
+    answer = ask(whole, kind, **TOLD[kind])
+    ok(answer)
+    arrays = answer.result.arrays
+    for name, table in answer.result.tables.items():
+        must(
+            len({len(c) for c in table.columns.values()}) <= 1,
+            f"{name}: columns of {[len(c) for c in table.columns.values()]}",
+        )
+        for column, values in table.columns.items():
+            values = np.asarray(values)
+            if column in arrays and values.dtype.kind == "f" and np.shape(arrays[column].data) == values.shape:
+                near(f"{name}.{column}", np.asarray(arrays[column].data), values, within)
+    _peaks(answer, kind, deck["structure"]["kind"])
+
+
+def _peaks(answer: Answer, kind: str, structure: str) -> None:
+    """The peaks of histories of rocking."""
+    if kind != "rocking":
+        return
+    r, arrays = answer.results, answer.result.arrays
+    time, rotation = (np.asarray(arrays[k].data) for k in ("time", "rotation"))
+    must(bool(np.all(np.diff(time) >= 0.0)), "times that go back")
+    at_most("peak rotation", np.abs(rotation).max(initial=0.0), abs(r.peak_rotation_rad), 1e-6, 1e-9)
+    ratio = np.abs(rotation).max(initial=0.0) / r.critical_rotation_rad
+    at_most("peak over the critical rotation", ratio, r.peak_rotation_ratio, 1e-6, 1e-9)
+    if structure == "stack":
+        upper = np.abs(np.asarray(arrays["rotation_upper"].data) - rotation).max(initial=0.0)
+        at_most("the upper block", upper / r.stack.critical_rotation_upper_rad, r.peak_rotation_ratio, 1e-6, 1e-9)
+    else:
+        near(
+            "peak over the critical rotation",
+            abs(r.peak_rotation_rad) / r.critical_rotation_rad,
+            abs(r.peak_rotation_ratio),
+            1e-6,
+            1e-9,
+        )
+
+
+LOADED = st.tuples(
+    decks("arch", "pointed-arch", "elliptical-arch"), number(0.2, 0.8), number(0.0, 0.6), number(1.0, 3.0)
+)
+
+
+@relation("moving-load", LOADED, 1e-5, share=0.5)
+def even_loads_where_they_are_adverse(deck: Deck, place: float, start: float, factor: float, within: float) -> None:
+    """An even load that stands where it is adverse brings down no later than on any stretch; twice the load half the factor."""
+    outlines = building(deck).blocks().outlines
+    low, high = (f(float(getattr(o[:, 0], end)()) for o in outlines) for f, end in ((min, "min"), (max, "max")))
+    span = high - low
+    load = 2e4
+    keys = {"axles": [], "places": [round(low + 0.5 * span, 4)]}
+    found = ask(deck, "moving-load", uniform=[{"load": load}], **keys)
+    ok(found)
+    whole = ask(deck, "moving-load", uniform=[{"load": load * factor}], **keys)
+    near("in proportion", found.results.adequacy_factor, whole.results.adequacy_factor * factor, 1e-4)
+    for a, b in (
+        (None, None),
+        (None, 0.0),
+        (0.0, None),
+        (start * span - 0.3 * span, start * span),
+        (-place * span, None),
+    ):
+        stretch = (
+            {"load": load}
+            | ({} if a is None else {"start": round(a, 4)})
+            | ({} if b is None else {"stop": round(b, 4)})
+        )
+        part = ask(deck, "moving-load", uniform=[stretch], adverse=False, **keys)
+        if part.answers:
+            at_most(f"stretch {a} to {b}", found.results.adequacy_factor, part.results.adequacy_factor, 2e-3)
+
+
+@relation(
+    "moving-load",
+    st.tuples(decks("arch", "elliptical-arch"), number(1.0, 8.0), number(1.0, 4.0), number(1.0, 1.4)),
+    1e-5,
+)
+def partial_factors_are_properties(
+    deck: Deck, pressure: float, strength: float, friction: float, within: float
+) -> None:
+    """A partial factor under strength or friction is a lower strength or friction. pressure: strength over the mean stress at rest."""
+    stones = building(deck).blocks()
+    least = float(stones.mass.sum()) * GRAVITY / (2.0 * stones.depth * stones.length.min())
+    crushing = pressure * strength * least
+    mu = deck["joints"]["friction"]
+    one = ask(
+        changed(deck, material={"compressive_strength": crushing}),
+        "moving-load",
+        count=3,
+        factors={"strength": strength, "friction": friction},
+    )
+    other = ask(
+        changed(deck, material={"compressive_strength": crushing / strength}, joints={"friction": mu / friction}),
+        "moving-load",
+        count=3,
+    )
+    same("factored", one, other)
+    ok(one, other)
+    near("factored", one.results.collapse_load_N, other.results.collapse_load_N, within)
+
+
+NAMES = st.text("abcxyz", min_size=3, max_size=8).map(lambda s: f"no-{s}")
+
+
+@relation("tilt", st.tuples(decks("brickwork", "arch", "column", "blocks"), NAMES), 0.0)
+def what_is_not_there_is_named(deck: Deck, name: str, within: float) -> None:
+    """A name of a joint or stone that the building does not have is refused, and named."""
+    for tables in (
+        {"joints": {"types": [{"joints": [name], "friction": 0.3}]}},
+        {"ties": [{"start": [0.0, 0.1], "start_stone": name, "ground": [-9.0, 0.1]}]},
+    ):
+        answer = ask(changed(deck, **tables), "tilt")
+        must(answer.status == "refused" and name in answer.said, f"{answer.status}: {answer.said}")
+
+
+@relation("tilt", st.tuples(number(0.3, 2.0), number(0.2, 1.0), number(0.02, 0.5), number(-50.0, 50.0)), 1e-2)
+def gaps_are_measured(width: float, height: float, gap: float, shift: float, within: float) -> None:
+    """A stone that hangs over another is refused with the size of the gap, wherever the survey has its origin."""
+    rows = [(0.0, height), (height + gap, 2.0 * height + gap)]
+    blocks = [
+        {
+            "name": f"s{k}",
+            "points": [[shift + x, shift + y] for x, y in ((0.0, low), (width, low), (width, high), (0.0, high))],
+        }
+        for k, (low, high) in enumerate(rows)
+    ]
+    ground = [[shift - 1.0, shift, shift + width + 1.0, shift]]
+    answer = ask({"structure": {"kind": "blocks", "block": blocks, "ground": ground}}, "tilt")
+    must(answer.status == "refused", answer.status)
+    found = [
+        float(w.strip(",;:()"))
+        for w in answer.said.split()
+        if w.strip(",;:()").replace(".", "", 1).replace("e-", "", 1).isdigit()
+    ]
+    must(
+        any(abs(v - scale * gap) <= within * scale * gap for v in found for scale in (1.0, 1e3)),
+        f"a gap of {gap}: {answer.said}",
+    )
+
+
+COMPATIBLE = st.tuples(number(0.1, 0.6), st.integers(1, 10**6)).map(
+    lambda t: {"kind": "compatible", "code": "EN1998-1", "ground": "C", "acceleration": f"{t[0]:g} g", "duration": 3.0, "shortest": 0.1,
+               "longest": 0.8, "tolerance": 0.4, "seed": t[1]}
+)  # fmt: skip
+
+
+@relation("fragility rocking", st.tuples(decks("block"), COMPATIBLE, EARTHQUAKES), 1e-6, share=0.5)
+def members_of_a_set(deck: Deck, compatible: Deck, generated: Deck, within: float) -> None:
+    """Each row of an ensemble is the single run of that member of the set."""
+    for motion in (compatible, generated):
+        whole = ask(changed(deck, motion=motion), "fragility", count=3, bootstrap=0)
+        ok(whole)
+        columns = whole.result.tables["ensemble"].columns
+        for k in range(3):
+            alone = ask(changed(deck, motion={**motion, "member": k + 1}), "rocking")
+            ok(alone)
+            r = alone.results
+            near("peak ground acceleration", columns["pga"][k], r.peak_ground_acceleration_g, within)
+            if r.decided_by_last_digits:
+                continue
+            must(columns["outcome"][k] == r.outcome, f"member {k + 1}: {columns['outcome'][k]} against {r.outcome}")
+            if r.outcome == "recovery":
+                near("peak rotation", columns["peak_ratio"][k], abs(r.peak_rotation_ratio), 1e-3, 1e-3)
+
+
+@relation("local-mechanism tilt", decks("block", "column", "brickwork", "stack", friction=number(0.1, 0.3)), 1e-4)
+def codes_where_joints_slide(deck: Deck, within: float) -> None:
+    """alpha_0 of a section whose joints slide first is what limit analysis says with its friction."""
+    codes, limit = ask(deck, "local-mechanism", mechanism="building"), ask(deck, "tilt")
+    same("codes", codes, limit) if "cannot-stand" in (codes.outcome, limit.outcome) else ok(codes, limit)
+    ok(codes, limit)
+    near("alpha_0", codes.results.multiplier, limit.capacity.min(), within)

@@ -1,0 +1,130 @@
+"""Discrete elements: closed forms of springs and friction, and elements in space as in the plane."""
+
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from asking import Answer, Deck, ask, at_most, must, near
+from buildings import changed, decks, number
+from hypothesis import reject
+from hypothesis import strategies as st
+from relations import GRAVITY, RECTANGLES, RIGID, ok, relation
+
+import extrados
+
+
+def in_space(deck: Deck, kind: str, **keys: Any) -> Answer:
+    """What a strategy says of the section drawn out to its depth, pushed along x."""
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "stones.json").write_text(extrados.export({**deck, "analysis": [{"kind": "tilt"}]}, "compas"))
+        there = {**deck, "structure": {"kind": "blocks", "file": "stones.json", "unit": "m"}}
+        return ask(there, kind, Path(folder), direction=0.0, **keys)
+
+
+def waving(deck: Deck, amplitude: float, period: float) -> Deck:
+    """A deck under one sine; amplitude in g."""
+    return changed(deck, motion={"kind": "sine-pulse", "amplitude": f"{amplitude:.5g} g", "period": period})
+
+
+def places(answer: Answer, axis: int) -> np.ndarray:
+    """Places of the centroids along x (0) or upward (1) (time, block) [m], of a run in the plane or in space."""
+    arrays = answer.result.arrays
+    if "place" in arrays:
+        return np.asarray(arrays["place"].data)[:, :, axis]
+    return (np.asarray(arrays["solid_centroid"].data) + np.asarray(arrays["pose"].data)[:, :, :3])[:, :, 2 * axis]
+
+
+PIERS = st.tuples(
+    decks("block", "column", friction=number(0.5, 0.9, 8)), number(1.2, 1.8), number(0.3, 0.6, 12), st.booleans()
+)
+
+
+@relation("dem", PIERS, 0.15)
+def elements_in_space_and_in_the_plane(deck: Deck, ratio: float, period: float, rigid: bool, within: float) -> None:
+    """A pier that rocks or slides under one sine does so in space as in the plane, with the same losses."""
+    there = deck["structure"]
+    there["height"] = float(f"{there['width'] * 2.5:.5g}")
+    there |= {"drums": min(there["drums"], 2), "top_width": there["width"]} if there["kind"] == "column" else {}
+    there["depth"] = 1.5
+    amplitude = ratio * min(0.4, deck["joints"]["friction"])
+    keys = RIGID if rigid else {}
+    moving = waving(changed(deck, joints={} if rigid else {"normal_stiffness": 1e9}), amplitude, period)
+    plane, space = (how(moving, "dem", end_time=2.0 * period, time_step=5e-4, **keys) for how in (ask, in_space))
+    ok(plane, space)
+    a, b = plane.results, space.results
+    if min(a.peak_displacement_m, b.peak_displacement_m) > 0.3 * there["width"]:
+        reject()  # on the edge of collapse last digits decide
+    must(a.outcome == b.outcome, f"{a.outcome} in the plane, {b.outcome} in space")
+    size = there["width"]
+    near("peak displacement", a.peak_displacement_m, b.peak_displacement_m, within, 0.02 * size)
+    near("slip", a.peak_slip_m, b.peak_slip_m, within, 0.02 * size)
+    if rigid:  # dampers of springs act at other points in space
+        scale = a.peak_kinetic_energy_J
+        near("peak kinetic energy", scale, b.peak_kinetic_energy_J, 2.0 * within)
+        near("losses", a.friction_loss_J + a.damping_loss_J, b.friction_loss_J + b.damping_loss_J, within, 0.5 * scale)
+    for told, r in (("plane", a), ("space", b)):
+        at_most(f"residual of energy in {told}", r.energy_residual_ratio, 0.02, 0.0)
+
+
+STACKS = st.tuples(
+    decks("block", "column", friction=number(0.6, 0.9)), number(7.0, 10.0), number(0.5, 2.0), st.booleans()
+)
+
+
+@relation("dem", STACKS, 1e-3)
+def settlements_of_springs(deck: Deck, power: float, depth: float, solid: bool, within: float) -> None:
+    """Upright piers settle on the springs of their joints by weight over stiffness and area, drum by drum; the rest stands still."""
+    there = deck["structure"]
+    there["depth"] = depth
+    if there["kind"] == "column":
+        there["top_width"] = there["width"]
+    stiffness = float(f"{10.0**power:.4g}")
+    quiet = waving(changed(deck, joints={"normal_stiffness": stiffness}), 1e-6, 0.5)
+    answer = (in_space if solid else ask)(quiet, "dem", end_time=0.02)
+    ok(answer)
+    drums = there.get("drums", 1)
+    high = there["height"] / drums
+    place = places(answer, 1)[0]
+    above = np.arange(drums, 0, -1) * 2000.0 * GRAVITY * high
+    want = (np.arange(drums) + 0.5) * high - np.cumsum(above / stiffness)
+    near("settled places", np.sort(place), want, within * float(np.sum(above)) / stiffness / there["height"])
+
+
+@relation("dem", st.tuples(number(0.5, 2.0), number(0.3, 0.6), number(0.15, 0.4), number(1.3, 2.0), number(0.2, 0.5), st.sampled_from(["rigid", "springs"]), st.booleans()), 0.04)  # fmt: skip
+def work_of_friction(
+    width: float, slenderness: float, mu: float, ratio: float, period: float, how: str, solid: bool, within: float
+) -> None:
+    """What friction takes from a block that slides is friction times its weight times its way."""
+    height = round(width * slenderness, 4)
+    deck = {"structure": {"kind": "block", "width": width, "height": height}, "joints": {"friction": mu}}
+    keys = {"output_step": 0.002, "time_step": 5e-4, **(RIGID if how == "rigid" else {})}
+    if how == "springs":
+        deck["joints"]["normal_stiffness"] = 1e9
+    answer = (in_space if solid else ask)(waving(deck, ratio * mu, period), "dem", end_time=period + 0.5, **keys)
+    ok(answer)
+    r = answer.results
+    x = places(answer, 0)[:, 0]
+    near(
+        "work of friction",
+        r.friction_loss_J,
+        mu * 2000.0 * GRAVITY * width * height * float(np.abs(np.diff(x)).sum()),
+        within,
+    )
+    near("slip", r.peak_slip_m, np.abs(x - x[0]).max(), within, 0.01 * width)
+    at_most("residual of energy", r.energy_residual_ratio, 0.01, 0.0)
+
+
+@relation("dem", st.tuples(RECTANGLES, number(0.2, 3.0), st.booleans()), 0.015, share=0.5)
+def mortar_at_the_ends_of_a_joint(size: tuple, strength: float, solid: bool, within: float) -> None:
+    """Springs with mortar: a block on end points breaks off where the point that it turns from reaches tension times half the area."""
+    width, height = size
+    weight = 2000.0 * GRAVITY * width * height
+    tension = float(f"{strength * weight / width:.4g}")
+    deck = {"structure": {"kind": "block", "width": width, "height": height},
+            "joints": {"friction": 0.9, "normal_stiffness": 1e10, "tension": tension, "cohesion": 1e8}}  # fmt: skip
+    keys = {"test": "tilt", "tilt_accuracy": 2e-3 * width / height, "tilt_limit": f"{10.0 * width / height:.4g} g"}
+    answer = (in_space if solid else ask)(deck, "dem", **keys)
+    ok(answer)
+    want = width / height * (1.0 + tension * width / weight)
+    near("collapse acceleration", answer.capacity, [want, want], within)
