@@ -155,13 +155,6 @@ EARTHQUAKES = st.tuples(st.integers(6, 10), st.integers(1, 10**6)).map(
 SCALES = st.sampled_from([0.25, 2.0, 4.0])
 
 
-#: The solver of central thrust lines gives up on some walls
-UNSETTLED = "did not settle"
-
-
-GIVES_UP = "the most central thrust line of a wall of several blocks does not always settle: `thrust` fails in words"
-
-
 WEAK = {"kind": "sine-pulse", "amplitude": "0.02 g", "period": 0.3}
 
 

@@ -146,3 +146,24 @@ def test_the_criterion_does_not_hang_on_where_the_run_ends(stop: bool) -> None:
     found = run(tall, SINE, 0.7, stop_at_collapse=stop, end_time=1.5, output_step=1e-3)
     assert (found["outcome"], found["collapse_criterion"]) == ("collapse", "rotation")
     assert found["collapse_time_s"] == pytest.approx(run(tall, SINE, 0.7)["collapse_time_s"], abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("structure", "friction", "interval"),
+    [
+        ({"kind": "brickwork", "unit_length": 0.5, "unit_height": 0.25, "units": 2, "courses": 3}, 0.3, True),
+        ({"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}, 0.7, False),
+        ({"kind": "column", "width": 1.0, "height": 2.0, "drums": 3}, 0.2, False),
+        ({"kind": "block", "width": 1.0, "height": 1.0}, 0.4, False),
+    ],
+)
+def test_a_tilt_test_that_slides_says_that_it_is_one_state_of_an_interval(
+    structure: dict, friction: float, interval: bool
+) -> None:
+    """Of joints whose forces statics does not fix: a stack that slides, or an arch that only hinges, has one capacity."""
+    asked = {"kind": "dem", "test": "tilt", "solver": "nonsmooth", "tilt_accuracy": 0.02}
+    found = extrados.run({"structure": structure, "joints": {"friction": friction}, "analysis": asked}).results[0]
+    assert found.results.interval == interval
+    for text in (found.verdict.statement, found.answer):
+        assert ("form an interval" in text) == interval
+    assert found.verdict.bound is None

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import extrados
 from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
 from extrados.decks.reader import DeckError, make_deck
@@ -312,3 +313,25 @@ def test_what_cannot_stand_moves_on_the_page(tmp_path: Path) -> None:
         words, arrays = shown(Run.read(tmp_path / "out"), name)
         assert words["body"]["sort"] == "stones"
         assert arrays["body_pose"][-1, 0, 1] < arrays["body_pose"][0, 0, 1]
+
+
+@pytest.mark.parametrize("strength", [2e5, 5e4])
+def test_a_buttress_that_is_crushed_by_itself_carries_nothing(strength: float) -> None:
+    """Weak stone: proven for the section, and at 50 kPa for its buttress alone too."""
+    vault = {
+        "kind": "vault",
+        "radius": 5.0,
+        "thickness": 0.6,
+        "embrace": 157.5,
+        "voussoirs": 12,
+        "face": 4.65,
+        "height": 8.0,
+    }
+    asked = {"kind": "sweep", "vary": "buttress_width", "values": [2.0, 3.0], "buttress_alone": True}
+    deck = {
+        "structure": vault | {"buttress_width": 2.0},
+        "material": {"compressive_strength": strength},
+        "analysis": asked,
+    }
+    found = extrados.run(deck).results[0]
+    assert found.status == "ok" and found.verdict.outcome == "cannot-stand"

@@ -1,6 +1,7 @@
 """Buttressed vaults, fracture, side aisles, flyers: values computed apart, closed forms and laws."""
 
 import itertools
+import warnings
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from extrados.building.geometry.assembly import GROUND, Assembly, part_of
 from extrados.building.geometry.builder import Builder
 from extrados.building.templates.aisled_vault import Added, Aisle, Flyer, make_church
 from extrados.building.templates.arch import make_arch
+from extrados.building.templates.block import make_block
 from extrados.building.templates.vault import make_vault
 from extrados.limit.answer import assess
 from extrados.limit.fracture import crack, fractured_collapse, section_distance
@@ -232,6 +234,18 @@ def test_thrust_in_a_pier_ends_at_its_base() -> None:
         foot = state.points(section)[base]
         force, x = section_forces(section, block, np.array([foot[1] + 1e-3]), state, answer.loads)
         assert force[0, 1] < 0.0 and x[0] == pytest.approx(foot[0], abs=5e-3)
+
+
+def test_a_section_that_nothing_crosses_has_no_place() -> None:
+    """Above a block; at 1 m of 3 m the weight of 2 m and its tilt at b/h = 1/3 meet the section at 1/3 m."""
+    answer = assess(make_block(1.0, 3.0), 0.7)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        force, x = section_forces(answer.assembly, 0, np.array([4.0, 1.0]), answer.collapse_state, answer.loads)
+    assert not force[0].any() and np.isnan(x[0])
+    assert force[1] == pytest.approx(np.array([1.0, -3.0]) * 2000.0 * GRAVITY * 2.0 / 3.0) and x[1] == pytest.approx(
+        1.0 / 3.0
+    )
 
 
 @pytest.mark.parametrize(

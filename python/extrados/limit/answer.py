@@ -221,6 +221,8 @@ def why_not(limit: LimitAnalysis) -> str:
         if limit.friction is not None:
             return _slides(limit)
         return "some block hangs: its joint would have to pull"
+    except NoAnswer:
+        return "no thrust line stays inside the structure"
     if part < 1.0 and limit.strength is not None:
         return (
             f"a thrust line keeps to {part:.3f} of the joints, but the strength {limit.strength:g} Pa does not carry it"

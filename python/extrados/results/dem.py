@@ -15,6 +15,7 @@ DemOutcome = Literal["at-rest", "slid", "rocked", "collapse"]
 CollapseCriterion = Literal["rotation", "loss of height", "loss of support", "separation"]
 #: Of the length of a joint: it may slide so far without a doubt on the support that is left
 SLIP_LIMIT = 0.25
+INTERVAL = "whether blocks slide as it goes on joints whose forces statics does not fix: the accelerations are then one state of an interval"
 #: What a contact of solids does, in the stored array `state`: CLOSED, open at some corners, APART
 ROCKS = 1
 
@@ -113,6 +114,20 @@ class DemRun(KindResults):
         return _judged_run(self)
 
 
+#: What the capacity of a tilt test is where blocks slide on joints whose forces statics does not fix
+ONE_PATH = (
+    "Blocks slide as it goes: the value is one state, of this load path. Without dilatancy such states form an interval, and a lower one may "
+    "exist."
+)
+
+
+def _tilted(collapse: float, opposite: float, interval: bool, demand: Demand) -> Verdict:
+    """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]; an estimate that no bound is
+    claimed of where it is one state of an interval."""
+    found = judge_acceleration(min(collapse, opposite), demand)
+    return found.model_copy(update={"statement": f"{found.statement} {ONE_PATH}"}) if interval else found
+
+
 class DemTilt(KindResults):
     """dem: the constant acceleration that brings the blocks down."""
 
@@ -127,6 +142,7 @@ class DemTilt(KindResults):
     hinges_opposite: list[NamedHinge] = fact("hinges as it goes to -x")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block, positive to +x", "rad")
     peak_slip_m: float = fact("greatest slip as it goes", "m")
+    interval: bool = fact(INTERVAL)
     energy_residual_ratio: float = fact("error of the energy ledger over the energy that went round")
     time_step_s: float = fact("time step", "s")
     steps: int = fact("time steps of the last run")
@@ -136,8 +152,7 @@ class DemTilt(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
-        least = min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g)
-        return judge_acceleration(least, demand)
+        return _tilted(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g, self.interval, demand)
 
 
 class SolidDemRun(KindResults):
@@ -218,6 +233,7 @@ class SolidDemTilt(KindResults):
     contacts: int = fact("polygons along which they touch")
     opening_contacts: list[str] = fact("contacts that gape or slide as it begins to go, at most 20, the widest first")
     opening_contacts_opposite: list[str] = fact("the same, pushed the opposite way")
+    interval: bool = fact(INTERVAL)
     energy_residual_ratio: float = fact("error of the energy ledger over the energy that went round")
     time_step_s: float = fact("time step", "s")
     steps: int = fact("time steps of the last run")
@@ -227,7 +243,7 @@ class SolidDemTilt(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
-        return judge_acceleration(min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g), demand)
+        return _tilted(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g, self.interval, demand)
 
 
 def _judged_run(run: DemRun | SolidDemRun) -> Verdict:

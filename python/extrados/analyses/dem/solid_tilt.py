@@ -11,7 +11,7 @@ from extrados.analyses.dem.runs import SolidRuns, SolidTask
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.solid_motion import core_options, run_arrays
 from extrados.analyses.dem.tables import Dem
-from extrados.analyses.dem.tilt import RAMP, capacities, pushed, unused
+from extrados.analyses.dem.tilt import GOES, RAMP, capacities, pushed, slides, unused
 from extrados.analyses.dem.words import solid_tilt_answer
 from extrados.core import dem3
 from extrados.results import dem as out
@@ -45,6 +45,10 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
         contacts=len(model.assembly.a),
         opening_contacts=_openings(model, last),
         opening_contacts_opposite=_openings(model, back_run),
+        interval=len(model.assembly.a) > model.count
+        and any(
+            slides(solid_measures.contacts(model, one)[1][_begun(model, one)], model.size) for one in (last, back_run)
+        ),
         energy_residual_ratio=max(last.residual, back_run.residual),
         time_step_s=last.step,
         steps=last.steps,
@@ -69,7 +73,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
 def _begun(model: SolidModel, run: dem3.Run) -> int:
     """The output where it begins to go."""
     far = solid_measures.displacements(model, run).max(axis=1)
-    return min(int(np.searchsorted(far, 0.005 * model.size)), len(run.time) - 1)
+    return min(int(np.searchsorted(far, GOES * model.size)), len(run.time) - 1)
 
 
 def _openings(model: SolidModel, run: dem3.Run) -> list[str]:

@@ -26,6 +26,8 @@ from extrados.schema.constants import GRAVITY
 #: Time in which the acceleration is brought in [s]; after it the structure is given time to come down.
 RAMP = 2.0
 SENSES = (1.0, -1.0)  # pushed to +x, pushed to -x
+#: Of the size: displacement at which a structure begins to go; and of that: slip of joints that slide in its mechanism
+GOES, TAKES_PART = 0.005, 0.1
 #: Keys of the deck that a tilt test does not look at.
 NOT_IN_TILT = (
     "end_time", "output_step", "stop_at_collapse", "snapshot_times", "animation", "animation_speed", "vtk",
@@ -48,6 +50,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         lambda run: dem_model.checked(run, model),
     )  # fmt: skip
     state, slip, at, found_hinges = _hinged(model, last)
+    _, slip_back, at_back, back_hinges = _hinged(model, back_run)
     body = model.rigid.body_of_block
     rotation = -(last.place[:, body, 2] - last.settled[body, 2])
     peak = np.abs(rotation).argmax(axis=0)
@@ -61,11 +64,13 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         tilt_angle_opposite_deg=float(np.degrees(np.arctan(back))),
         load_direction="+x",
         hinges=found_hinges,
-        hinges_opposite=_hinged(model, back_run)[3],
+        hinges_opposite=back_hinges,
         peak_rotation_rad={
             model.assembly.block_names[i]: float(rotation[peak[i], i]) for i in measures.tracked(model, options, last)
         },
         peak_slip_m=float(np.nanmax(np.abs(slip[at]), initial=0.0)),
+        interval=sum(pair is not None for pair in model.rigid.joints) > model.rigid.count
+        and (slides(slip[at], model.size) or slides(slip_back[at_back], model.size)),
         energy_residual_ratio=max(last.residual, back_run.residual),
         time_step_s=last.step,
         steps=last.steps,
@@ -85,6 +90,11 @@ def run(context: Context, options: Dem, model: Model) -> Result:
     }
     result.answer = tilt_answer(result.results)
     return result
+
+
+def slides(slip: np.ndarray, size: float) -> bool:
+    """Whether joints slide in the mechanism, by their slips as it begins to go [m] (NaN: of one body)."""
+    return float(np.nanmax(np.abs(slip), initial=0.0)) > TAKES_PART * GOES * size
 
 
 def pushed(acceleration: float, end: float) -> Ground:
@@ -151,7 +161,7 @@ def _hinged(model: Model, run: dem.Run) -> tuple[np.ndarray, np.ndarray, int, li
     """States and slips of the joints, the output where it begins to go, and the hinges there."""
     gap_p, gap_q, slip = measures.openings(model, run)
     state = measures.hinges(model, gap_p, gap_q, slip)
-    begun = np.searchsorted(measures.displacements(model, run).max(axis=1), 0.005 * model.size)
+    begun = np.searchsorted(measures.displacements(model, run).max(axis=1), GOES * model.size)
     at = min(int(begun), len(run.time) - 1)
     rows = [
         {"joint": int(j), "name": model.assembly.joint_names[j], "side": "intrados" if state[at, j] == HINGED_FIRST else "extrados"}

@@ -1,6 +1,6 @@
 """The answers of a run and of a tilt test in words."""
 
-from extrados.results.dem import Convergence, DemRun, DemTilt, SolidDemRun, SolidDemTilt
+from extrados.results.dem import ONE_PATH, Convergence, DemRun, DemTilt, SolidDemRun, SolidDemTilt
 
 
 def solved(c: Convergence) -> str:
@@ -58,7 +58,9 @@ def tilt_answer(r: DemTilt) -> str:
     return (
         f"A constant horizontal acceleration brings it down at {collapse:.4f} g pushed to +x (a tilt of "
         f"{r.tilt_angle_deg:.2f} deg) and at {back:.4f} g pushed to -x; the least is {least:.4f} g, to {sense}. "
-        f"Hinges as it goes to +x: {where}." + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")
+        f"Hinges as it goes to +x: {where}."
+        + (f" {ONE_PATH}" if r.interval else "")
+        + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")
     )
 
 
@@ -87,5 +89,6 @@ def solid_tilt_answer(r: SolidDemTilt) -> str:
         f"A constant horizontal acceleration brings it down at {r.collapse_acceleration_g:.4f} g pushed along {r.load_direction_deg:g} "
         f"degrees in plan (a tilt of {r.tilt_angle_deg:.2f} deg) and at {r.collapse_acceleration_opposite_g:.4f} g the opposite way; "
         f"the least is {least:.4f} g. Contacts that gape or slide as it goes: {where}."
+        + (f" {ONE_PATH}" if r.interval else "")
         + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")
     )

@@ -117,14 +117,23 @@ def evaluate(
 
 
 def _buttress_alone(building: Building, assembly: Assembly) -> float:
-    """Collapse load to +x of the leeward buttress by itself, with its own weight only."""
+    """Collapse load to +x of the leeward buttress by itself, with its own weight only; 0 where that is proven to bring it down."""
     friction = building.friction()
     if friction is not None and np.ndim(friction):
         kept = assembly.joints_of(assembly.buttresses[-1])
         on_ground = (assembly.a[kept] == GROUND) | (assembly.b[kept] == GROUND)
         friction = np.asarray(friction)[kept[on_ground]]
     buttress = replace(part_of(assembly, [assembly.buttresses[-1]]), fill=None)
-    return LimitAnalysis(buttress, friction, strength=building.material.compressive_strength).collapse(1)[0].gamma
+    limit = LimitAnalysis(buttress, friction, strength=building.material.compressive_strength)
+    try:
+        gamma = limit.collapse(1)[0].gamma
+    except Immovable:
+        raise
+    except NoEquilibrium:
+        gamma = 0.0
+    if gamma <= 0.0:
+        cannot_stand(limit)  # NoAnswer without a proof
+    return max(gamma, 0.0)
 
 
 def _evaluate(
