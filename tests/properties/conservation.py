@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from asking import Answer, Deck, ask, at_most, must, near, same
-from buildings import SECTIONS, SOLIDS, changed, decks, number, pulses, signed_area
+from buildings import SECTIONS, SOLIDS, changed, decks, drawn, number, pulses, signed_area
 from hypothesis import reject
 from hypothesis import strategies as st
 from relations import EARTHQUAKES, GRAVITY, RECTANGLES, WEAK_SET, ok, recorded, relation
@@ -199,6 +199,14 @@ def ties_by_rocking_and_limit_analysis(size: tuple, level: float, force: float, 
         "limit analysis", sorted(limit.capacity), [width / height, (moment + pull * y) / (0.5 * height * weight)], 1e-5
     )
     near("rocking", rocks.results.uplift_acceleration_g, (moment - pull * y) / (0.5 * height * weight), within)
+    for wall, away in (("left", 1.0), ("right", -1.0)):
+        beside = ask(
+            changed(held, motion={"kind": "sine-pulse", "amplitude": "0.3 g", "period": 0.5}, supports={"abutting_wall": wall, "rebound": 0.0}),
+            "rocking", end_time=1.0,
+        )  # fmt: skip
+        ok(beside)
+        want = (moment - side * away * pull * y) / (0.5 * height * weight)
+        near(f"a wall to the {wall}", beside.results.uplift_acceleration_g, want, within)
 
 
 #: Analyses whose tables and arrays are compared, with a motion
@@ -457,3 +465,59 @@ def a_record_that_cannot_be_read(amplitude: float, frequency: float, within: flo
         (both.results.collapsed, both.results.uplifted) == (one.results.collapsed, one.results.uplifted),
         "another count",
     )
+
+
+@relation("supports thrust rocking local-mechanism", st.tuples(decks("arch", "pointed-arch"), pulses(0.2, 0.8), st.randoms(use_true_random=False)), 1e-5, share=0.5)  # fmt: skip
+def an_arch_is_its_blocks(deck: Deck, motion: Deck, rng: Any, within: float) -> None:
+    """An arch of a template, and its blocks drawn one by one in any order, give the same by all that take both."""
+    plain = drawn(deck)
+    rng.shuffle(plain["structure"]["block"])
+    for kind, keys, names in (
+        ("supports", {"steps": 40}, ("movement_at_fall_m",)), ("thrust", {}, ()),
+        ("rocking", {}, ("uplift_acceleration_g", "peak_rotation_ratio", "critical_rotation_rad", "restitution")),
+        ("local-mechanism", {"mechanism": "building"}, ("multiplier", "participating_part", "zero_displacement_m")),
+    ):  # fmt: skip
+        one, other = (ask(changed(d, motion=motion) if kind == "rocking" else d, kind, **keys) for d in (deck, plain))
+        if one.answers != other.answers or not one.answers:
+            must(
+                kind not in ("supports", "thrust") or one.outcome == other.outcome,
+                f"{kind}: {one.said} against {other.said}",
+            )
+            continue
+        if kind == "thrust":
+            near("least thrust", one.results.least.horizontal_N, other.results.least.horizontal_N, 1e-2)
+            near("greatest thrust", one.results.most.horizontal_N, other.results.most.horizontal_N, 1e-2)
+        for name in names:
+            a, b = getattr(one.results, name), getattr(other.results, name)
+            must((a is None) == (b is None), f"{kind}, {name}: {a} against {b}")
+            if a is not None:
+                near(f"{kind}, {name}", a, b, 0.02, 1e-2)
+
+
+@relation(
+    "tilt",
+    st.tuples(st.integers(3, 6), st.integers(3, 6), st.integers(1, 2), st.sampled_from(["brickwork", "panel"])),
+    1e-9,
+    share=0.5,
+)
+def openings_at_either_end(units: int, courses: int, wide: int, kind: str, within: float) -> None:
+    """A wall with a notch at one end weighs what the wall with the same notch at its other end weighs, also where the notch reaches beyond."""
+    length, height = units * 0.5, courses * 0.25
+    keys = (
+        {"units": units, "courses": courses}
+        if kind == "brickwork"
+        else {"width": length, "height": height, "thickness": 0.25}
+    )
+    level, size = [0.25, height - 0.25], 0.25 * wide
+    found = [
+        ask({"structure": {"kind": kind, "unit_length": 0.5, "unit_height": 0.25, "openings": [{"x": x, "y": level}], **keys}, "joints": {"friction": 0.7}}, "tilt")
+        for x in ([0.0, size], [length - size, length], [-0.1, size], [length - size, length + 0.1])
+    ]  # fmt: skip
+    for other in found[1:]:
+        must(
+            other.answers == found[0].answers,
+            f"{found[0].outcome} ({found[0].said}) against {other.outcome} ({other.said})",
+        )
+    ok(*found)
+    for other in found[1:]:
+        near("weight", found[0].results.weight_N, other.results.weight_N, within)
