@@ -358,11 +358,11 @@ def failing_relation(place: Path, fault: Fault, patience: int) -> str:
     words = [apart.python(place), "-m", "pytest", "-q", "-x", "-n", "0", "-p", "no:cacheprovider", *chosen]
     try:
         run = subprocess.run(
-            words, cwd=place, env=environment, capture_output=True, text=True, errors="replace", timeout=patience,
+            words, cwd=place, env=environment, capture_output=True, text=True, errors="replace", timeout=4 * patience,
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (patience, patience)),
         )  # fmt: skip
     except subprocess.TimeoutExpired:
-        return "a test that does not end"
+        return ""  # a slow machine sees nothing
     if run.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
         return "a test that does not end"
     failed = re.search(r"^(?:FAILED|ERROR) (\S+)", run.stdout, re.M)

@@ -9,7 +9,7 @@ from asking import Answer, Deck, ask, at_most, must, near
 from buildings import changed, decks, number
 from hypothesis import reject
 from hypothesis import strategies as st
-from relations import GRAVITY, RECTANGLES, RIGID, ok, relation
+from relations import GRAVITY, RECTANGLES, RIGID, SLIDERS, SLOW, ok, relation
 
 import extrados
 
@@ -128,3 +128,14 @@ def mortar_at_the_ends_of_a_joint(size: tuple, strength: float, solid: bool, wit
     ok(answer)
     want = width / height * (1.0 + tension * width / weight)
     near("collapse acceleration", answer.capacity, [want, want], within)
+
+
+@relation("dem tilt", st.tuples(SLIDERS, st.booleans(), st.booleans()), 0.01, share=0.5)
+def a_tilt_that_slides(deck: Deck, rigid: bool, solid: bool, within: float) -> None:
+    """A flat block under a slow tilt slides away at its friction, by rigid contacts and springs, in the plane and in space."""
+    mu = deck["joints"]["friction"]
+    made = deck if rigid else changed(deck, joints={"normal_stiffness": 1e9})
+    keys = SLOW if rigid else {"test": "tilt", "tilt_accuracy": 0.002}
+    answer = (in_space if solid else ask)(made, "dem", **keys)
+    ok(answer)
+    near("collapse acceleration", answer.capacity, [mu, mu], within, 0.2)

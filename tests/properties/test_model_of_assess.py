@@ -75,6 +75,7 @@ def concluded(table: list[StrategyVerdict], results: dict[str, Result] | None = 
     work.rows, work.results = {row.strategy: row for row in table}, results or {}
     result = Result("assess")
     work.conclude(result)
+    assert not work.not_done, work.not_done  # a rule that fails is a fault, though the others go on
     return result.results
 
 
