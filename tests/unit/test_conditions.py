@@ -312,6 +312,19 @@ def test_curves_of_thin_arches_state_the_band_of_the_impact_rules(
     assert set(assessed.margins_by_rule) <= set(curves) and len(assessed.margins_by_rule) > 1
 
 
+def test_sampled_arches_that_slide_at_rest_are_no_safe_ones() -> None:
+    """The joints of sampled arches are not watched; that the nominal one slides before it rocks leaves the share of collapses open."""
+    arch = {"kind": "arch", "radius": 6.0, "thickness": 1.0, "embrace": 150.0, "voussoirs": 17}
+    fragile = {"kind": "fragility", "count": 12, "uncertain": {"thickness": 0.05}, "seed": 1}
+    for friction, peak, open_ in ((0.2, 0.2, True), (0.2, 0.03, False), (0.7, 0.2, False)):
+        motion = {"kind": "sine-pulse", "amplitude": f"{peak} g", "period": 0.5}
+        deck = {"structure": arch, "joints": {"friction": friction}, "motion": motion, "analysis": fragile}
+        found = extrados.run(deck).results[0]
+        assert bool(found.results.conditions.violated) == open_
+        assert found.verdict.outcome == ("open" if open_ else "stands")
+        assert any("slides from 0.045" in text for text in found.warnings) == open_
+
+
 def test_where_joints_are_not_watched_the_answer_says_so() -> None:
     wall = {"supports": {"abutting_wall": "left"}}
     run = extrados.run(
