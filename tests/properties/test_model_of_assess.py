@@ -6,7 +6,6 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
@@ -265,9 +264,6 @@ def test_a_row_says_what_its_strategy_says(verdict: Verdict, name: str) -> None:
         assert bare.status in ("refused", "failed") and bare.outcome == "not-applicable" and bare.reason == "no"
 
 
-@pytest.mark.xfail(
-    strict=True, reason="awaits A12: rows of a wall or of a cracked buttress drop the bound and what is violated"
-)
 @QUICK
 @given(VERDICTS, st.sampled_from(["left", "right", None]), FACTORS)
 def test_no_row_stands_by_an_upper_bound_or_beside_what_is_violated(
