@@ -387,3 +387,15 @@ def test_a_block_at_rest_needs_the_friction_of_its_motion() -> None:
     found = extrados.run(deck).results[0]
     assert found.results.required_friction == pytest.approx(0.4, abs=1e-3)
     assert "The block slides instead where friction is below 0.40." in found.answer
+
+
+def test_rules_of_one_body_are_open_where_its_drums_part() -> None:
+    """A slender column of twelve drums under a record: the velocity holds, but the drums part, which the rules do not consider."""
+    column = {"kind": "column", "width": 1.6, "top_width": 1.1, "height": 18.0, "drums": 12}
+    motion = {"kind": "record", "file": "extrados:el-centro-1940", "scale": 0.6}
+    rules = {"kind": "code-checks", "motion_spectrum": True}
+    for drums, outcome in ((12, "open"), (1, "stands")):
+        deck = {"structure": {**column, "drums": drums}, "motion": motion, "analysis": [rules]}
+        found = extrados.run(deck).results[0]
+        assert found.verdict.outcome == outcome
+        assert any("Hinges form elsewhere" in text for text in found.verdict.violated) == (drums == 12)
