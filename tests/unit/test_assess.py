@@ -346,6 +346,9 @@ def test_a_proof_of_collapse_overrules_all_else() -> None:
     assert overall == "cannot stand" and "overrules the opposite result of sla" in words and "Proof." in words
     assert found.relation("tilt", "sla") == "disagree"
     assert facts([rows[0], verdict("dem", "collapses")]).relation("tilt", "dem") == "agree"
+    shared = [rows[0], verdict("dem", "cannot-stand", 0.0, 0.4, margin=0.0)]
+    _, words = conclusion(facts(shared), [], [], "arch", (0.0, "tilt"), shared)
+    assert "proved by tilt." in words and "The conclusion of dem is the same." in words and "counts once" in words
 
 
 @pytest.mark.parametrize(

@@ -337,6 +337,19 @@ def test_curves_of_thin_arches_state_the_band_of_the_impact_rules(
     assert set(assessed.margins_by_rule) <= set(curves) and len(assessed.margins_by_rule) > 1
 
 
+def test_sampled_arches_that_slide_at_rest_are_no_safe_ones() -> None:
+    """The joints of sampled arches are not watched; that the nominal one slides before it rocks leaves the share of collapses open."""
+    arch = {"kind": "arch", "radius": 6.0, "thickness": 1.0, "embrace": 150.0, "voussoirs": 17}
+    fragile = {"kind": "fragility", "count": 12, "uncertain": {"thickness": 0.05}, "seed": 1}
+    for friction, peak, open_ in ((0.2, 0.2, True), (0.2, 0.03, False), (0.7, 0.2, False)):
+        motion = {"kind": "sine-pulse", "amplitude": f"{peak} g", "period": 0.5}
+        deck = {"structure": arch, "joints": {"friction": friction}, "motion": motion, "analysis": fragile}
+        found = extrados.run(deck).results[0]
+        assert bool(found.results.conditions.violated) == open_
+        assert found.verdict.outcome == ("open" if open_ else "stands")
+        assert any("slides from 0.045" in text for text in found.warnings) == open_
+
+
 def test_where_joints_are_not_watched_the_answer_says_so() -> None:
     wall = {"supports": {"abutting_wall": "left"}}
     run = extrados.run(
@@ -399,3 +412,15 @@ def test_a_block_at_rest_needs_the_friction_of_its_motion() -> None:
     found = extrados.run(deck).results[0]
     assert found.results.required_friction == pytest.approx(0.4, abs=1e-3)
     assert "The block slides instead where friction is below 0.40." in found.answer
+
+
+def test_rules_of_one_body_are_open_where_its_drums_part() -> None:
+    """A slender column of twelve drums under a record: the velocity holds, but the drums part, which the rules do not consider."""
+    column = {"kind": "column", "width": 1.6, "top_width": 1.1, "height": 18.0, "drums": 12}
+    motion = {"kind": "record", "file": "extrados:el-centro-1940", "scale": 0.6}
+    rules = {"kind": "code-checks", "motion_spectrum": True}
+    for drums, outcome in ((12, "open"), (1, "stands")):
+        deck = {"structure": {**column, "drums": drums}, "motion": motion, "analysis": [rules]}
+        found = extrados.run(deck).results[0]
+        assert found.verdict.outcome == outcome
+        assert any("Hinges form elsewhere" in text for text in found.verdict.violated) == (drums == 12)

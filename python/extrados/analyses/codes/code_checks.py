@@ -96,8 +96,6 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
             f"Friction {friction:g} is below the {np.tan(model.alpha.min()):.3g} that rocking needs: the block slides first, which these "
             "rules do not consider."
         )
-    if violated:
-        beside["violated"] = violated
     if context.deck.motion is not None:
         motion = context.motion
         start = rocker.start_rotation
@@ -105,8 +103,12 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
             rocker.body, motion.ground, motion.end + 30.0 / float(model.frequency.min()), 0.01,
             start_side=1 if start >= 0.0 else -1, start_rotation=abs(start),
         )  # fmt: skip
-        context.warnings += told(of_one(rocker, dynamic)["conditions"])
+        conditions = of_one(rocker, dynamic)["conditions"]
+        context.warnings += told(conditions)
+        violated += [text for text in conditions.violated if text.startswith("Hinges form elsewhere")]
         beside |= {"dynamic_outcome": dynamic.outcome, "dynamic_peak_rotation_ratio": dynamic.peak_ratio}
+    if violated:
+        beside["violated"] = violated
     alpha = float(model.alpha.min())
     # one body: all its mass takes part (e* = 1); d* is the displacement of the centre of mass
     alpha0 = float(np.tan(alpha))

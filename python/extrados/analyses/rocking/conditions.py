@@ -13,6 +13,7 @@ from extrados.building.rockers.soft_base import SoftBaseModel
 from extrados.building.rockers.watch import LOST, Watch
 from extrados.core.rocking import FAILED, JointDemand, Response
 from extrados.results.rocking import Conditions, JointTime
+from extrados.schema.constants import GRAVITY
 
 #: What a member of an ensemble keeps of the demand on its joints, see `rows_of`
 ROWS = ("friction", "slips", "strays")
@@ -111,7 +112,7 @@ def violated(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
         share = _share(counted.sliding, counted.runs, runs)
         given = friction_of(watch)
         if np.isfinite(min(watch.capacity)):
-            reason = f"the resting {rocker.word} slides from {min(watch.capacity):.3g} g on, and rocking starts at {rocker.uplift:.3g} g"
+            reason = _rests(rocker, watch)
         elif np.isfinite(counted.friction):
             reason = f"rocking needs up to {counted.friction:.2f}"
         else:
@@ -126,6 +127,26 @@ def violated(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
             else f"The base lifts off as a whole {share}: rocking without flight is assumed. Use dem."
         )  # fmt: skip
     return found
+
+
+def slides_at_rest(rocker: Rocker, rows: "list[dict[str, np.ndarray]]", runs: str) -> list[str]:
+    """A sentence where peaks of the ground slide the resting nominal building before it rocks; rows: `outcome` and `pga`."""
+    watch = rocker.watch
+    assert watch is not None
+    limit = min(watch.capacity)
+    good = [piece["outcome"] != FAILED for piece in rows]
+    sliding = sum(int((piece["pga"][g] > limit * GRAVITY).sum()) for piece, g in zip(rows, good, strict=True))
+    if not sliding:
+        return []
+    share = _share(sliding, sum(int(g.sum()) for g in good), runs)
+    return [
+        f"Friction {friction_of(watch):.2f} is too low {share}: {_rests(rocker, watch)}. Blocks slide first. Use dem, or check the "
+        "friction."
+    ]
+
+
+def _rests(rocker: Rocker, watch: Watch) -> str:
+    return f"the resting {rocker.word} slides from {min(watch.capacity):.3g} g on, and rocking starts at {rocker.uplift:.3g} g"
 
 
 def told(conditions: Conditions) -> list[str]:

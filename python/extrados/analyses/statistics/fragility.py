@@ -9,7 +9,7 @@ from extrados.analyses.batches import Swept, Unfinished, sweep
 from extrados.analyses.context import Context
 from extrados.analyses.motion_source import GeneratedSource, ListSource, Source, measures, source_of
 from extrados.analyses.rocking.common import rocker_of
-from extrados.analyses.rocking.conditions import ROWS, Counted, astray_of, of_many, rows_of, told
+from extrados.analyses.rocking.conditions import ROWS, Counted, astray_of, of_many, rows_of, slides_at_rest, told
 from extrados.analyses.rocking.doubts import DIFFER
 from extrados.analyses.statistics import cloud
 from extrados.analyses.statistics.annual import hazard_curve
@@ -212,7 +212,7 @@ def _describe(
         "critical_rotation_rad": base.critical[0],
         "initial_rotation_ratio": initial,
         "motions": motions,
-        **_conditions(options, base, [rows for _, rows in swept.pieces("outcome", *ROWS)]),
+        **_conditions(options, base, [rows for _, rows in swept.pieces("outcome", "pga", *ROWS)]),
     }
     result.warnings += told(r["conditions"])
     _tell_failures(job, swept, per_motion, result)
@@ -305,10 +305,11 @@ def _describe(
 
 
 def _conditions(options: Fragility, base: Rocker, rows: list[dict[str, np.ndarray]]) -> dict[str, Any]:
-    """Whether blocks slide or hinges form elsewhere; of sampled buildings of several stones not checked."""
+    """Whether blocks slide or hinges form elsewhere; of sampled buildings of several stones only whether the nominal one slides
+    before it rocks."""
     if options.uncertain and base.watch is not None and not isinstance(base.model, BlockModel):
         why = "Friction and thrust line are not checked: the forces at the joints are those of the nominal building, not of the sampled ones."
-        return {"conditions": Conditions(not_checked=why, violated=[])}
+        return {"conditions": Conditions(not_checked=why, violated=slides_at_rest(base, rows, "motions"))}
     return of_many(base, Counted.of(rows), "motions")
 
 
