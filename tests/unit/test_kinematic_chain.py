@@ -35,7 +35,8 @@ def rectangle(name: str, x: float, y: float, width: float, height: float) -> dic
 
 def same(one: object, other: object) -> None:
     for key in CAPACITY:
-        assert one[key] == pytest.approx(other[key], rel=1e-7), key
+        expected = other[key]
+        assert one[key] == (None if expected is None else pytest.approx(expected, rel=1e-7)), key
 
 
 def test_a_wall_with_a_floor_that_rests_and_a_mass_that_pushes() -> None:
@@ -284,3 +285,25 @@ def test_e_star_by_links_is_said_where_it_differs_from_that_by_stones() -> None:
     assert part == pytest.approx(81.0 / 105.0) and any("e* is 1, and a_0* -23 %" in text for text in warnings)
     part, warnings = told(1)
     assert part == pytest.approx(1.0) and not warnings
+
+
+def test_a_verdict_that_hangs_on_how_a_link_is_drawn_is_open(tmp_path: Path) -> None:
+    """A block cut in two glued pieces has e* 0.8 by stones and 1 by rigid links: between their a_0* the verdict is open."""
+    whole = {"kind": "blocks", "block": [rectangle("shaft", 0.0, 0.0, 0.4, 2.0)]}
+    cut = {"kind": "blocks", "block": [rectangle("foot", 0.0, 0.0, 0.4, 1.0), rectangle("head", 0.0, 1.0, 0.4, 1.0)]}
+    outcomes = {}
+    for name, structure in (("whole", whole), ("cut", cut)):
+        for acceleration in (0.10, 0.16, 0.30):
+            file = tmp_path / f"{acceleration}.csv"
+            file.write_text(f"period_s,sa_g\n0,{acceleration}\n0.1,{acceleration}\n8,{acceleration}\n")
+            table = {"code": "table", "table": str(file)}
+            deck = {
+                "structure": structure, "joints": {"friction": "no-sliding"},
+                "analysis": {"kind": "local-mechanism", "mechanism": "building", "spectrum": table, "confidence_factor": 1.35},
+            }  # fmt: skip
+            outcomes[name, acceleration] = extrados.run(deck).analyses[0]["verdict"]
+    assert outcomes["whole", 0.16]["outcome"] == "collapses"
+    assert outcomes["cut", 0.16]["outcome"] == "open" and "rigid link" in outcomes["cut", 0.16]["statement"]
+    for name in ("whole", "cut"):
+        assert outcomes[name, 0.10]["outcome"] == "stands", outcomes[name, 0.10]
+        assert outcomes[name, 0.30]["outcome"] == "collapses"

@@ -431,9 +431,12 @@ class Assessment(KindResults):
             if i.margin is not None and i.failing_amplitude_g is not None
         ]
         if not harmful:
-            return judge(
-                "No impulse of the motion is long enough to bring it down.", None, None, "g", "stands", violated=[*self.conditions.violated, *self.violated]
-            )  # fmt: skip
+            text = "No single impulse of the motion is long enough to cause collapse."
+            if self.static_verdict == "fails":
+                text += " The motion exceeds the acceleration that starts rocking, and the criterion does not cover trains of pulses."
+            outcome: Outcome = "stands" if self.static_verdict == "stands" else "open"
+            violated = [*self.conditions.violated, *self.violated]
+            return judge(text, None, None, "g", outcome, violated=violated)
         _, failing, worst = min(harmful, key=lambda row: row[0])
         size = abs(worst.amplitude_g)
         word = "below" if size < failing else "at or above"

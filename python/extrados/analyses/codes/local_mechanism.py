@@ -44,7 +44,8 @@ DILATES = (
 @dataclass(frozen=True)
 class _Turning:
     """A mechanism: its capacity, its curve (displacement d* [m], multiplier), in words, its place z and H [m] (None: at the
-    ground), and what of its multiplier is known to be above the exact one."""
+    ground), and what of its multiplier is known to be above the exact one; links: its capacity with one weight for each rigid link of the
+    chain [C8.7.1.1], where that differs from the one by stones."""
 
     found: Capacity
     curve: tuple[np.ndarray, np.ndarray]
@@ -53,6 +54,7 @@ class _Turning:
     bound: Bound | None = None
     part: WallPart | None = None
     body: Overturning | None = None
+    links: Capacity | None = None
 
 
 @dataclass(frozen=True)
@@ -184,7 +186,7 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
             f"The demand is that of the ground, but a {options.mechanism} stands on a building, which amplifies it. Give base_height and "
             "building_height."
         )
-    return _Judged(turning, lines, out.LocalMechanism(
+    made = out.LocalMechanism(
         mechanism=options.mechanism, multiplier=found.alpha0, participating_mass_kg=found.mass, participating_part=found.part,
         activation_acceleration_g=found.acceleration / fc / GRAVITY, zero_displacement_m=d0,
         ultimate_displacement_m=None if d0 is None else ntc.SLV * d0, collapse_displacement_m=None if d0 is None else ntc.SLC * d0,
@@ -192,7 +194,19 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
         base_height_m=z, **({} if building is None else {"building_height_m": building}), confidence_factor=fc,
         behaviour_factor=options.behaviour_factor, **({} if turning.bound is None else {"bound": turning.bound}),
         **({"violated": violated} if violated else {}), checks={x.rule: x.check() for x in lines}, **more,
-    ))  # fmt: skip
+    )  # fmt: skip
+    if turning.links is not None and made.overall().outcome == "stands":
+        told = list(context.warnings)
+        other, _ = _checks(context, options, replace(turning, found=turning.links), storeys)
+        context.warnings = told
+        by_links = made.model_copy(update={"checks": {x.rule: x.check() for x in other}})
+        if by_links.overall().outcome != "stands":
+            violated.append(
+                f"With one weight for each rigid link [C8.7.1.1], e* {turning.links.part:.3g}, the check fails: the verdict depends on "
+                "how the links are divided into stones."
+            )
+            made = made.model_copy(update={"violated": violated})
+    return _Judged(turning, lines, made)
 
 
 def _result(judged: _Judged) -> Result:
@@ -253,8 +267,11 @@ def _side(context: Context, options: LocalMechanism, model: MechanismModel, held
     parts = core_mechanism.follow(one, turned)[0][:, :, 0]
     travel = sense * ((parts - parts[0]) @ one.mass) * GRAVITY / float(moving[0] @ moving[1])
     found = capacity(float(alpha[0]), *moving, float(travel[-1]), model.uplift[side])
-    links = capacity(found.alpha0, one.mass * GRAVITY, core_mechanism.follow(one, [0.0])[1][0, :, 0], None)
-    if abs(links.part / found.part - 1.0) > ALIKE:
+    of_links = one.mass * GRAVITY, sense * core_mechanism.follow(one, [0.0])[1][0, :, 0]
+    carried = sense * float((parts[-1] - parts[0]) @ one.mass) * GRAVITY / float(of_links[0] @ of_links[1])
+    links = capacity(found.alpha0, *of_links, carried, model.uplift[side])
+    apart = abs(links.part / found.part - 1.0) > ALIKE
+    if apart:
         context.warnings.append(
             f"e* takes each stone as a weight of its own: {found.part:.3g}. With one weight for each of the {len(one.mass)} rigid links of "
             f"the chain, as [C8.7.1.1] defines P_k, e* is {links.part:.3g}, and a_0* {100.0 * (found.part / links.part - 1.0):+.0f} %."
@@ -266,8 +283,9 @@ def _side(context: Context, options: LocalMechanism, model: MechanismModel, held
             "The mechanism is the one without dampers and added hinges, which then resist it: its multiplier is an upper bound."
         )
     return _Turning(
-        found, (np.asarray(spectral(*moving, travel)), alpha), _words(building), _place(stones, chain, options), bound
-    )
+        found, (np.asarray(spectral(*moving, travel)), alpha), _words(building), _place(stones, chain, options), bound,
+        links=links if apart else None,
+    )  # fmt: skip
 
 
 def _words(building: Building) -> str:
