@@ -521,3 +521,17 @@ def openings_at_either_end(units: int, courses: int, wide: int, kind: str, withi
     ok(*found)
     for other in found[1:]:
         near("weight", found[0].results.weight_N, other.results.weight_N, within)
+
+
+@relation(
+    "rocking tilt",
+    decks("arch", "pointed-arch", "elliptical-arch", "frame", "column", "brickwork", friction=st.just("no-sliding")),
+    1e-4,
+)
+def mechanisms_start_at_the_limit(deck: Deck, within: float) -> None:
+    """Rocking starts where limit analysis has its lesser collapse acceleration; that both differ is no reason to refuse."""
+    limit = ask(deck, "tilt")
+    rocks = ask(changed(deck, motion={"kind": "sine-pulse", "amplitude": "0.05 g", "period": 0.5}), "rocking")
+    must("limit analysis says" not in rocks.said, rocks.said)
+    ok(limit, rocks)
+    near("uplift", rocks.results.uplift_acceleration_g, limit.capacity.min(), within)
