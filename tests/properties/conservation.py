@@ -427,6 +427,7 @@ def codes_where_joints_slide(deck: Deck, within: float) -> None:
 @relation("rocking", st.tuples(decks("stack", "block", "arch", "column"), pulses(0.3, 1.2)), 1e-6, examples=(
     ({"structure": {"kind": "stack", "lower_width": 0.8, "lower_height": 1.0, "upper_width": 0.4, "upper_height": 1.6}}, {"kind": "sine-pulse", "amplitude": "0.6 g", "period": 0.5}),
     ({"structure": {"kind": "stack", "lower_width": 0.6, "lower_height": 2.0, "upper_width": 0.6, "upper_height": 0.8}}, {"kind": "sine-pulse", "amplitude": "0.6 g", "period": 0.5}),
+    ({"structure": {"kind": "block", "width": 0.3, "height": 3.0}}, {"kind": "sine-pulse", "amplitude": "0.8 g", "period": 1.2}),
 ))  # fmt: skip
 def peaks_are_those_of_histories(deck: Deck, motion: Deck, within: float) -> None:
     """Greatest rotations, over the critical ones too, are no less than those of the history."""
@@ -540,3 +541,13 @@ def dampers_make_an_upper_bound_of_codes(size: tuple, held: bool, within: float)
     bound = getattr(answer.results, "bound", None)
     must(bound == ("upper" if held else None), f"bound {bound}")
     must(not held or answer.outcome != "stands", answer.outcome)
+
+
+@relation("rocking tilt", decks("arch", "pointed-arch", "elliptical-arch", "frame", "column", "brickwork", friction=st.just("no-sliding")), 1e-4)  # fmt: skip
+def mechanisms_start_at_the_limit(deck: Deck, within: float) -> None:
+    """Rocking starts where limit analysis has its lesser collapse acceleration; that both differ is no reason to refuse."""
+    limit = ask(deck, "tilt")
+    rocks = ask(changed(deck, motion={"kind": "sine-pulse", "amplitude": "0.05 g", "period": 0.5}), "rocking")
+    must("limit analysis says" not in rocks.said, rocks.said)
+    ok(limit, rocks)
+    near("uplift", rocks.results.uplift_acceleration_g, limit.capacity.min(), within)
