@@ -142,6 +142,8 @@ PACKAGE = "python/extrados"
 SHARE = "0.15"
 #: The same, to find which functions a relation runs through
 FEW = "0.06"
+#: Tests that run through a function at least, else those of its file are run too
+FEWEST = 5
 
 
 @dataclass(frozen=True)
@@ -332,8 +334,8 @@ def touched(place: Path) -> list[tuple[str, float, set[tuple[str, int]]]]:
 
 
 def relations_of(place: Path, fault: Fault) -> list[str]:
-    """The tests of the property suite that run through the changed function, then through its file, or beside the changed kernel,
-    the quickest first; then, of a kernel, all others."""
+    """The tests of the property suite that run through the changed function, and where few do through its file, or beside the
+    changed kernel, the quickest first; then, of a kernel, all others."""
     rows = touched(place)
     if not fault.in_python:
         core = f"core/{KERNELS.get(fault.file, '')}"
@@ -346,6 +348,8 @@ def relations_of(place: Path, fault: Fault) -> list[str]:
     ]
     first = max((min([n.lineno, *(d.lineno for d in n.decorator_list)]) for n in around), default=0)
     through = [test for test, _, there in rows if (file, first) in there]
+    if len(through) >= FEWEST:
+        return through
     return through + [test for test, _, there in rows if test not in through and any(file == name for name, _ in there)]
 
 
