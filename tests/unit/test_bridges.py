@@ -482,6 +482,22 @@ def test_even_loads_stand_where_they_are_adverse() -> None:
         assert tried.factor >= found.factor * (1.0 - 1e-9)
 
 
+def test_even_loads_alone_stand_where_they_are_adverse() -> None:
+    """Over the whole span they only press a thin arch together; where they may stand in parts they are no safer than on a half."""
+    arch = {"kind": "arch", "radius": 5.0, "thickness": 0.8, "embrace": 150.0, "voussoirs": 9}
+
+    def factor(**keys: object) -> float:
+        deck = {
+            "structure": arch,
+            "joints": {"friction": 0.7},
+            "analysis": {"kind": "moving-load", "axles": [], "places": [0.0], **keys},
+        }
+        return extrados.run(deck)["moving-load"].adequacy_factor
+
+    half = factor(adverse=False, uniform=[{"load": 2e4, "start": 0.0, "stop": 10.0}])
+    assert factor(uniform=[{"load": 2e4}]) <= half * (1.0 + 1e-9)
+
+
 def test_partial_factors() -> None:
     keys = {"fill": FILL, "surfacing": ROAD}
     plain = run(moving(train="LM1"), depth=3.0, **keys)["adequacy_factor"]

@@ -88,11 +88,14 @@ class Places:
         """Collapse under the train; None where it brings nothing down.
 
         Even loads that stand only where they are adverse, and the mechanism that they belong to, are found in turn,
-        from the axles alone and from the whole train: each step lessens the factor.
+        from the axles alone and from the whole train, or without axles from each half too: each step lessens the factor.
         """
         axles, (force, x, block) = self._axles(k), self._even(k)
         every = np.ones(len(force), dtype=bool)
-        starts = [every] if not self.adverse or not len(force) else [every, ~every] if axles.any() else [every]
+        starts = [every]
+        if self.adverse and len(force):
+            half = x <= 0.5 * (x.min() + x.max())
+            starts += [~every] if axles.any() else [half, ~half]
         best, limit = None, None
         for standing in starts:
             for _ in range(PATTERNS):
