@@ -34,7 +34,7 @@ ROUNDS, ROUNDS_SPARSE = 300, 40
 # Joints of a wall for which a programme would take long: a tenth of the precision is enough there, less for larger ones.
 MANY = 600
 # Of the interior-point method, for joints that crush.
-OTHER_STARTS = 6
+OTHER_STARTS = 24
 # Of the total load times the size: less work than this proves nothing.
 PROVES = 1e-7
 # Joints that move less than this part of the fastest block are at rest to an interior-point method.
