@@ -59,7 +59,7 @@ class SlaCurve(ResultModel):
     peak_displacement_m: float | None = fact("control displacement at the peak", "m")
     displacement_of_constant_loads_m: float = fact("control displacement under the constant loads alone", "m")
     peak_event: int | None = fact("event of the peak, from 1")
-    greatest_load_N: float | None = fact("greatest load of a state, a peak or not; null where there is none", "N")
+    greatest_load_N: float | None = fact("greatest load of all states, at a peak or not; null without a state", "N")
     greatest_load_displacement_m: float | None = fact("control displacement at the greatest load", "m")
     greatest_load_event: int | None = fact("event of the greatest load, from 1")
     first_event_load_N: float | None = fact("load of the first event", "N")

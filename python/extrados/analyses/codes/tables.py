@@ -32,7 +32,9 @@ class CodeChecks(BuildingAnalysis):
         False,
         "where there is no spectrum of a code, take the response spectrum of the deck's motion, and its peak velocity",
     )
-    pulse_period: Time | None = key(None, "period of the sine whose half Housner's formula takes; asks for it", gt=0)
+    pulse_period: Time | None = key(
+        None, "period of the sine whose half cycle Housner's formula takes; adds this check", gt=0
+    )
     behaviour_factor: float = key(
         2.0,
         "q of the linear check, which is for mechanisms without a displacement check",
@@ -41,13 +43,13 @@ class CodeChecks(BuildingAnalysis):
         source="Circ. 7/2019, C8.7.1.2.1.7",
     )
     confidence_factor: float = key(1.35, "FC", ge=1, le=2, source="Circ. 7/2019, Table C8.5.IV")
-    axial_load: Force | None = key(None, "vertical load on top of the wall; asks for the pier rules", ge=0)
+    axial_load: Force | None = key(None, "vertical load on top of the wall; adds the pier rules", ge=0)
     thickness: Length | None = key(None, "thickness of the pier; default the depth of the block", gt=0)
     sliding_friction: float = key(
         0.4, "coefficient of friction that the code gives for sliding along a bed joint", gt=0, le=2, source="NTC 2018"
     )
     diagonal_strength: Stress | None = key(
-        None, "tau_0, shear strength of the masonry without compression; asks for the rule of diagonal cracking", gt=0
+        None, "tau_0, shear strength of the masonry without compression; adds the rule of diagonal cracking", gt=0
     )
     fixity: Literal["cantilever", "double"] = key("cantilever", "rotation of the top: free or held")
 
@@ -142,7 +144,7 @@ class LocalMechanism(BuildingAnalysis):
     peak_acceleration: Acceleration | None = key(None, "demand a_g S; default that of the spectrum", gt=0)
     collapse_spectrum: CodeSpectrum | None = key(
         None,
-        "elastic spectrum of the site for the limit state of collapse, SLC; asks for the check of d_SLC, which stands beside those at SLV",
+        "elastic spectrum of the site for the limit state of collapse, SLC; adds the check of d_SLC to those at SLV",
         source="Circ. 7/2019, C8.7.1.2.1.8",
     )
     motion_spectrum: bool = key(
@@ -178,7 +180,7 @@ class LocalMechanism(BuildingAnalysis):
     )
     storeys: int = key(1, "storeys N of the building, for the modal participation", ge=1, le=50)
     one_second_acceleration: Acceleration | None = key(
-        None, "S_X1; asks for the slenderness limits of ASCE 41, which are for walls anchored at their top", gt=0
+        None, "S_X1; adds the slenderness limits of ASCE 41 for walls anchored at their top", gt=0
     )
     storey: Literal["one-story", "first", "top", "other"] = key("one-story", "where the wall stands, for ASCE 41")
 
