@@ -7,6 +7,7 @@ import highspy
 import numpy as np
 import pytest
 from scipy import sparse
+from test_dilatancy import coursed
 
 from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
@@ -161,23 +162,6 @@ def test_least_of_all_states(units: int, courses: int, friction: float) -> None:
     limit = LimitAnalysis(assembly, friction, associated=False)
     # The integer programme is feasible to 1e-6 in every row, and takes what it can of that.
     assert limit.collapse()[0].gamma == pytest.approx(least_by_integers(assembly, friction), abs=1e-5)
-
-
-def coursed(seed: int) -> dict:
-    """A wall of four random courses: 3 to 6 stones each, joints at least 30 mm off those of the course below."""
-    draw = np.random.default_rng(seed)
-    width, low, stones, below = draw.uniform(1.2, 2.5), 0.0, [], np.array([])
-    for _ in range(4):
-        high = low + draw.uniform(0.15, 0.35)
-        while True:
-            cuts = np.sort(draw.uniform(0.0, width, int(draw.integers(3, 7)) - 1))
-            ends = np.concatenate([[0.0], cuts, [width]])
-            if np.diff(ends).min() > 0.12 and np.abs(cuts[:, None] - below).min(initial=1.0) > 0.03:
-                break
-        for left, right in itertools.pairwise(ends.tolist()):
-            stones.append({"points": [[left, low], [right, low], [right, high], [left, high]]})
-        below, low = cuts, high
-    return {"kind": "blocks", "block": stones}
 
 
 @pytest.mark.parametrize("seed", [0, 1, 2, 3, 4, 6])

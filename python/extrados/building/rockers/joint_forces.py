@@ -8,7 +8,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.rockers.mechanism import carried
+from extrados.building.rockers.mechanism import carried, hinge_matrix
 from extrados.core import mechanism as core_mechanism
 from extrados.limit.linkage import Linkage, laden
 from extrados.schema.constants import GRAVITY
@@ -126,20 +126,13 @@ class JointForces:
         a, one, n = self.assembly, self.linkage, len(place)
         count = len(one.mass)
         right = np.zeros((n, 3, count, 3))
-        matrix = np.zeros((n, count, 3, len(one.joint), 2))
         for k in range(count):
             mine = one.part == k + 1
             load, lever = needed[:, :, mine], at[:, mine, :2] - place[:, k, None, :2]
             right[:, :, k, :2] = load[..., :2].sum(axis=2)
             turning = lever[:, None, :, 0] * load[..., 1] - lever[:, None, :, 1] * load[..., 0]
             right[:, :, k, 2] = (load[..., 2] + turning).sum(axis=2)
-        for h, pair in enumerate(one.joined):
-            for k, sign in zip(pair, (1.0, -1.0), strict=True):
-                if k:
-                    arm = carried(one, place, k, one.point[h]) - place[:, k - 1, :2]
-                    matrix[:, k - 1, 0, h, 0] += sign
-                    matrix[:, k - 1, 1, h, 1] += sign
-                    matrix[:, k - 1, 2, h] += sign * np.column_stack([-arm[:, 1], arm[:, 0]])
+        matrix = hinge_matrix(one, place)
         unit = np.array([1.0, 1.0, 1.0 / a.size])
         matrix = (matrix * unit[:, None, None]).reshape(n, 3 * count, -1)
         force = np.linalg.pinv(matrix) @ np.moveaxis((right * unit).reshape(n, 3, -1), 1, 2)

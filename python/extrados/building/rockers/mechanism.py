@@ -323,14 +323,7 @@ class MechanismModel:
             load = needed * np.stack([one.mass, one.mass, one.inertia], axis=1)
             if held is not None and held[0].members:
                 load = load - held[0].wrenches(0 if side > 0 else 1, place, held[1][:, here])
-            matrix = np.zeros((len(q), len(one.mass), 3, len(one.joint), 2))
-            for h, pair in enumerate(one.joined):
-                for k, sign in zip(pair, (1.0, -1.0), strict=True):
-                    if k:
-                        arm = carried(one, place, k, one.point[h]) - place[:, k - 1, :2]
-                        matrix[:, k - 1, 0, h, 0] += sign
-                        matrix[:, k - 1, 1, h, 1] += sign
-                        matrix[:, k - 1, 2, h] += sign * np.column_stack([-arm[:, 1], arm[:, 0]])
+            matrix = hinge_matrix(one, place)
             unit = np.array([1.0, 1.0, 1.0 / a.size])
             matrix = (matrix * unit[:, None, None]).reshape(len(q), 3 * len(one.mass), -1)
             right = (load * unit).reshape(len(q), -1, 1)
@@ -343,6 +336,22 @@ class MechanismModel:
                 normal[here, j] = (force[:, h] * _turned(a.normal[j], mean)).sum(axis=1)
                 shear[here, j] = (force[:, h] * _turned(a.tangent[j], mean)).sum(axis=1)
         return HingeForces(normal, shear, miss)
+
+
+def hinge_matrix(one: Linkage, place: np.ndarray) -> np.ndarray:
+    """Resultants (n, parts, 3, hinges, 2) at the centroids of parts of unit forces at the hinges, + on the first part of each.
+
+    place (n, parts, 3): x, y [m] and rotation of the parts; the third resultant is the moment about the centroid [N m].
+    """
+    matrix = np.zeros((len(place), len(one.mass), 3, len(one.joint), 2))
+    for h, pair in enumerate(one.joined):
+        for k, sign in zip(pair, (1.0, -1.0), strict=True):
+            if k:
+                arm = carried(one, place, k, one.point[h]) - place[:, k - 1, :2]
+                matrix[:, k - 1, 0, h, 0] += sign
+                matrix[:, k - 1, 1, h, 1] += sign
+                matrix[:, k - 1, 2, h] += sign * np.column_stack([-arm[:, 1], arm[:, 0]])
+    return matrix
 
 
 def carried(one: Linkage, place: np.ndarray, part: int, point: np.ndarray) -> np.ndarray:
