@@ -13,6 +13,7 @@ from extrados.analyses.assess.strategies import Strategy
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import MotionDemand, concluded
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.limit.self_weight import neglecting
 from extrados.analyses.run import run_one
 from extrados.analyses.statistics.summaries import wilson
 from extrados.building.errors import WHOLE
@@ -109,7 +110,7 @@ class Asker:
             if time.passed and len(interrupts.asked) == signals:
                 raise OutOfTime
             raise Interrupted
-        found = concluded(result, options, one, building)
+        found = concluded(neglecting(result, whole.building, without), options, one, building)
         return replace(found, asked=options.model_dump(exclude_none=True)), tomlkit.dumps(data)
 
     def demand(self, peak_g: float) -> Demanded:
