@@ -145,7 +145,7 @@ def row_of(
         if verdict.outcome == "stands":
             statement = f"The run passed no peak, what it bears in the end is not known. {statement}"
     elif strategy.axis in ("acceleration", "pulse", "check") or isinstance(r, SelfWeight):
-        margin = verdict.ratio
+        margin = None if isinstance(r, SelfWeight) and r.neglected else verdict.ratio  # of another building
     if verdict.violated and outcome in ("stands", "collapses"):
         outcome, statement = "open", f"{statement} {' '.join(verdict.violated)}"
     return StrategyVerdict(
