@@ -32,8 +32,9 @@ def row(strategy: str, outcome: str, **more: object) -> StrategyVerdict:
     keys = {
         "label": strategy, "part": None, "status": "ok", "reason": "", "axis": "acceleration", "unit": "g", "capacity": None,
         "demand": None, "margin": None, "margin_at_least": None, "margin_below": None, "parameters": "", "assumes": "", "statement": "",
+        "violated": [],
     }  # fmt: skip
-    return StrategyVerdict(strategy=strategy, outcome=outcome, bound=None, violated=[], **(keys | more))
+    return StrategyVerdict(strategy=strategy, outcome=outcome, bound=None, **(keys | more))
 
 
 # Results with no more than what a rule reads: one that reads more fails at once.
@@ -228,6 +229,15 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
             "elements say as the others do": lambda f: rated(f, row("dem", "stands")),
         },
     ),
+    "an assumption that does not hold": (
+        "violated",
+        lambda: facts([FALLS, row("rocking", "open", violated=["Friction is too low."])]),
+        {
+            "all hold": lambda f: rated(f, row("rocking", "open")),
+            "both are open": lambda f: rated(f, row("tilt", "open")),
+            "it is decided all the same": lambda f: rated(f, row("rocking", "stands", violated=["Friction is too low."])),
+        },
+    ),
     "one sine for the whole motion": (
         "sine-for-record",
         lambda: facts([row("assessment", "stands"), row("rocking", "collapses")],
@@ -399,6 +409,13 @@ def test_the_codes_are_held_against_the_sense_that_no_wall_stops() -> None:
     (one,) = found
     assert one.numbers["static_capacity"] == 0.2 and one.numbers["factor"] == pytest.approx(1.8)
     assert "0.2 g of statics, times 1.8" in one.text
+
+
+def test_elements_that_slide_explain_the_stones_of_statics_and_of_the_mesh_alike() -> None:
+    rows = [row(n, "collapses", capacity=0.2, margin=0.5) for n in ("tilt", "sla")] + [row("dem", "stands")]
+    f = facts(rows, {"dem": dem(slip=0.3)}, probes={"no-sliding": dem(moved=1e-6)})
+    (slides,) = (r for r in explained(f)[0] if r.rule == "sliding")
+    assert slides.explains == [["tilt", "dem"], ["sla", "dem"]]
 
 
 def test_a_pair_without_a_reason_is_told_as_unexplained() -> None:

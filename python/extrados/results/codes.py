@@ -3,8 +3,9 @@
 from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
+from extrados.results.limit import DILATANT
 from extrados.results.rocking import RockingOutcome
-from extrados.results.verdict import Bound, Demand, KindResults, Verdict, judge
+from extrados.results.verdict import Bound, Demand, KindResults, Outcome, Verdict, judge
 
 Applied = Literal["holds", "fails", "not-applicable", ""]
 
@@ -36,6 +37,10 @@ class Checked(KindResults):
     confidence_factor: float = maybe("FC by which the capacity of the checks of NTC is divided")
     behaviour_factor: float = maybe("q of the linear check of NTC")
     bound: Bound = maybe("which side of the exact capacity the checks lie on")
+    margin_associated: float | None = maybe(
+        "joints slide: capacity / demand of the governing check by associated (dilatant) friction; a check that fails without dilatancy is "
+        "open where this is at least 1; null without a demand"
+    )
     violated: list[str] = maybe(
         "assumptions on the unsafe side that were checked and do not hold: what holds is then open"
     )
@@ -80,10 +85,17 @@ class Checked(KindResults):
                 worst.verdict == "holds"
             )  # what is violated errs on the unsafe side: a check that fails, fails all the same
             unit = f" {worst.unit}" if worst.unit else ""
+            outcome: Outcome | None = "stands" if holds and self.bound != "upper" else None
+            if not holds and (self.margin_associated or 0.0) >= 1.0:
+                outcome = "open"
+                remarks = (
+                    f" Joints slide: by the {DILATANT} the check holds with a margin of {self.margin_associated:.3g}, so collapse is possible "
+                    f"and not proved.{remarks}"
+                )
             return judge(
                 f"{worst.code} governs and {worst.verdict}, by {name}: demand {worst.demand:.3g}, capacity {worst.capacity:.3g}{unit}."
                 f"{remarks}",
-                worst.demand, worst.capacity, worst.unit, "stands" if holds and self.bound != "upper" else None, self.bound,
+                worst.demand, worst.capacity, worst.unit, outcome, self.bound,
                 (self.violated or ()) if holds else (),
             )  # fmt: skip
         strengths = {name: c.capacity for name, c in self.checks.items() if c.unit == "N" and c.capacity is not None}
@@ -158,7 +170,28 @@ class LocalMechanism(Checked):
         "g",
         source="Circ. 7/2019 C7.2.3",
     )
+    multiplier_associated: float = maybe(
+        "joints slide: alpha_0 by associated (dilatant) friction, the upper end of the interval whose least state found is `multiplier`",
+        source="Drucker 1954",
+    )
     walls: list[WallMechanism] = maybe(
         "of a building on a plan: every wall above the foot of each storey, the worst first; the other "
         "numbers are those of the worst"
     )
+
+
+class NoLocalMechanism(KindResults):
+    """local-mechanism: no local mechanism of the kind that is checked."""
+
+    reason: str = fact("why the building has none")
+
+    def statement(self) -> str:
+        """The result in words."""
+        return f"No local mechanism applies. {self.reason[:1].upper()}{self.reason[1:]}."
+
+    def judged(self, demand: Demand) -> Verdict:
+        """not-applicable: nothing is compared with the demand."""
+        return judge(self.statement())
+
+
+LocalMechanisms = LocalMechanism | NoLocalMechanism

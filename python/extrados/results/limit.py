@@ -336,8 +336,9 @@ class MovingLoad(KindResults):
             )  # fmt: skip
         if self.load_N is None:
             return judge(
-                f"{text}; the deck gives no load to compare with.{more}", None, self.collapse_load_N, "N", bound=bound
-            )
+                f"{text}; the deck gives no load to compare with.{more}", None, self.collapse_load_N, "N", bound=bound,
+                violated=violated,
+            )  # fmt: skip
         return judge(
             f"{text}, {self.safety_factor:.3g} times the load of {self.load_N / 1e3:.4g} kN.{judged}",
             self.load_N, self.collapse_load_N, "N", bound=bound, violated=violated,

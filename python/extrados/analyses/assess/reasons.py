@@ -99,7 +99,7 @@ class Facts:
 
 #: Reasons in a few words
 HEADLINES = {
-    "static-peak": "how long the peak lasts", "impact-rule": "the energy loss at impacts", "last-digits": "a chaotic response",
+    "violated": "assumptions that do not hold", "static-peak": "how long the peak lasts", "impact-rule": "the energy loss at impacts", "last-digits": "a chaotic response",
     "sine-for-record": "what the motion holds beside its strongest sine", "sliding": "sliding of the stones",
     "drums": "stones that move by themselves", "hinges-elsewhere": "hinges that form elsewhere",
     "membrane-without-sliding": "elements that cannot slide", "tension": "tension that elements bear",
@@ -212,8 +212,9 @@ def _by_passages(
 
 
 def _unstopped(facts: Facts, r: Tilt) -> float:
-    """What limit analysis bears [g] in the weaker of the senses that no wall stops."""
-    right, left = r.collapse_acceleration_g, r.collapse_acceleration_opposite_g
+    """Collapse acceleration by limit analysis [g] in the weaker of the senses that no wall stops; the least state found where joints
+    slide, as in the row of `tilt`."""
+    right, left = (most if least is None else least for least, most in (r.interval(), r.interval(opposite=True)))
     return {"left": right, "right": left}.get(facts.building.supports.abutting_wall or "", min(right, left))
 
 
@@ -364,12 +365,23 @@ def _moves_alike(one: DemRun, other: DemRun) -> bool:
     return (one.outcome == "collapse") == (other.outcome == "collapse") and abs(far - near) < 0.2 * max(far, near)
 
 
+def violated(facts: Facts, pairs: list[Pair]) -> list[Reason]:
+    """A strategy that leaves the outcome open since an assumption of it does not hold: the other does not rest on that."""
+    found = []
+    for name in facts.judged():
+        row = facts.rows[name]
+        mine = [p for p in pairs if name in p and facts.relation(*p) == "open"]
+        if mine and row.outcome == "open" and row.violated:
+            text = f"The outcome by {row.label} is open: an assumption does not hold. {' '.join(row.violated)}"
+            found.append(reason("violated", mine, text))
+    return found
+
+
 def sliding(facts: Facts, pairs: list[Pair]) -> Reason | None:
     """Stones slide, which rocking and the criterion rule out."""
     dem, without = facts.of("dem"), facts.probes.get("no-sliding")
-    mine = [
-        p for p in pairs if "dem" in p and ("rocking" in p or "assessment" in p or "probability" in p or "tilt" in p)
-    ]
+    others = {"rocking", "assessment", "probability", "tilt", *(("sla",) if facts.building.meshed_by_stones else ())}
+    mine = [p for p in pairs if "dem" in p and others & set(p)]
     if not mine or not isinstance(dem, DemRun) or "dem-nudged" in facts.probes:
         return None  # of one draw of many nothing can be compared
     shortest = float(facts.building.blocks().length.min())
@@ -599,7 +611,7 @@ def _governing(facts: Facts, pairs: list[Pair]) -> tuple[Checked, list[tuple[flo
 
 Rule = Callable[[Facts, list[Pair]], Reason | list[Reason] | None]
 RULES: tuple[Rule, ...] = (
-    static_peak, crack, left_out, ties_of_statics, impact_rule, last_digits, elements_of_last_digits, sine_for_record, sliding, drums, hinges_elsewhere, membrane, mortar, code_factors, code_check, torn_off, weaker_direction,
+    static_peak, crack, left_out, ties_of_statics, impact_rule, last_digits, elements_of_last_digits, violated, sine_for_record, sliding, drums, hinges_elsewhere, membrane, mortar, code_factors, code_check, torn_off, weaker_direction,
     chance,
 )  # fmt: skip
 

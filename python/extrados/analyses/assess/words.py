@@ -97,8 +97,7 @@ def conclusion(
     if none:
         said.append(f"No answer from {_list(none)}.")
     idle = [row for row in rows if row.status == "ok" and row.outcome == "not-applicable"]
-    if silent := [row.label for row in idle if row.capacity is None]:
-        said.append(f"No verdict from {_list(silent)}.")
+    said += [f"No verdict from {row.label}: {row.statement}" for row in idle if row.capacity is None]
     if able := [f"{row.label} {_capacity(row)}" for row in idle if row.capacity is not None]:
         said.append(f"Capacity without a verdict: {_list(able)}.")
     return overall, " ".join(s for s in said if s)

@@ -1,8 +1,10 @@
 """What the rules of codes need of a deck: a motion and a spectrum that can be read, of a wall what makes it a pier, of a
 mechanism its sizes."""
 
+import contextlib
 from collections.abc import Iterator
 
+from extrados.analyses.codes.kinematics import NoMechanism
 from extrados.analyses.codes.mechanisms import overturning
 from extrados.analyses.codes.tables import CodeChecks, LocalMechanism
 from extrados.analyses.codes.walls import wall_parts
@@ -42,7 +44,7 @@ def needs(context: Context, options: Analysis) -> Iterator[Need]:
             ):
                 yield lambda name=name: _refuse_given(name)
             if isinstance(structure, Plan):
-                yield lambda: wall_parts(building)
+                yield lambda: _read_walls(building)
         else:
             yield lambda: overturning(options, building.material.density, building.material.compressive_strength)
     if not isinstance(options, CodeChecks):
@@ -60,6 +62,11 @@ def needs(context: Context, options: Analysis) -> Iterator[Need]:
             yield lambda: spectrum_of(context, options.spectrum)(0.0, 0.05)
     if (wall or options.axial_load is not None) and building.material.compressive_strength is None:
         yield lambda: _refuse_weak()
+
+
+def _read_walls(building: Building) -> None:
+    with contextlib.suppress(NoMechanism):  # the answer of the analysis, no fault of the deck
+        wall_parts(building)
 
 
 def _refuse_unheld(what: str, key: Key) -> None:

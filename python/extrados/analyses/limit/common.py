@@ -21,7 +21,7 @@ from extrados.limit.fracture import Fracture, NoCrack, fractured_collapse
 from extrados.limit.lines import ThrustPath
 from extrados.limit.loads import Loads, forces_at, tilt_loads
 from extrados.limit.places import place_of
-from extrados.limit.programme import Immovable, LimitAnalysis, NoAnswer, NoEquilibrium, State, closed
+from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State, closed
 from extrados.limit.resistance import Resistance, together
 from extrados.limit.ties import pulls, tensions
 from extrados.results.limit import Hinge, Reaction, TieForce
@@ -32,6 +32,7 @@ CONTACT = 0.3
 #: Of its yield force, or of the weight: less in a tie is none
 SLACK = 1e-6
 MOST_TIES = 6  # told in words
+MOST_BESIDE = 400  # joints up to which a state without dilatancy is sought beside an upper bound: a few seconds
 
 
 def ties_of(building: Building, scale: float) -> Resistance | None:
@@ -95,6 +96,15 @@ def answer_of(building: Building, options: LimitAnalysisTable, limit: LimitAnaly
     if limit.associated and answer.gap > closed(len(assembly.a), answer.gamma):
         raise NoAnswer(f"the bounds from equilibrium and from the mechanism differ by {answer.gap:.2e} g")
     return answer
+
+
+def collapse_beside(without_dilatancy: LimitAnalysis, direction: int) -> tuple[State, Mechanism]:
+    """The least state without dilatancy, to be given beside an upper bound by associated friction; NoAnswer of large structures."""
+    if len(without_dilatancy.assembly.a) > MOST_BESIDE:
+        raise NoAnswer(
+            f'of more than {MOST_BESIDE} joints it is sought on request alone, by friction_rule = "non-associated"'
+        )
+    return without_dilatancy.collapse(direction)
 
 
 def fracture_of(building: Building, options: LimitAnalysisTable) -> Fracture | None:

@@ -41,10 +41,7 @@ from extrados.schema.constants import GRAVITY
 
 PATTERNS = 20  # even loads and mechanism are fitted to each other at most so often
 #: What makes the model of a bridge whole
-MODEL = (
-    'The ring alone is no model of a bridge. Use structure kind = "bridge" with fill and backing, or give the forces on the ring by '
-    "axle_loads."
-)
+MODEL = 'The ring alone is no model of a bridge. Use structure kind = "bridge" with fill and backing.'
 FINE = 0.02  # of the way: pieces of the top on which even loads stand or do not
 
 
@@ -288,16 +285,11 @@ def run(context: Context, options: MovingLoad) -> Result:
         **tie_rows(building, dead, state),
         duality_gap=gap,
         characteristic=factors == PartialFactors(),
-        violated=_violated(options, assembly, structure),
+        violated=_violated(train, assembly, structure),
         **asked,
     )
     result.results = r
     result.warnings += [f"{one} {MODEL}" for one in r.violated]
-    if (options.axle_loads or options.uniform) and assembly.earth is None:
-        result.warnings.append(
-            f"The loads act on the blocks of the {structure.word} themselves: no fill spreads them. For a bridge use structure "
-            'kind = "bridge" with fill and backing.'
-        )
     finite = np.where(np.isinf(capacity), np.nan, capacity)
     result.arrays = {
         **geometry_arrays(assembly),
@@ -405,12 +397,13 @@ def _words(options: MovingLoad, r: out.MovingLoad, structure: Structure) -> str:
     return text + spoken_ties(r.ties)
 
 
-def _violated(options: MovingLoad, assembly: Assembly, structure: Structure) -> list[str]:
-    """What a load model of road or rail supposes of a bridge and the structure has not: earth that spreads axles."""
-    if options.train is None or assembly.earth is not None:
+def _violated(train: Train, assembly: Assembly, structure: Structure) -> list[str]:
+    """What a load that crosses a bridge supposes of the structure, where it has none: earth that spreads the load."""
+    if assembly.earth is not None:
         return []
     weight = "" if assembly.fill is None else "; its fill acts by weight alone"
+    load = f"The {train.name}" if train.name in ("load", "train") else train.name
     return [
-        f"{options.train} acts on the blocks of the {structure.word} themselves{weight}: no fill spreads its axles, and no "
-        "passive pressure or backing restrains the ring."
+        f"{load} acts on the blocks of the {structure.word} themselves{weight}: no fill spreads it, and no passive pressure or backing "
+        f"restrains the {structure.word}."
     ]

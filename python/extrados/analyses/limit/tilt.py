@@ -7,6 +7,7 @@ import numpy as np
 from extrados.analyses.context import Context
 from extrados.analyses.limit.common import (
     answer_of,
+    collapse_beside,
     fracture_of,
     geometry_arrays,
     graphic_arrays,
@@ -39,7 +40,6 @@ FILM = 90  # tilts of an animation
 
 MOST_NAMED = 6  # hinges and sliding joints told in words
 
-MOST_BESIDE = 400  # joints up to which a state without dilatancy is sought beside an upper bound: a few seconds
 
 #: Above this the joints of masonry slide
 USUAL_FRICTION = 0.7
@@ -208,11 +208,7 @@ def _without_dilatancy(
                 forth, back = (answer.collapse_state, answer.mechanism), (answer.back_state, answer.back_mechanism)
                 pair = forth if direction > 0 else back
             elif dilating[direction]:
-                if len(limit.assembly.a) > MOST_BESIDE:
-                    raise NoAnswer(
-                        f'of more than {MOST_BESIDE} joints it is sought on request alone, by friction_rule = "non-associated"'
-                    )
-                pair = beside.collapse(direction)
+                pair = collapse_beside(beside, direction)
             else:
                 continue
         except (NoAnswer, NoEquilibrium) as error:
