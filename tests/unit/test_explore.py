@@ -245,6 +245,18 @@ def test_what_rocks_in_two_coordinates_does_so_as_in_a_run(session: Session, pre
     assert len(reply.arrays["picture_time"]) == len(reply.arrays["pose"]) > 10
 
 
+def test_a_history_says_which_assumptions_do_not_hold(session: Session) -> None:
+    """A block that slides first: its rocking is no verdict, on the page as in a run."""
+    deck = {
+        "structure": {"kind": "block", "width": 0.5, "height": 0.3},
+        "motion": {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 1.0},
+    }
+    for friction, holds in ((0.2, False), ("no-sliding", True)):
+        do(session, do="set", changes={**deck, "joints": {"friction": friction}})
+        (reply,) = do(session, do="rocking")
+        assert (reply.words["rocking"]["violated"] == []) is holds
+
+
 def test_a_wall_rocks_where_it_stands(session: Session) -> None:
     """A pose about the foot of a block, or about the corner of a wall: its stones at rest lie on those that are drawn."""
     do(session, do="open", preset="codes/pier")

@@ -14,7 +14,7 @@ from extrados.motions import pulses
 from extrados.results.assess import StrategyVerdict
 from extrados.results.codes import Check, CodeChecks, LocalMechanism, WallMechanism
 from extrados.results.dem import DemRun
-from extrados.results.limit import Fracture, Tilt
+from extrados.results.limit import Fracture, NonDilatant, Tilt
 from extrados.results.model import Array, Result
 from extrados.results.rocking import Assessment, Rocking
 from extrados.schema.constants import GRAVITY
@@ -50,11 +50,19 @@ def dem(outcome: str = "recovery", moved: float = 0.1, slip: float = 0.0) -> Res
     return Result("dem", results=DemRun.model_construct(**keys))
 
 
-def tilt(right: float, left: float | None = None, fracture: Fracture | None = None) -> Result:
+def tilt(
+    right: float, left: float | None = None, fracture: Fracture | None = None, dilating: list[int] | None = None
+) -> Result:
+    sliding = {} if dilating is None else {
+        "dilating_joints": dilating, "dilating_joints_opposite": dilating, "collapse_acceleration_non_associated_g": right,
+        "collapse_acceleration_non_associated_opposite_g": right, "non_dilatant": NonDilatant.model_construct(associated_g=right),
+        "non_dilatant_opposite": NonDilatant.model_construct(associated_g=right),
+    }  # fmt: skip
     keys = {
         "collapse_acceleration_g": right,
         "collapse_acceleration_opposite_g": right if left is None else left,
         "fracture": fracture,
+        **sliding,
     }
     return Result("tilt", results=Tilt.model_construct(**keys))
 
@@ -257,6 +265,16 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
             "they hardly slid": lambda f: having(f, dem=dem("collapse", 1.0, slip=0.005)),
             "without sliding they end alike": lambda f: probed(f, no_sliding=dem("collapse", 0.9)),
             "nobody tried without": lambda f: probed(f, no_sliding=None),
+            "the run is one draw of many": lambda f: probed(f, dem_nudged=dem()),
+        },
+    ),
+    "sliding that statics counts as collapse": (
+        "sliding",
+        lambda: facts([FALLS, row("dem", "stands")], {"tilt": tilt(0.2, dilating=[0]), "dem": dem(moved=0.014, slip=0.014)}),
+        {
+            "no pressed joint slides": lambda f: having(f, tilt=tilt(0.2)),
+            "the blocks rock rather than slide": lambda f: having(f, dem=dem(moved=0.1, slip=0.014)),
+            "they collapse": lambda f: having(rated(f, row("dem", "open")), dem=dem("collapse", 0.014, slip=0.014)),
             "the run is one draw of many": lambda f: probed(f, dem_nudged=dem()),
         },
     ),

@@ -2,6 +2,7 @@
 repeat it. From stored results only."""
 
 import re
+from pathlib import Path
 from typing import Any
 
 from extrados.plots.document import Block, Code, Document, Figure, Heading, Table, Words
@@ -22,8 +23,9 @@ MOST_SHOWN, MOST_ROWS = 12, 4
 def told(run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | None, day: str) -> Document:
     """The whole report; drawn: figures with captions by analysis; building: its drawing; day: of the results."""
     deck, made = run.summary["deck"], run.summary["extrados"]
-    title = deck.get("title") or deck["path"] or "extrados run"
-    facts = [(label, deck[key]) for label, key in (("Project", "project"), ("Author", "author")) if deck.get(key)]
+    title = heading(deck)
+    facts = [("Building", kind)] if (kind := kind_of(deck)) else []
+    facts += [(label, deck[key]) for label, key in (("Project", "project"), ("Author", "author")) if deck.get(key)]
     facts += [
         ("Date", deck.get("date") or day),
         ("Deck", f"{deck['path'] or 'from Python'} (sha256 {deck['sha256'][:16]})"),
@@ -43,6 +45,17 @@ def told(run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | Non
     blocks += _repeat(run, deck, made)
     foot = f"{title}. extrados {made['version']} {made['commit']}, deck {deck['sha256'][:16]}"
     return Document(title, facts, blocks, foot)
+
+
+def heading(deck: dict[str, Any]) -> str:
+    """The title of a deck, else the name of its file."""
+    return str(deck.get("title") or Path(deck["path"]).stem or "extrados run")
+
+
+def kind_of(deck: dict[str, Any]) -> str:
+    """The kind of structure in words, "" of a deck without one."""
+    structure = deck["resolved"].get("structure") or {}
+    return str(structure.get("kind", "")).replace("-", " ")
 
 
 def _flowing(text: str) -> str:

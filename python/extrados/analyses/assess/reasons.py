@@ -403,6 +403,33 @@ def sliding(facts: Facts, pairs: list[Pair]) -> Reason | None:
     )  # fmt: skip
 
 
+def sliding_as_collapse(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """Statics counts sliding as collapse; under the motion the blocks slide by a distance that is finite, and stop."""
+    dem, tilt = facts.of("dem"), facts.of("tilt")
+    static = ("tilt", "sla") if facts.building.meshed_by_stones else ("tilt",)
+    mine = [p for p in pairs if "dem" in p and facts.split(p)[0] in static]
+    if not mine or not isinstance(dem, DemRun) or not isinstance(tilt, Tilt) or "dem-nudged" in facts.probes:
+        return None
+    least = _unstopped(facts, tilt)
+    forth, back = (
+        (tilt.interval(way)[0], joints)
+        for way, joints in ((False, tilt.dilating_joints), (True, tilt.dilating_joints_opposite))
+    )
+    slides = any(capacity == least and joints for capacity, joints in (forth, back))
+    if (
+        not slides
+        or dem.outcome == "collapse"
+        or dem.peak_slip_m < FAR * dem.peak_displacement_m
+        or dem.peak_slip_m <= 0.0
+    ):
+        return None
+    return reason(
+        "sliding", mine,
+        f"Limit analysis counts sliding as collapse, from {least:.3g} g on. Under the motion the blocks slide by {1e3 * dem.peak_slip_m:.3g} mm "
+        "and do not collapse.", static_capacity=least, slip_m=dem.peak_slip_m,
+    )  # fmt: skip
+
+
 def hinges_elsewhere(facts: Facts, pairs: list[Pair]) -> Reason | None:
     """The dynamic thrust line leaves the stones: hinges form where the one mechanism has none."""
     mine = dynamic(pairs, "dem")
@@ -611,7 +638,7 @@ def _governing(facts: Facts, pairs: list[Pair]) -> tuple[Checked, list[tuple[flo
 
 Rule = Callable[[Facts, list[Pair]], Reason | list[Reason] | None]
 RULES: tuple[Rule, ...] = (
-    static_peak, crack, left_out, ties_of_statics, impact_rule, last_digits, elements_of_last_digits, violated, sine_for_record, sliding, drums, hinges_elsewhere, membrane, mortar, code_factors, code_check, torn_off, weaker_direction,
+    static_peak, crack, left_out, ties_of_statics, impact_rule, last_digits, elements_of_last_digits, violated, sine_for_record, sliding, sliding_as_collapse, drums, hinges_elsewhere, membrane, mortar, code_factors, code_check, torn_off, weaker_direction,
     chance,
 )  # fmt: skip
 
