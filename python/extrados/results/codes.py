@@ -42,7 +42,7 @@ class Checked(KindResults):
         "open where this is at least 1; null without a demand"
     )
     violated: list[str] = maybe(
-        "assumptions on the unsafe side that were checked and do not hold: what holds is then open"
+        "assumptions on the unsafe side that were checked and do not hold: a check that holds is then open"
     )
 
     def judged(self, demand: Demand) -> Verdict:
@@ -117,7 +117,7 @@ class Checked(KindResults):
 class CodeChecks(Checked):
     """code-checks: rules for rocking bodies and wall piers, beside the computed rocking."""
 
-    dynamic_outcome: RockingOutcome = maybe("of a block under a motion: what the computed rocking gives")
+    dynamic_outcome: RockingOutcome = maybe("of a block under a motion: outcome of the computed rocking")
     dynamic_peak_rotation_ratio: float = maybe("its greatest rotation over the critical one")
     peak_ground_acceleration_g: float | None = maybe("of a block: a_g S, the demand of the rules", "g")
     peak_ground_velocity_m_s: float | None = maybe("of a block: demand of Ishiyama's rule", "m/s")
@@ -148,7 +148,7 @@ class LocalMechanism(Checked):
     )
     activation_acceleration_g: float = fact("a_0* = alpha_0 g/(e* FC)", "g", source="Circ. 7/2019 C8.7.1.2.1")
     zero_displacement_m: float | None = fact(
-        "d_0*, at which the multiplier vanishes, by the horizontal displacement of the centre of what moves; null: at none",
+        "d_0*, at which the multiplier vanishes, by the horizontal displacement of the centre of the moving blocks; null: none",
         "m",
         source="Circ. 7/2019 [C8.7.1.4]",
     )
@@ -158,7 +158,7 @@ class LocalMechanism(Checked):
         "T_SLV = 1.68 pi sqrt(d_SLV/a(d_SLV)) on the straight capacity curve", "s", source="Circ. 7/2019 C8.7.1.2.1.8"
     )
     swaying_weight_N: float = fact(
-        "weight of the kinematic chain: what moves in the mechanism, with what rests on it and sways, and what pushes it",
+        "weight of the kinematic chain: moving blocks, the loads that rest on them and sway, and the masses that push them",
         "N",
     )
     base_height_m: float = fact(

@@ -58,7 +58,9 @@ def conclusion(
         first = next(facts.rows[n] for n in facts.judged() if facts.outcome(n) == "cannot-stand")
         said.append(f"The {word} cannot stand: collapse under self-weight is proved by {first.label}.")
         if others := proven[1:]:
-            said.append(f"The conclusion of {_list(others)} is the same. Strategies share this proof: it counts once.")
+            said.append(
+                f"The conclusion of {_list(others)} is the same. Strategies share this proof, which counts once."
+            )
         said.append(first.statement)
         if stands:
             said.append(f"The proof overrules the opposite result of {_list(stands)}.")

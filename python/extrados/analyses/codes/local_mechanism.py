@@ -87,7 +87,9 @@ def run(context: Context, options: LocalMechanism) -> Result:
             return Result("local-mechanism", results=none, answer=none.statement())
     else:
         if options.mechanism == "corner" and building.material.compressive_strength is not None:
-            context.warnings.append("a corner turns about its outer edge, as if the stone did not crush there")
+            context.warnings.append(
+                "The corner is assumed to overturn about its outer edge: crushing there is neglected."
+            )
         body = overturning(options, building.material.density, building.material.compressive_strength)
         z = options.hinge_height if options.base_height is None else options.base_height
         turnings = [
@@ -164,12 +166,12 @@ def _of_walls(context: Context, judged: list[_Judged]) -> Result:
         }
     )
     result.answer += (
-        f" It is the weakest of {len(judged)} parts of {len(plan.walls)} walls, each taken apart from the walls across it; flexible floors, "
-        "joists and rods hold none, rigid floors and props do."
+        f" This part is the weakest of {len(judged)} parts of {len(plan.walls)} walls, each considered apart from the walls across it; flexible floors, "
+        "joists and rods restrain none, rigid floors and props do."
     )
     if plan.rods:
         context.warnings.append(
-            "rods are left out: the deck does not say what their anchorage bears; give it to a `facade` of its own as `ties`"
+            "Rods are neglected: the deck does not give the strength of their anchorage. Give the strength as `ties` of a `facade` of its own."
         )
     return result
 
@@ -180,7 +182,7 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
     d0, fc = found.d0, options.confidence_factor
     if d0 is None and found.alone <= 0.0:
         context.warnings.append(
-            "without its ties it would not stand at rest: the nonlinear check, which does not count on them, is left out"
+            "Without its ties the body would not stand at rest: the nonlinear check, which neglects them, is not made."
         )
     storeys = len(structure.storeys) if isinstance(structure := context.building.structure, Plan) else options.storeys
     lines, more = _checks(context, options, turning, storeys)
@@ -189,7 +191,7 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
         violated.append(ntc.below_lc1(fc))
     if options.mechanism in ("parapet", "gable") and not z:
         violated.append(
-            f"The demand is that of the ground, but a {options.mechanism} stands on a building, which amplifies it. Give base_height and "
+            f"The demand is that of the ground, but a {options.mechanism} is part of a building, which amplifies the motion. Give base_height and "
             "building_height."
         )
     made = out.LocalMechanism(
@@ -221,7 +223,7 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
         if by(turning.links).overall().outcome != "stands":
             violated.append(
                 f"With one weight for each rigid link [C8.7.1.1], e* {turning.links.part:.3g}, the check fails: the verdict depends on "
-                "how the links are divided into stones."
+                "how the links are divided into blocks."
             )
             made = made.model_copy(update={"violated": violated})
     return _Judged(turning, lines, made)
@@ -241,7 +243,7 @@ def _result(judged: _Judged) -> Result:
     limit = "" if d0 is None else f", and vanishes at d_0* = {d0:.3g} m"
     result.answer = (
         f"{words[:1].upper()}{words[1:]} starts at alpha_0 = {found.alpha0:.4g}; {100 * found.part:.3g} % of the {found.weight / 1e3:.4g} kN "
-        f"that move take part (M* = {found.mass:.4g} kg), a_0* = {r.activation_acceleration_g:.4g} g with FC {fc:g}{limit}. "
+        f"of the kinematic chain participate (M* = {found.mass:.4g} kg), a_0* = {r.activation_acceleration_g:.4g} g with FC {fc:g}{limit}. "
         f"{r.overall().statement}"
     )
     return result
@@ -302,7 +304,7 @@ def _side(context: Context, options: LocalMechanism, model: MechanismModel, held
     apart = abs(links.part / found.part - 1.0) > ALIKE
     if apart:
         context.warnings.append(
-            f"e* takes each stone as a weight of its own: {found.part:.3g}. With one weight for each of the {len(one.mass)} rigid links of "
+            f"e* takes each block as a weight of its own: {found.part:.3g}. With one weight for each of the {len(one.mass)} rigid links of "
             f"the chain, as [C8.7.1.1] defines P_k, e* is {links.part:.3g}, and a_0* {100.0 * (found.part / links.part - 1.0):+.0f} %."
         )
     # only limit analysis looks for the mechanism that ties leave; dampers and added hinges it does not know
@@ -440,7 +442,7 @@ def _held(held: Restraints, side: int, rotation: np.ndarray) -> np.ndarray:
         law = member.law
         bound = np.where(slope[:, k] > 0.0, law.most, -law.least) if law.stiffness > 0.0 else np.zeros(len(rotation))
         if (bound >= FREE).any():
-            raise Refused(f"{member.name} never yields: give the force that its anchorage bears", ("ties",))
+            raise Refused(f"{member.name} never yields: give the strength of its anchorage", ("ties",))
         moment += bound * np.abs(slope[:, k])
     return moment
 
@@ -461,7 +463,7 @@ def _checks(
             at_height = ntc.floor(spectrum, z, height, storeys, options.building_period)
         elif a_g is not None:
             context.warnings.append(
-                f"at {z:.3g} m above the foundation the checks of NTC ask how the building answers at its period: without a spectrum they "
+                f"at {z:.3g} m above the foundation the checks of NTC require the response of the building at its period: without a spectrum they "
                 "have no demand"
             )
     fc, raised = options.confidence_factor, height is not None

@@ -71,14 +71,14 @@ def _read_walls(building: Building) -> None:
 
 def _refuse_unheld(what: str, key: Key) -> None:
     raise Refused(
-        f"local-mechanism takes {what} into account only where the stones of the deck turn: leave it out, or give what holds a wall as "
+        f"local-mechanism takes {what} into account only for the mechanism of the blocks of the deck: remove it, or give the restraint of a wall as "
         "`ties` of this table",
         key,
     )
 
 
 def _refuse_given(name: str) -> None:
-    raise Refused(f'mechanism = "building" takes it from [structure]: leave {name} out', ("analysis", name))
+    raise Refused(f'mechanism = "building" takes this value from [structure]: remove {name}', ("analysis", name))
 
 
 def _refuse_nothing(building: Building) -> None:

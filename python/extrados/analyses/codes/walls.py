@@ -60,7 +60,7 @@ def _floors(plan: Plan) -> tuple[dict[tuple[str, int], float], dict[str, set[int
         bearing = {name: lengths[name] for name in floor.bears_on if name in lengths} if floor.bears_on else lengths
         if floor.load > 0.0 and not bearing:
             raise BadGeometry(
-                f"floor on storey {floor.storey}: none of the walls that bear its load lies beside it",
+                f"floor on storey {floor.storey}: none of the walls that carry its load lies beside it",
                 ("structure", "floors", k, "bears_on"),
             )
         for name, length in bearing.items():

@@ -121,7 +121,7 @@ def fracture_of(building: Building, options: LimitAnalysisTable) -> Fracture | N
 
 
 def mended_capacity(building: Building, options: LimitAnalysisTable, gamma: float) -> str | None:
-    """What a survey with open gaps would bear to +x if they were closed, in words beside its capacity gamma [g]; None
+    """What a survey with open gaps would carry to +x if they were closed, in words beside its capacity gamma [g]; None
     where none is open."""
     if not building.told()[0] or building.structure is None:
         return None
@@ -199,7 +199,7 @@ def load_arrays(assembly: Assembly, loads: Sequence[AppliedLoad]) -> dict[str, A
         return {}
     return {
         "load_point": Array(
-            np.array(point), ("load_piece", "axis"), "m", "where loads at rest act, spread ones in pieces"
+            np.array(point), ("load_piece", "axis"), "m", "points of loads at rest, spread ones in pieces"
         ),
         "load_force": Array(np.array(force), ("load_piece", "axis"), "N", "their forces, to +x and upward"),
         "load_number": Array(np.array(whole), ("load_piece",), "", "number of the load in the deck, from 0"),
@@ -214,7 +214,7 @@ def push_arrays(assembly: Assembly, loads: Loads, state: State) -> dict[str, Arr
         return {}
     most = push.wrench[:, 0]
     return {
-        "push_point": Array(push.point, ("push", "axis"), "m", "where the fill pushes back"),
+        "push_point": Array(push.point, ("push", "axis"), "m", "points of the passive pressure of the fill"),
         "push_force": Array(state.mobilised[: push.count] * most, ("push",), "N", "its horizontal push, to +x"),
         "push_most": Array(most, ("push",), "N", "the most it can push, to +x"),
     }
