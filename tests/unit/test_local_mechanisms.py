@@ -222,7 +222,7 @@ def test_what_a_wall_on_a_plan_cannot_be_asked_is_refused_with_its_key() -> None
         "storeys": 3,
         "building_height": 9.0,
     }.items():
-        assert f"leave {name} out" in refused(house(), **{name: value})
+        assert f"remove {name}" in refused(house(), **{name: value})
     tie = {"ties": [{"from": "front", "to": "back", "area": 1e-3}]}
     abutting = {"supports": {"abutting_wall": "left"}}
     assert "supports.abutting_wall" in refused(house(), abutting), tie
