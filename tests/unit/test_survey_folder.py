@@ -14,6 +14,7 @@ from extrados.analyses.context import Context
 from extrados.core.errors import Cancelled
 from extrados.decks.reader import DeckError, make_deck
 from extrados.plots import comparing, html, style
+from extrados.plots.telling import heading, kind_of
 from extrados.results.compare import changes, compare, flat
 from extrados.running import survey
 from extrados.running.run import Run, compute
@@ -41,6 +42,8 @@ def test_the_worst_comes_first(folder: Path, tmp_path: Path, monkeypatch: pytest
     assert [r.least_margin for r in rows] == pytest.approx([0.8 / 6 / 0.3, 1.2 / 6 / 0.3, 2.0 / 6 / 0.3])
     told = list(csv.DictReader((tmp_path / "out" / "ranking.csv").open()))
     assert [t["building"] for t in told] == ["w0.8", "w1.2", "w2.0"] and told[2]["overall"] == "stands under all"
+    deck = extrados.load(rows[0].folder).summary["deck"]
+    assert (deck["path"], heading(deck), kind_of(deck)) == ("w0.8.toml", "w0.8", "column")
     page = (tmp_path / "out" / "ranking.html").read_text()
     assert page.index("w0.8") < page.index("w1.2") and "limit analysis" in page
     assert extrados.load(rows[0].folder)["assess"].overall == rows[0].overall
