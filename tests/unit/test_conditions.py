@@ -424,3 +424,28 @@ def test_rules_of_one_body_are_open_where_its_drums_part() -> None:
         found = extrados.run(deck).results[0]
         assert found.verdict.outcome == outcome
         assert any("Hinges form elsewhere" in text for text in found.verdict.violated) == (drums == 12)
+
+
+def test_a_margin_holds_as_far_as_friction_suffices() -> None:
+    """Friction .32 suffices for the motion, not for 1.28 times it: rocking then needs .33, and the margin is a lower bound."""
+    deck = {
+        "structure": {"kind": "block", "width": 0.6, "height": 2.0}, "joints": {"friction": 0.32},
+        "motion": {"kind": "sine-pulse", "amplitude": "0.33 g", "period": 0.8},
+    }  # fmt: skip
+    (alone,) = extrados.run(deck | {"analysis": [{"kind": "assessment"}]}).results
+    r = alone.results
+    assert r.margin == pytest.approx(1.28, abs=0.01) and not r.conditions.violated
+    (told,) = r.margin_conditions
+    assert "1.28 times the motion" in told and "needs up to 0.33" in told
+    assert told in alone.verdict.statement and told in alone.warnings
+    scaled = deck | {
+        "motion": {**deck["motion"], "amplitude": f"{0.33 * r.margin} g"},
+        "analysis": [{"kind": "rocking"}],
+    }
+    assert extrados.run(scaled)["rocking"].conditions.violated  # by the run itself
+    whole = extrados.run(deck | {"analysis": [{"kind": "assess", "strategies": ["rocking", "assessment"]}]})["assess"]
+    rocking = next(v for v in whole.verdicts if v.strategy == "rocking")
+    assert 1.0 < rocking.margin_at_least < r.margin and rocking.margin_below is None
+    assert "slide" in rocking.parameters
+    free = deck | {"joints": {"friction": 0.7}, "analysis": [{"kind": "assessment"}]}
+    assert extrados.run(free)["assessment"].margin_conditions == []

@@ -230,8 +230,11 @@ class _Work:
         if found is None:
             self.context.warnings.append(f"the margin of rocking is not known: {row.reason}")
             return
-        self._bracket("rocking", *scaled_margin(found.results))
+        low, high = scaled_margin(found.results)
+        self._bracket("rocking", low, high)
         words = f"{self.rows['rocking'].parameters}; its margin from {row.parameters}"
+        if high is None and low != found.results.levels[-1]:
+            words += "; at the next factor blocks slide or hinges form elsewhere, so that rocking bounds the margin from below alone"
         self.rows["rocking"] = self.rows["rocking"].model_copy(update={"parameters": words})
         if found.results.resurrections:
             self.context.warnings.append(
