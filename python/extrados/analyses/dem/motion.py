@@ -128,7 +128,7 @@ def _store(options: Dem, seen: Seen, ground: np.ndarray, result: Result) -> None
         {
             "time": "s",
             **{f"rotation of {names[i]}": "rad" for i in tracked},
-            **{f"{name}_energy": "J" for name in found.energy},
+            **{f"{name}_energy": "J" for name in found.energy if name != "leapfrog"},
         },
     )
     result.tables["dem_hinges"] = measures.hinge_table(model, found.time, seen.state)
