@@ -366,7 +366,7 @@ contains
       logical, intent(out) :: rests
       integer(c_int), intent(out) :: status
       integer, parameter :: most = 20000
-      integer, parameter :: most_open = 100         !! steps in a row without impulses that fit: more would not find them
+      integer, parameter :: most_open = 100         !! steps in a row without impulses that fit
       type(model_clock), pointer :: clock
       class(rigid_solver), pointer :: solver
       logical :: quasi_static

@@ -15,8 +15,8 @@ module mechanism_blow
 
    !> Weights over the mass that a point feels: large, so that long thin arches take few rounds
    real(wp), parameter :: heavy = 1.0e5_wp
-   !> Violation that is sought, and that suffices, of the speed before (root mean square): weights that have grown leave a
-   !> rounding of as many times epsilon, 2e-9
+   !> Violation that is sought, and that suffices, of the speed before (root mean square): weights that have grown
+   !> leave a rounding of as many times epsilon, 2e-9
    real(wp), parameter :: sought = 1.0e-11_wp, enough = 1.0e-8_wp
    integer, parameter :: most_rounds = 200
 
