@@ -14,6 +14,8 @@ from extrados.analyses.assess import driver, hazard, reasons, sensitivity, strat
 from extrados.analyses.assess.reasons import Facts
 from extrados.analyses.assess.words import conclusion, table_of
 from extrados.analyses.context import Context
+from extrados.analyses.dem import perturbed
+from extrados.analyses.dem.perturbed import chaos_of
 from extrados.building.building import Building
 from extrados.core.calls import within
 from extrados.decks.reader import make_deck
@@ -502,23 +504,13 @@ def test_ctrl_c_keeps_what_was_asked_before(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_elements_that_a_millionth_turns_are_open(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A probe under a nudged motion that ends otherwise leaves the verdict open, with the numbers of both."""
-    probed = driver._Work._probe
-
-    def nudged(work: driver._Work, strategy: str, changed: str, *rest, **more) -> Result | None:
-        found = probed(work, strategy, changed, *rest, **more)
-        if "0.999999" in changed:
-            found = replace(
-                found, results=found.results.model_copy(update={"outcome": "collapse", "peak_displacement_m": 9.0})
-            )
-        return found
-
-    monkeypatch.setattr(driver._Work, "_probe", nudged)
+    """A run whose perturbed run ends otherwise leaves the verdict of elements open, without runs at other factors."""
+    monkeypatch.setattr(perturbed, "chaos_of", lambda outcome, other, grown: chaos_of(outcome, "collapse", 1e5))
     r = extrados.run(deck(assess={"strategies": ["tilt", "rocking", "dem"], "budget": 20}))["assess"]
     rows = {v.strategy: v for v in r.verdicts}
-    assert rows["dem"].outcome == "open" and "chaotic" in rows["dem"].statement
+    assert rows["dem"].outcome == "open" and "Chaotic" in rows["dem"].statement
     (one,) = [x for x in r.reasons if x.rule == "last-digits"]
-    assert one.numbers["displacement_nudged_m"] == 9.0
+    assert one.numbers["growth"] == 1e5 and not any("times" in probe.changed for probe in r.probes)
 
 
 @pytest.mark.parametrize(

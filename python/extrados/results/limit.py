@@ -149,7 +149,8 @@ class Tilt(KindResults):
     required_friction: float | None = fact("greatest coefficient of friction that the thrust line at collapse needs")
     required_friction_joint: int = fact("the joint that needs it")
     geometric_safety_factor: float | None = fact(
-        "upright: one over the least part of the joints that holds a thrust line; null where that was not sought"
+        "upright: one over the least part of the joints, about their middles, that holds a thrust line, at most 100; null where the line "
+        "runs through all middles within 1 % of the joints (no horizontal demand), or where it was not sought"
     )
     weight_N: float = fact("weight of the structure with its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
@@ -276,7 +277,8 @@ class Thrust(KindResults):
     chain: str | None = fact("arch or stack to which least and greatest thrust belong; null without one")
     admissible_interval_g: list[float] = fact("accelerations between which a thrust line is admissible", "g")
     geometric_safety_factor: float | None = fact(
-        "one over the least part of the joints that holds a thrust line; null where one runs through all middles"
+        "one over the least part of the joints, about their middles, that holds a thrust line, at most 100; null where the line runs "
+        "through all middles within 1 % of the joints (no horizontal demand), or where it was not sought"
     )
     least_part_of_joints: float = maybe("the part of the joints, about their middles, that the most central line needs")
     weight_N: float = fact("weight of the structure with its fill", "N")
@@ -295,6 +297,9 @@ class Thrust(KindResults):
         part = self.least_part_of_joints
         if part is None:
             return judge("The most central thrust line was not found.", None, None)
+        if self.geometric_safety_factor is None:
+            text = "a thrust line runs through the middles of all joints, within 1 % of their length: no horizontal demand."
+            return judge(f"At {self.gamma_g:g} g {text}", 0.0, 1.0)
         return judge(
             f"At {self.gamma_g:g} g a thrust line stays within the middle {100.0 * part:.3g} % of the joints.", part, 1.0
         )  # fmt: skip

@@ -200,9 +200,13 @@ def _probability(r: Ensemble | OverLevels, acceptable: float) -> tuple:
 
 
 def scaled_margin(r: OverLevels) -> tuple[float | None, float | None]:
-    """Greatest factor below the first at which a single motion brings it down, and that first factor."""
-    down = [bool(c) for c in r.collapsed]
-    first = next((i for i, d in enumerate(down) if d), None)
+    """Greatest factor below the first at which a single motion brings it down, and that first factor. Where blocks slide or hinges
+    form elsewhere before, rocking does not follow the motion: the margin is at least the factor below, and no factor is known to
+    bring it down."""
+    shares = zip(r.collapsed, r.sliding_share, r.hinges_elsewhere_share, strict=True)
+    seen = [(bool(down), bool(slides) or bool(strays)) for down, slides, strays in shares]
+    first = next((i for i, one in enumerate(seen) if any(one)), None)
     if first is None:
         return r.levels[-1], None
-    return (r.levels[first - 1] if first else None), r.levels[first]
+    down, leaves = seen[first]
+    return (r.levels[first - 1] if first else None), (r.levels[first] if down and not leaves else None)
