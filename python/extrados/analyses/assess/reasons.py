@@ -410,7 +410,7 @@ def sliding_as_collapse(facts: Facts, pairs: list[Pair]) -> Reason | None:
     dem, tilt = facts.of("dem"), facts.of("tilt")
     static = ("tilt", "sla") if facts.building.meshed_by_stones else ("tilt",)
     mine = [p for p in pairs if "dem" in p and facts.split(p)[0] in static]
-    if not mine or not isinstance(dem, DemRun) or not isinstance(tilt, Tilt) or "dem-nudged" in facts.probes:
+    if not mine or not isinstance(dem, DemRun) or not isinstance(tilt, Tilt) or dem.decided_by_last_digits:
         return None
     least = _unstopped(facts, tilt)
     forth, back = (
