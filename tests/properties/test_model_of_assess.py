@@ -267,6 +267,29 @@ def test_a_row_says_what_its_strategy_says(verdict: Verdict, name: str) -> None:
 
 
 @QUICK
+@given(
+    VERDICTS,
+    st.sampled_from(NAMES),
+    st.lists(st.sampled_from(["[[ties]]", "[supports] abutting_wall", "[supports] damping_ratio"]), unique=True),
+)
+def test_no_collapse_without_the_restraints_of_the_deck_decides(
+    verdict: Verdict, name: str, without: list[str]
+) -> None:
+    """Asked without a tie, a strategy looks at a weaker building: where that stands this one does, and no more follows."""
+    strategy = strategies.of(name)
+    result, demand = Result(strategy.kind, results=Judged(verdict=verdict)), Demanded(0.2, "sine", 0.4, 0.2)
+    row, whole = (
+        row_of(strategy, result, "", demand, 0.05, None, tuple(without)),
+        row_of(strategy, result, "", demand, 0.05),
+    )
+    restrained = {"[[ties]]", "[supports] abutting_wall"} & set(without)
+    if whole.outcome == "collapses" and restrained:
+        assert (row.outcome, row.margin) == ("open", None) and all(what in row.violated[-1] for what in restrained)
+    else:
+        assert row == whole
+
+
+@QUICK
 @given(VERDICTS, st.sampled_from(["left", "right", None]), FACTORS)
 def test_no_row_stands_by_an_upper_bound_or_beside_what_is_violated(
     verdict: Verdict, wall: str | None, cracked: float

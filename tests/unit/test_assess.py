@@ -108,6 +108,19 @@ def test_what_a_strategy_does_not_reckon_with_is_left_out_and_told() -> None:
     assert rows["dem"].status == "ok"
 
 
+def test_a_collapse_without_the_tie_of_the_deck_decides_nothing() -> None:
+    """Elements take no tie: what they say of the column alone is no verdict on the column with its tie."""
+    strong = {**TIE, "yield_force": "60 kN"}
+    shaken = {**PULSE, "amplitude": "1 g", "period": 1.5}
+    asked = {"motion": shaken, "assess": {"strategies": ["tilt", "dem"]}}
+    bare, held = (
+        {v.strategy: v for v in extrados.run(deck(**asked, **more))["assess"].verdicts}["dem"]
+        for more in ({}, {"ties": [strong]})
+    )
+    assert bare.outcome == "collapses"
+    assert held.outcome == "open" and "neglects [[ties]]" in held.statement
+
+
 def test_a_wrong_key_of_options_refuses_the_strategy_alone() -> None:
     given = {"strategies": ["tilt", "rocking"], "options": {"tilt": {"fractured": True}}}
     r = extrados.run(deck(assess=given))["assess"]

@@ -157,7 +157,7 @@ class _Work:
             result = replace(result, verdict=verdict)
         self.rows[name] = row_of(
             strategy, result, words, self.asker.demand(self.peak), self.options.acceptable_probability,
-            self.context.building.supports.abutting_wall,
+            self.context.building.supports.abutting_wall, without,
         )  # fmt: skip
         if result.status != "ok":
             return None
