@@ -2,13 +2,12 @@
 
 import copy
 import functools
-import itertools
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 from asking import Answer, Deck, ask, must, run, same
-from buildings import _converted, changed, decks, drawn, moved, number, pulses, tidy
+from buildings import _converted, decks, drawn, moved, number, pulses, tidy
 from hypothesis import reject
 from hypothesis import strategies as st
 from relations import EARTHQUAKES, RIGID, ok, relation
@@ -27,7 +26,24 @@ OF_THE_WAY = (
     "snapshot", "touching", "bytes", "convergence", "velocity", "friction_joint", "ground", "chain", "critical_step", "starts_g",
 )  # fmt: skip
 #: Words of results that hold numbers or sides
-IN_WORDS = ("note", "statement", "source", "violated", "not_checked", "scope", "name", "place", "way", "side", "direction", "rule", "of", "joint", "block", "chain")
+IN_WORDS = (
+    "note",
+    "statement",
+    "source",
+    "violated",
+    "not_checked",
+    "scope",
+    "name",
+    "place",
+    "way",
+    "side",
+    "direction",
+    "rule",
+    "of",
+    "joint",
+    "block",
+    "chain",
+)
 
 
 @functools.cache
@@ -97,7 +113,10 @@ def compare(told: str, one: Answer, other: Answer, within: float, length: float 
     for name, (unit, value) in a.items():
         there, factor = b[name][1], factor_of(unit, length, mass)
         if isinstance(value, str) or isinstance(there, str):
-            must(value == there or name.split(".")[-1] in IN_WORDS or name.split(".")[-1].isdigit(), f"{told}: {name}: {value} against {there}")
+            must(
+                value == there or name.split(".")[-1] in IN_WORDS or name.split(".")[-1].isdigit(),
+                f"{told}: {name}: {value} against {there}",
+            )
             continue
         if value is None or there is None or isinstance(value, bool):
             must(value == there, f"{told}: {name}: {value} against {there}")
@@ -105,7 +124,9 @@ def compare(told: str, one: Answer, other: Answer, within: float, length: float 
         x, y = np.asarray(value, dtype=float) * factor, np.asarray(there, dtype=float)
         if x.shape != y.shape:
             x, y = (np.array([v[np.isfinite(v)].min(initial=0.0), v[np.isfinite(v)].max(initial=0.0)]) for v in (x, y))
-        most = np.abs(x[np.isfinite(x)]).max(initial=0.0) if x.ndim else max(abs(float(x)), scale.get(unit, 0.0) * factor)
+        most = (
+            np.abs(x[np.isfinite(x)]).max(initial=0.0) if x.ndim else max(abs(float(x)), scale.get(unit, 0.0) * factor)
+        )
         most = max(most, 1e-3 if unit == "rad" else 0.0)
         if np.array_equal(np.isnan(x), np.isnan(y)):
             off = np.abs(x - y)[~np.isnan(x) & (x != y)]
@@ -135,7 +156,9 @@ def questions(draw: st.DrawFn, *only: str) -> tuple[Deck, str, Deck]:
     return deck, kind, table
 
 
-LOADS = st.lists(st.tuples(number(0.2, 0.8), number(1e3, 2e4)), min_size=1, max_size=2).map(lambda rows: [{"at": a, "force": f} for a, f in rows])
+LOADS = st.lists(st.tuples(number(0.2, 0.8), number(1e3, 2e4)), min_size=1, max_size=2).map(
+    lambda rows: [{"at": a, "force": f} for a, f in rows]
+)
 FRAME = ("arch", "block", "column", "brickwork", "pointed-arch", "elliptical-arch", "blocks", "frame")
 QUESTIONS: dict[str, tuple[tuple[str, ...], Any]] = {
     "tilt": (FRAME, {"friction_rule": st.just("associated")}),
@@ -180,7 +203,11 @@ def _model(name: str, there: Deck) -> Any:
 
 def _spelled(model: Any, given: Deck, whole: Deck) -> Deck:
     """The keys that were given, and those of a unit that hold a number."""
-    return {k: v for k, v in whole.items() if k in given or (v and isinstance(v, float) and dimension(unit_of(model, k)).any())}
+    return {
+        k: v
+        for k, v in whole.items()
+        if k in given or (v and isinstance(v, float) and dimension(unit_of(model, k)).any())
+    }
 
 
 def grown(deck: Deck, length: float, mass: float) -> Deck:
@@ -192,7 +219,9 @@ def grown(deck: Deck, length: float, mass: float) -> Deck:
     def table(name: str, there: Deck) -> Deck:
         return _converted(_model(name, there), {k: v for k, v in there.items() if v is not None}, change)
 
-    return {name: table(name, t) if isinstance(t, dict) else [table(name, one) for one in t] for name, t in deck.items()}
+    return {
+        name: table(name, t) if isinstance(t, dict) else [table(name, one) for one in t] for name, t in deck.items()
+    }
 
 
 @relation(" ".join(QUESTIONS), st.tuples(questions(), st.sampled_from([0.25, 4.0]), number(0.5, 2.0)), 2e-5)
@@ -250,7 +279,10 @@ def shifted_question(deck: Deck, table: Deck, dx: float, dy: float) -> tuple[Dec
     if "places" in table:
         there["places"] = [x + dx for x in table["places"]]
     if "load" in table:
-        there["load"] = [{**one, **{k: one[k] + (dy if k == "y" else dx) for k in ("x", "x_end", "y") if k in one}} for one in table["load"]]
+        there["load"] = [
+            {**one, **{k: one[k] + (dy if k == "y" else dx) for k in ("x", "x_end", "y") if k in one}}
+            for one in table["load"]
+        ]
     return made, there
 
 
@@ -263,18 +295,55 @@ def reordered(deck: Deck, rng: Any) -> Deck:
     for block in blocks:
         first = rng.randrange(len(block["points"]))
         block["points"] = [*block["points"][first:], *block["points"][:first]][:: rng.choice((1, -1))]
-    made["structure"]["ground"] = [row if rng.random() < 0.5 else [*row[2:], *row[:2]] for row in made["structure"]["ground"]]
+    made["structure"]["ground"] = [
+        row if rng.random() < 0.5 else [*row[2:], *row[:2]] for row in made["structure"]["ground"]
+    ]
     if "ties" in made:
         rng.shuffle(made["ties"])
     return made
 
 
 #: Of a result, what names a place or a direction, so that another origin or side gives other numbers
-PLACES = ("x_m", "y_m", "place", "interval", "load_direction", "worst", "centroid", "outline", "line", "funicular", "point", "joint_p", "joint_q", "pose", "block_x", "block_y", "joint_x", "joint_y", "support", "axle", "even_load")
+PLACES = (
+    "x_m",
+    "y_m",
+    "place",
+    "interval",
+    "load_direction",
+    "worst",
+    "centroid",
+    "outline",
+    "line",
+    "funicular",
+    "point",
+    "joint_p",
+    "joint_q",
+    "pose",
+    "block_x",
+    "block_y",
+    "joint_x",
+    "joint_y",
+    "support",
+    "axle",
+    "even_load",
+)
 
 
 #: Of sections with more joints than blocks, what statics leaves open; and what is told of the collapse to +x alone
-INDETERMINATE = ("[", "least", "most", "collapse_line", "required_friction", "hinge", "sliding", "reaction", "moving", "joints", "force", "geometric")
+INDETERMINATE = (
+    "[",
+    "least",
+    "most",
+    "collapse_line",
+    "required_friction",
+    "hinge",
+    "sliding",
+    "reaction",
+    "moving",
+    "joints",
+    "force",
+    "geometric",
+)
 ONE_SIDED = ("required_friction", "reactions", "collapse_", "mechanism_pose", "conditions", "[most", "[least", "ties")
 
 
@@ -317,16 +386,34 @@ def asymmetric(draw: st.DrawFn, *only: str) -> tuple[Deck, str, Deck]:
     x, y = np.mean(blocks[draw(st.integers(0, len(blocks) - 1))]["points"], axis=0)
     if kind in ("tilt", "local-mechanism") and draw(st.booleans()):
         force = draw(number(1e2, 1e4))
-        deck["ties"] = [{"start": tidy(np.array([x, y])), "ground": [round(x - 9.0, 6), round(y - 1.0, 6)], "works_in": "tension", "yield_force": force}]
+        deck["ties"] = [
+            {
+                "start": tidy(np.array([x, y])),
+                "ground": [round(x - 9.0, 6), round(y - 1.0, 6)],
+                "works_in": "tension",
+                "yield_force": force,
+            }
+        ]
     if kind in ("tilt", "thrust") and draw(st.booleans()):
         one = {"x": round(float(x), 6), "force": draw(number(1e2, 1e4)), "sways": draw(st.booleans())}
-        table["load"] = [one | draw(st.sampled_from([{}, {"horizontal": 30.0}, {"x_end": round(float(x) + 0.1, 6)}, {"y": round(float(y), 6)}]))]
+        table["load"] = [
+            one
+            | draw(
+                st.sampled_from(
+                    [{}, {"horizontal": 30.0}, {"x_end": round(float(x) + 0.1, 6)}, {"y": round(float(y), 6)}]
+                )
+            )
+        ]
     if kind == "moving-load":
         table["places"] = _inner(deck, draw(st.lists(number(0.1, 0.9, 7), min_size=1, max_size=2, unique=True)))
     return deck, kind, table
 
 
-@relation(" ".join(LEANING), st.tuples(asymmetric(), st.sampled_from(["mirror", "order", "origin"]), st.randoms(use_true_random=False)), 2e-5)
+@relation(
+    " ".join(LEANING),
+    st.tuples(asymmetric(), st.sampled_from(["mirror", "order", "origin"]), st.randoms(use_true_random=False)),
+    2e-5,
+)
 def all_numbers_described_otherwise(question: tuple, how: str, rng: Any, within: float) -> None:
     """Left and right exchanged, blocks in another order, another origin: the same numbers, but for signs, names and places."""
     deck, kind, table = question
@@ -346,7 +433,11 @@ def all_numbers_described_otherwise(question: tuple, how: str, rng: Any, within:
         reject()  # what is left of it is rounding
     if kind == "local-mechanism" and one.results.multiplier > 0.999 * deck["joints"]["friction"]:
         reject()  # which blocks slide is open
-    skip = (*(PLACES if how == "origin" else ("worst",)), *(() if _is_chain(one) else INDETERMINATE), *(ONE_SIDED if how == "mirror" else ()))
+    skip = (
+        *(PLACES if how == "origin" else ("worst",)),
+        *(() if _is_chain(one) else INDETERMINATE),
+        *(ONE_SIDED if how == "mirror" else ()),
+    )
     if how == "order" and kind != "dem" and _is_chain(one):
         compare_named(how, one, other, within)
     alike_in_size(f"{kind}, {how}", one, other, within * (500.0 if kind in ("dem", "failure-domain") else 1.0), skip)
@@ -354,14 +445,23 @@ def all_numbers_described_otherwise(question: tuple, how: str, rng: Any, within:
 
 def _is_chain(answer: Answer) -> bool:
     """Whether forces follow from one line of thrust between two grounds."""
-    blocks = np.asarray(answer.result.arrays["joint_block"].data) if "joint_block" in answer.result.arrays else np.zeros((0, 2))
+    blocks = (
+        np.asarray(answer.result.arrays["joint_block"].data)
+        if "joint_block" in answer.result.arrays
+        else np.zeros((0, 2))
+    )
     return len(blocks) == blocks.max(initial=0) + 2 and (blocks < 0).any(axis=1).sum() == 2
 
 
 def compare_named(told: str, one: Answer, other: Answer, within: float) -> None:
     """Broken unless numbers that are no parts of lists are the same by their names."""
-    a, b = ({k: v for k, v in numbers(x).items() if k[0] != "[" and not any(c.isdigit() for c in k)} for x in (one, other))
+    a, b = (
+        {k: v for k, v in numbers(x).items() if k[0] != "[" and not any(c.isdigit() for c in k)} for x in (one, other)
+    )
     for name in set(a) & set(b):
         (unit, x), y = a[name], b[name][1]
         if isinstance(x, float) and isinstance(y, float):
-            must(abs(x - y) <= within * max(abs(x), abs(y), 1e-3 if unit in ("rad", "") else 1e-6) , f"{told}: {name} [{unit}]: {x} against {y}")
+            must(
+                abs(x - y) <= within * max(abs(x), abs(y), 1e-3 if unit in ("rad", "") else 1e-6),
+                f"{told}: {name} [{unit}]: {x} against {y}",
+            )

@@ -23,7 +23,19 @@ from extrados import kinds
 from trials import NOTES, SHARE, count_of
 
 #: The chapters of the registry
-CHAPTERS = ("invariance", "files", "proportion", "bounds", "agreement", "promises", "conservation", "elements")
+CHAPTERS = (
+    "invariance",
+    "files",
+    "proportion",
+    "bounds",
+    "agreement",
+    "promises",
+    "conservation",
+    "elements",
+    "fields",
+    "geometry",
+    "sums",
+)
 for chapter in CHAPTERS:
     importlib.import_module(chapter)
 #: Buildings that a whole run asks at least, and each relation of share 1; in the quick suite, those of a costly relation none
