@@ -53,7 +53,12 @@ def beside(outline: np.ndarray, place: np.ndarray) -> float:
     )
 
 
-@relation("", st.tuples(stars(), number(0.05, 0.95), number(0.0, 360.0), number(-2.5, 2.5), number(-2.5, 2.5)), 1e-9)
+@relation(
+    "",
+    st.tuples(stars(), number(0.05, 0.95), number(0.0, 360.0), number(-2.5, 2.5), number(-2.5, 2.5)),
+    1e-9,
+    share=5.0,
+)
 def polygons_by_two_ways(star: np.ndarray, share: float, angle: float, dx: float, dy: float, within: float) -> None:
     """Areas, centres, cuts, levels, distances and places within of random polygons."""
     area, centre, second = moments(star)
@@ -122,7 +127,7 @@ def _meet(outline: np.ndarray, i: int, j: int) -> bool:
     return 0.0 < s < 1.0 and 0.0 < t < 1.0
 
 
-@relation("", st.tuples(stars(), stars(), number(0.0, 360.0), number(0.01, 0.3)), 1e-6)
+@relation("", st.tuples(stars(), stars(), number(0.0, 360.0), number(0.01, 0.3)), 1e-6, share=5.0)
 def overlaps_by_moving_apart(one: np.ndarray, two: np.ndarray, angle: float, depth: float, within: float) -> None:
     """Two convex polygons laid against each other and pushed into each other by a depth overlap by it, and no more where moved back."""
     a, b = convex.hull(one), convex.hull(two)
@@ -194,6 +199,7 @@ def courses(draw: st.DrawFn) -> tuple[list[np.ndarray], dict[tuple[int, int], tu
         st.booleans(),
     ),
     1e-9,
+    share=5.0,
 )
 def contacts_by_hand(wall: tuple, angle: float, shift: float, gap: float, last: bool, within: float) -> None:
     """The joints of a wall are those of its courses, wherever and however it lies; a course apart or sunk in is told with its gap."""
@@ -252,6 +258,7 @@ def contacts_by_hand(wall: tuple, angle: float, shift: float, gap: float, last: 
         st.sampled_from([0.05, -0.08]),
     ),
     1e-7,
+    share=2.0,
 )
 def chains_run_from_left_to_right(deck: Deck, rng: Any, lean: float, within: float) -> None:
     """An arch of blocks in any order is one chain from left to right, intrados first; in order its stones follow each other."""
@@ -288,6 +295,7 @@ def chains_run_from_left_to_right(deck: Deck, rng: Any, lean: float, within: flo
         st.sampled_from([0.0, 0.01]),
     ),
     1e-7,
+    share=2.0,
 )
 def bodies_hold_what_their_blocks_do(
     deck: Deck, lean: float, glue: int, floor: float | None, worn: float, within: float
@@ -365,6 +373,7 @@ def bodies_hold_what_their_blocks_do(
         decks("arch", "block", "column", "brickwork"), number(0.5, 3.0), st.integers(1, 4), number(-30.0, 30.0, 6)
     ),
     1e-6,
+    share=2.0,
 )
 def solids_of_a_section(deck: Deck, depth: float, count: int, skew: float, within: float) -> None:
     """A section drawn out, and divided across and sheared, keeps volume, mass, centres, and areas of joints."""
@@ -439,6 +448,7 @@ BOX = st.tuples(number(0.3, 2.0), number(0.3, 2.0), number(0.3, 2.0))
         number(0.0, 180.0),
     ),
     1e-6,
+    share=5.0,
 )
 def boxes_that_touch(
     one: tuple, two: tuple, x: float, y: float, gap: float, angle: float, tip: float, within: float

@@ -129,7 +129,7 @@ def test_what_broke_once(relation: Relation) -> None:
 @pytest.mark.parametrize("relation", [pytest.param(r, id=r.name) for r in RELATIONS.values() if not r.awaits])
 def test_relation(relation: Relation) -> None:
     whole = round(EACH * relation.share)
-    if count := count_of(whole, 0 if relation.share < COSTLY else QUICK):
+    if count := count_of(whole, 0 if relation.share < COSTLY else round(QUICK * max(1.0, relation.share))):
         random_cases(relation, count)
 
 
