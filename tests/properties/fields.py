@@ -278,7 +278,7 @@ def mirrored_question(deck: Deck, table: Deck) -> tuple[Deck, Deck]:
 
 def shifted_question(deck: Deck, table: Deck, dx: float, dy: float) -> tuple[Deck, Deck]:
     """A deck and a table with another origin of the survey."""
-    made, there = moved(deck, lambda p: p + [dx, dy]), {**table}
+    made, there = moved(deck, lambda p: p + np.array([dx, dy])), {**table}
     if "places" in table:
         there["places"] = [x + dx for x in table["places"]]
     if "load" in table:

@@ -83,7 +83,7 @@ def polygons_by_two_ways(star: np.ndarray, share: float, angle: float, dx: float
     under = polygons.cut(star, np.array([0.0, y]), np.array([0.0, -1.0]))
     a, c, _ = moments(under)
     near("below a level", polygons.below(star, np.array([y]))[0], [a, a * c[0], a * c[1]], 1e-7, 1.0)
-    place = star.mean(axis=0) + [dx, dy]
+    place = star.mean(axis=0) + np.array([dx, dy])
     must(bool(polygons.inside(star, place[None])[0]) == (abs(winding(star, place)) > 0.5), f"{place} within or not")
     near("distance", polygons.distance(star, place[None])[0], beside(star, place), 5e-3, 0.2)
     must(polygons.crossing_edges(star) is None, "a star crosses itself")
@@ -196,21 +196,22 @@ def courses(draw: st.DrawFn) -> tuple[list[np.ndarray], dict[tuple[int, int], tu
         number(0.0, 360.0),
         number(-40.0, 40.0),
         st.sampled_from([0.0, 4e-4, -4e-4, 3e-3, -3e-3, 0.02]),
-        st.booleans(),
     ),
     1e-9,
     share=5.0,
 )
-def contacts_by_hand(wall: tuple, angle: float, shift: float, gap: float, last: bool, within: float) -> None:
+def contacts_by_hand(wall: tuple, angle: float, shift: float, gap: float, within: float) -> None:
     """The joints of a wall are those of its courses, wherever and however it lies; a course apart or sunk in is told with its gap."""
     outlines, joints = wall
     c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     turn = np.array([[c, s], [-s, c]])
-    moved = len(outlines) - 1 if last else max(k for k, o in enumerate(outlines) if o[0, 1] == outlines[-1][0, 1])
-    level = outlines[moved][0, 1]
-    there = [o + [0.0, gap if o[0, 1] >= level - 1e-9 else 0.0] for o in outlines]
+    level = outlines[-1][0, 1]
+    there = [o + np.array([0.0, gap if o[0, 1] >= level - 1e-9 else 0.0]) for o in outlines]
     ground = np.array([[-1.0, 0.0, 4.0, 0.0]])
-    place = lambda points: points @ turn + [shift, 0.5 * shift]  # noqa: E731
+
+    def place(points: np.ndarray) -> np.ndarray:
+        return points @ turn + [shift, 0.5 * shift]
+
     tolerance = 1e-3
     found = find_contacts(
         [place(o) for o in there], np.column_stack([place(ground[:, :2]), place(ground[:, 2:])]), tolerance
@@ -454,7 +455,6 @@ def boxes_that_touch(
     one: tuple, two: tuple, x: float, y: float, gap: float, angle: float, tip: float, within: float
 ) -> None:
     """Two boxes, one on the other, turned anyhow, share the rectangle that their faces have in common; gaps and overlaps have their size."""
-    low = [-0.5 * one[0] + 0.0, -0.5 * one[1]]
     shift = np.array([0.5 * x * (one[0] + two[0]), 0.5 * y * (one[1] + two[1]), one[2] + gap])
     first = prism(_rectangle(*one[:2]), 0.0, one[2])
     second = prism(_rectangle(*two[:2]) + shift[:2], shift[2], shift[2] + two[2])
@@ -473,7 +473,7 @@ def boxes_that_touch(
         len(found.polygon) == (meet and abs(gap) < tolerance),
         f"{len(found.polygon)} contacts of a gap of {gap}, {sides}",
     )
-    for points, normal, a, b in zip(found.polygon, found.normal, found.a, found.b, strict=True):
+    for points, normal, a in zip(found.polygon, found.normal, found.a, strict=True):
         newell = 0.5 * sum(np.cross(p, q) for p, q in itertools.pairwise([*(points - points[0]), points[0] * 0.0]))
         near("area", newell @ normal, sides[0] * sides[1], 1e-6)
         near("normal", (1.0 if a == 0 else -1.0) * normal, turn @ [0.0, 0.0, -1.0], within, 1.0)

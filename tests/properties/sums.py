@@ -1,5 +1,6 @@
 """Results that must add up: what tables, arrays, words and closed forms say of one answer, counted again."""
 
+import itertools
 import math
 import re
 import tempfile
@@ -292,7 +293,7 @@ def spread_loads_are_their_parts(
     weight = float(building(deck).blocks().mass.sum()) * GRAVITY
     force = float(f"{0.2 * weight:.4g}")
     parts = [{"x": a, "x_end": b, "force": force * (b - a) / (ends[2] - ends[0]), "horizontal": 0.02 * force * (b - a) / (ends[2] - ends[0]), "sways": sways}
-             for a, b in zip(ends, ends[1:], strict=False)]  # fmt: skip
+             for a, b in itertools.pairwise(ends)]  # fmt: skip
     whole = {"x": ends[0], "x_end": ends[2], "force": force, "horizontal": 0.02 * force, "sways": sways}
     one, two = ask(deck, "tilt", load=[whole]), ask(deck, "tilt", load=parts)
     ok(one, two)
