@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 from asking import Deck, ask, must, near
-from buildings import changed, decks, number, pulses
+from buildings import SOLIDS, changed, decks, number, pulses
 from conservation import building
 from fields import asymmetric, leaning
 from hypothesis import reject
@@ -469,3 +469,43 @@ def units_and_scales_of_records(amplitude: float, frequency: float, scale: float
     if found[1].results.decided_by_last_digits:
         reject()
     near("rotation", found[1].results.peak_rotation_ratio, found[3].results.peak_rotation_ratio, 1e-4, 1e-3)
+
+
+@relation("tilt dem", decks("arch", "block", "dome", "wall"), 1e-9)
+def tilts_are_those_of_their_accelerations(deck: Deck, within: float) -> None:
+    """A ground tilted by atan(a/g) pushes as a horizontal acceleration a does, to both sides, in the plane, in space and by elements."""
+    kind = deck["structure"]["kind"]
+    found = [ask(deck, "tilt", **({"direction": 30.0, "rose": 4} if kind in SOLIDS else {}))]
+    if kind == "block":
+        found.append(ask(deck, "dem", test="tilt", tilt_accuracy=0.05, time_step=0.004, **RIGID))
+    ok(*found)
+    for answer, sense in itertools.product(found, ("", "_opposite")):
+        angle = getattr(answer.results, f"tilt_angle{sense}_deg")
+        acceleration = getattr(answer.results, f"collapse_acceleration{sense}_g")
+        near(f"tilt{sense}", angle, math.degrees(math.atan(acceleration)), within)
+
+
+@relation(
+    "failure-domain", st.tuples(decks("block", "arch"), st.sampled_from(["step", "sine"]), number(0.3, 1.0)), 1e-9
+)
+def curves_and_pockets_of_a_map(deck: Deck, pulse: str, period: float, within: float) -> None:
+    """The curves of a failure domain lie at the first failing amplitude of its map, pockets are safe amplitudes above."""
+    answer = ask(deck, "failure-domain", pulse=pulse, durations=[period, 2.0 * period], amplitudes=12, accuracy=1e-3)
+    ok(answer)
+    r, arrays = answer.results, {k: np.asarray(v.data) for k, v in answer.result.arrays.items()}
+    pockets = 0
+    for k, codes in enumerate(arrays["outcome"]):
+        fails = codes >= COLLAPSE
+        least = r.mode_I.amplitudes_g[k]
+        must((least is None) == (not fails.any()), f"{least}: {codes}")
+        if least is not None:
+            first = int(fails.argmax())
+            step = arrays["amplitude"][1] - arrays["amplitude"][0]
+            must(
+                -step - 1e-9 <= least - arrays["amplitude"][first] <= 1e-9,
+                f"{least} beside {arrays['amplitude'][first]}",
+            )
+            safe = (~fails) & (arrays["amplitude"] > least)
+            pockets += bool(safe.any())
+            must((r.pocket_begins_g[k] is not None) == bool(safe.any()), f"pocket {r.pocket_begins_g[k]}: {codes}")
+    must(r.safe_pockets == pockets, f"{r.safe_pockets} pockets of {pockets}")
