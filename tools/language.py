@@ -1,0 +1,108 @@
+"""How the texts keep the rules of CONTRIBUTING.md, Language: long sentences and words of the glossary's left column, per page."""
+
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parents[1]
+#: Pages made by `make references`, `make verify` and `make docs`: their words come from the package
+GENERATED = {"decks.md", "results.md", "verification.md", "gallery.md", "redrawn.md"}
+#: Pages of records: quotations of former versions stand in them
+RECORDS = {"differences.md", "changelog.md", "contributing.md"}
+
+
+class Word(NamedTuple):
+    """A word of the glossary's left column: the pattern of its occurrences, the word to use, and uses that are right."""
+
+    pattern: str
+    use: str
+    right: str = ""  #: pattern of occurrences that are no fault
+    reason: str = ""  #: why they are none
+
+
+GLOSSARY = [
+    Word(r"\brockers?\b", "rigid-body mechanism"),
+    Word(r"\b(?:give|gives|gave|given|giving) way\b|\bsoft bases?\b", "compliant base; settlement"),
+    Word(r"\b(?:sink|sinks|sank|sunk|sinking)\b", "settlement"),
+    Word(r"\bblows?\b", "impact"),
+    Word(r"\b(?:falls?|fell|fallen|falling)\b", "collapses, overturns; for a quantity: drops",
+         r"\bfree fall\b|\bfalling weight\b", "free fall is a motion of mechanics"),
+    Word(r"\b(?:comes?|came|coming|brings?|brought|bring it|brings it|takes?) (?:it |them |a bridge )?down\b", "collapses; causes collapse"),
+    Word(r"\b(?:bears?|bore|borne)\b", "carries, resists; capacity"),
+    Word(r"\b(?:fly|flies|flew|flying)\b", "airborne, detached", r"\bflying buttress(?:es)?\b", "a member of a church"),
+    Word(r"\b(?:what holds|holding|holds it|holds them)\b", "restraint (tie, damper, prop)"),
+    Word(r"\b(?:turn|turns|turned|turning)\b", "rotation, rotated", r"\bin turn\b", "one after the other"),
+    Word(r"\bpush(?:es)? of (?:a|an|the)\b|\bconstant push\b", "pushover; constant lateral load"),
+    Word(r"\bload curves?\b", "capacity curve, load-displacement curve"),
+    Word(r"\bsafe pockets?\b", "safe region inside the failure domain"),
+    Word(r"\bfactor on the train\b", "live-load factor"),
+    Word(r"\b(?:hang|hangs) on\b", "depends on; sensitivity"),
+    Word(r"\blast digits?\b", "chaotic: sensitive to perturbations of 1e-6"),
+    Word(r"\b(?:told|tells?|telling)\b", "reported, states"),
+    Word(r"\b(?:asks?|asked|asking)\b", "requires, requested"),
+    Word(r"\bknows?\b", "includes, has, recognises"),
+    Word(r"\b(?:left|leaves?|leaving) out\b", "neglected, not considered"),
+    Word(r"\b(?:answer|answers|answered|answering)\b", "result; conclusion"),
+    Word(r"\brooms?\b", "module, package", r"\b(?:rooms? of (?:a|the) (?:building|house)|two rooms|rooms and|one room|two-room)\b", "rooms of buildings"),
+    Word(r"\blost at once\b|\bat once\b", "brittle; immediately, together"),
+    Word(r"\bproofs?\b", "certificate", r"\bdamp-proof\b", "a layer of a wall"),
+    Word(r"\b(?:for ever|by the clock|goes? round|as it is|lets? be|takes? away|taken away|looks? at|looked at)\b", "no metaphor"),
+    Word(r"\bstands? (?:on|in|by|beside|for|at|over)\b", "is supported by, is in, is listed with"),
+    Word(r"\bwhat\b(?![^.?!]*\?)", "name the subject"),
+    Word(r"\bwhere (?:there|none|no|it|they|one|nothing|neither|both|that)\b", "if, unless, in ... that"),
+]  # fmt: skip
+
+
+def pages() -> list[Path]:
+    """README, CONTRIBUTING and the written pages of docs."""
+    written = [page for page in sorted((ROOT / "docs").rglob("*.md")) if page.name not in GENERATED | RECORDS]
+    return [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *written]
+
+
+def prose(text: str) -> str:
+    """Text of a page of Markdown without code, links' targets and HTML; words in backquotes become one word."""
+    text = re.sub(r"^ *```.*?^ *```", "", text, flags=re.S | re.M)
+    text = re.sub(r"<!-- language: off -->.*?<!-- language: on -->|<!--.*?-->", "", text, flags=re.S)
+    text = re.sub(r"`[^`]*`", "CODE", text)
+    text = re.sub(r"\$[^$]*\$", "FORMULA", text)
+    text = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", text)
+    return re.sub(r"<[^>]+>|[*_]{2}", "", text)
+
+
+def sentences(text: str) -> list[str]:
+    """Of prose: paragraphs, items of lists and cells of tables, split at full stops."""
+    found: list[str] = []
+    for block in re.split(r"\n\s*\n|^(?=\s*(?:[-*]|\d+\.) )|^#.*$", text, flags=re.M):
+        rows = block.splitlines()
+        cells = [cell for row in rows if row.lstrip().startswith("|") for cell in row.strip().strip("|").split("|")]
+        plain = " ".join(row for row in rows if not row.lstrip().startswith("|"))
+        for piece in [plain, *cells]:
+            parts = re.split(r"(?<=[.!?])\s+(?=[A-Z(\"0-9])", re.sub(r"\s+", " ", piece).strip(" -*"))
+            found += [part for part in parts if len(part.split()) > 1]
+    return found
+
+
+def hits(text: str) -> list[str]:
+    """Occurrences of words of the left column, each as "found: use this"."""
+    found = []
+    for word in GLOSSARY:
+        spared = re.sub(word.right, "", text, flags=re.I) if word.right else text
+        found += [f"{m[0]!r}: {word.use}" for m in re.finditer(word.pattern, spared, re.I)]
+    return found
+
+
+def main() -> None:
+    """A row per page: sentences, those of over 25 and over 40 words, words of the left column."""
+    rows = []
+    for page in pages():
+        text = prose(page.read_text(encoding="utf-8"))
+        lengths = [len(sentence.split()) for sentence in sentences(text)]
+        rows.append((page.relative_to(ROOT), len(lengths), sum(n > 25 for n in lengths), sum(n > 40 for n in lengths), len(hits(text))))
+    rows.append(("all", *(sum(row[k] for row in rows) for k in range(1, 5))))
+    print(f"{'page':36} sentences  >25  >40  glossary")
+    for name, *counts in rows:
+        print(f"{name!s:36} {counts[0]:9} {counts[1]:4} {counts[2]:4} {counts[3]:9}")
+
+
+if __name__ == "__main__":
+    main()
