@@ -4,7 +4,7 @@ PYTHON := .venv/bin/python
 # An import after a pull may build anew, and meson then looks for numpy-config and ninja on the path.
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
-.PHONY: browser run test verify bench oldest lint format wheel setup table-5-3 impact-map docs references coverage release clean
+.PHONY: browser pictures run test verify bench oldest lint format wheel setup table-5-3 impact-map docs references coverage release clean
 
 run: setup
 	@.venv/bin/extrados run $(DECK)
@@ -48,6 +48,9 @@ references: setup  ## of decks and results, and what `explain` tells, from their
 
 docs: references  ## the site, in build/site, with its search offline; installs its own needs
 	@$(PYTHON) tools/site.py
+
+pictures: setup  ## of README and docs, docs/pictures, from decks of cases/; NAME="arch page" names some
+	@$(PYTHON) tools/pictures.py $(NAME)
 
 table-5-3: setup  ## refit the assessment criterion (thesis Table 5.3); RULE=inelastic prints it by another impact rule
 	@$(PYTHON) -m extrados.analyses.rocking.criterion $(RULE)

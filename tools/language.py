@@ -77,7 +77,8 @@ def sentences(text: str) -> list[str]:
         cells = [cell for row in rows if row.lstrip().startswith("|") for cell in row.strip().strip("|").split("|")]
         plain = " ".join(row for row in rows if not row.lstrip().startswith("|"))
         for piece in [plain, *cells]:
-            parts = re.split(r"(?<=[.!?])\s+(?=[A-Z(\"0-9])", re.sub(r"\s+", " ", piece).strip(" -*"))
+            plainer = re.sub(r"\b(Figs?|Eqs?|al|Eng|Struct|Dyn|e\.g|i\.e)\.", r"\1", re.sub(r"\s+", " ", piece).strip(" -*"))
+            parts = re.split(r"(?:(?<=[.!?])|(?<=[.!?][)\]\"]))\s+(?=[A-Z(\[\"*0-9]|\w+\.md|\w_)", plainer)
             found += [part for part in parts if len(part.split()) > 1]
     return found
 

@@ -15,18 +15,20 @@ ROOT = Path(__file__).resolve().parents[1]
 PLACE = ROOT / "docs" / "pictures"
 #: Picture: deck, analysis, figure ("" is the first), axes shown (none: all), width in pixels
 FIGURES: dict[str, tuple[str, str, str, tuple[int, ...], int]] = {
+    "section": ("vault/vezelay-like", "tilt", "tilt-collapse", (), 900),
+    "margins": ("assess/facade", "assess", "assess-margins", (), 800),
     "arch": ("arch/readme", "tilt", "tilt-collapse", (0, 1), 900),
     "house": ("building/two-rooms", "pushover", "pushover-space", (), 900),
     "bridge": ("bridge/road", "moving-load", "", (), 900),
     "corner": ("solid/corner", "tilt", "", (), 800),
-    "survey": ("vault/vezelay-like", "tilt", "", (), 900),
+    "survey": ("limit/church", "tilt", "tilt-collapse", (), 900),
     "rocking": ("arch/readme", "rocking", "rocking-history", (), 900),
     "domain": ("arch/oppenheim-domain", "failure-domain", "", (), 800),
     "motion": ("motion/el-centro", "motion", "", (), 900),
     "facade": ("codes/facade", "local-mechanism", "", (), 900),
     "elements": ("dem/oppenheim", "dem", "", (), 900),
-    "wall": ("sla/stones-brickwork", "sla", "", (), 900),
-    "fragility": ("fragility/figure-6-6", "fragility", "", (), 800),
+    "wall": ("sla/yi-wall-1", "sla", "sla-cracks", (), 900),
+    "fragility": ("fragility/annual-rate", "fragility", "fragility-curve", (), 800),
 }
 #: The page: the deck that it opens
 PAGE = "vault/vezelay-like"
