@@ -1,10 +1,15 @@
 """How the texts keep the rules of CONTRIBUTING.md, Language: long sentences and words of the glossary's left column, per page."""
 
+import ast
 import re
+import sys
+import tomllib
 from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[1]
+UNSWEPT = ROOT / "tests" / "unit" / "unswept.txt"
+LONGEST = 40  #: words of a sentence of a page; the rule is 25
 #: Pages made by `make references`, `make verify` and `make docs`: their words come from the package
 GENERATED = {"decks.md", "results.md", "verification.md", "gallery.md", "redrawn.md"}
 #: Pages of records: quotations of former versions stand in them
@@ -92,17 +97,75 @@ def hits(text: str) -> list[str]:
     return found
 
 
+def strings(source: str) -> list[str]:
+    """Texts of a Python file that a user may read: string constants of three words or more; docstrings are none of them."""
+    tree = ast.parse(source)
+    docstrings = {
+        id(node.body[0].value)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef)
+        and node.body
+        and isinstance(node.body[0], ast.Expr)
+    }
+    found = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and id(node) not in docstrings]
+    return [node.value for node in found if isinstance(node.value, str) and len(node.value.split()) >= 3]
+
+
+def files() -> list[Path]:
+    """Python files of the package."""
+    return sorted(path for path in (ROOT / "python" / "extrados").rglob("*.py"))
+
+
+def unswept() -> set[str]:
+    """Files of the package whose texts have not been rewritten, by their paths."""
+    return {line for line in UNSWEPT.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")}
+
+
+def decks() -> list[Path]:
+    """Decks of `cases/`."""
+    return sorted(path for path in (ROOT / "cases").rglob("*.toml") if not path.name.endswith(".expect.toml"))
+
+
+def deck_prose(source: str) -> str:
+    """Title, note and comments of a deck."""
+    data = tomllib.loads(source)
+    comments = re.findall(r"(?:^|\s)#\s*(.*)$", source, re.M)
+    return "\n\n".join([data.get("title", ""), data.get("note", ""), *comments])
+
+
+def faulty() -> list[str]:
+    """Files of the package with words of the left column."""
+    return [
+        path.relative_to(ROOT).as_posix()
+        for path in files()
+        if any(hits(text) for text in strings(path.read_text(encoding="utf-8")))
+    ]
+
+
+def shrink() -> None:
+    """Take the files that are clean off the list of unswept ones; print the faulty files that are not on it."""
+    left = faulty()
+    lines = UNSWEPT.read_text(encoding="utf-8").splitlines()
+    kept = [line for line in lines if line.startswith("#") or line in left]
+    UNSWEPT.write_text("\n".join(kept) + "\n", encoding="utf-8")
+    print(*sorted(set(left) - unswept()), sep="\n")
+
+
 def main() -> None:
-    """A row per page: sentences, those of over 25 and over 40 words, words of the left column."""
+    """A row per page: sentences, those of over 25 and over 40 words, words of the left column. `--swept` shrinks the list of unswept files."""
+    if "--swept" in sys.argv:
+        shrink()
+        return
     rows = []
     for page in pages():
         text = prose(page.read_text(encoding="utf-8"))
         lengths = [len(sentence.split()) for sentence in sentences(text)]
-        rows.append((page.relative_to(ROOT), len(lengths), sum(n > 25 for n in lengths), sum(n > 40 for n in lengths), len(hits(text))))
+        counts = (len(lengths), sum(n > 25 for n in lengths), sum(n > LONGEST for n in lengths), len(hits(text)))
+        rows.append((page.relative_to(ROOT).as_posix(), *counts))
     rows.append(("all", *(sum(row[k] for row in rows) for k in range(1, 5))))
     print(f"{'page':36} sentences  >25  >40  glossary")
-    for name, *counts in rows:
-        print(f"{name!s:36} {counts[0]:9} {counts[1]:4} {counts[2]:4} {counts[3]:9}")
+    for name, total, long, longest, found in rows:
+        print(f"{name:36} {total:9} {long:4} {longest:4} {found:9}")
 
 
 if __name__ == "__main__":

@@ -1,0 +1,77 @@
+"""The texts keep the glossary of CONTRIBUTING.md, Language: pages of docs, decks of cases, messages of the package."""
+
+import ast
+import importlib.util
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def _tool() -> ModuleType:
+    spec = importlib.util.spec_from_file_location("language", ROOT / "tools" / "language.py")
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+language = _tool()
+
+
+@pytest.mark.parametrize("page", language.pages(), ids=lambda p: p.relative_to(ROOT).as_posix())
+def test_pages_keep_the_glossary_and_end_their_sentences(page: Path) -> None:
+    text = language.prose(page.read_text(encoding="utf-8"))
+    assert language.hits(text) == []
+    assert [s for s in language.sentences(text) if len(s.split()) > language.LONGEST] == []
+
+
+@pytest.mark.parametrize("deck", language.decks(), ids=lambda p: f"{p.parent.name}/{p.stem}")
+def test_titles_and_notes_of_decks_keep_the_glossary(deck: Path) -> None:
+    assert language.hits(language.prose(language.deck_prose(deck.read_text(encoding="utf-8")))) == []
+
+
+def test_messages_of_swept_files_keep_the_glossary() -> None:
+    """Files on the list are to be rewritten; a file that is clean leaves the list, and none enters it."""
+    faulty, listed = set(language.faulty()), language.unswept()
+    assert sorted(faulty - listed) == [], "words of the glossary's left column"
+    assert sorted(listed - faulty) == [], "run `python tools/language.py --swept`"
+
+
+def test_makefile_says_its_targets_in_the_words_of_the_glossary() -> None:
+    text = (ROOT / "Makefile").read_text(encoding="utf-8")
+    comments = [line.partition("#")[2].strip("# ") for line in text.splitlines() if "#" in line]
+    assert comments and [hit for comment in comments for hit in language.hits(comment)] == []
+
+
+def test_docstrings_of_tools_keep_the_glossary() -> None:
+    wrong = {}
+    for path in sorted((ROOT / "tools").glob("*.py")):
+        if path.name != "language.py":  # it holds the glossary
+            tree = ast.parse(path.read_text(encoding="utf-8"))
+            nodes = [node for node in ast.walk(tree) if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef)]
+            found = [hit for node in nodes for hit in language.hits(ast.get_docstring(node) or "")]
+            if found:
+                wrong[path.name] = found
+    assert wrong == {}
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("The arch bears 3 kN.", 1), ("What it does is told.", 2), ("A flying buttress, in turn, carries it.", 0),
+        ("The base gives way, where there is none.", 2), ("What is the load?", 0), ("The block is in free fall.", 0),
+    ],
+)  # fmt: skip
+def test_the_lint_finds_words_of_the_left_column(text: str, found: int) -> None:
+    assert len(language.hits(text)) == found
+
+
+def test_the_lint_reads_sentences_and_messages() -> None:
+    page = "# Title\nOne two three (Fig. 5-1). Four five\nsix.\n\n```\nwhat bears\n```\n| seven eight | `what` nine |\n"
+    assert [len(s.split()) for s in language.sentences(language.prose(page))] == [5, 3, 2, 2]
+    assert language.strings('"""Module, what it bears."""\nraise E(f"{n} the arch bears it")\nz = "two words"\n') == [" the arch bears it"]
