@@ -48,11 +48,12 @@ GLOSSARY = [
     Word(r"\bknows?\b", "includes, has, recognises"),
     Word(r"\b(?:left|leaves?|leaving) out\b", "neglected, not considered"),
     Word(r"\b(?:answer|answers|answered|answering)\b", "result; conclusion"),
-    Word(r"\brooms?\b", "module, package", r"\b(?:rooms? of (?:a|the) (?:building|house)|two rooms|rooms and|one room|two-room)\b", "rooms of buildings"),
+    Word(r"\brooms?\b", "module, package", r"\b(?:rooms? of (?:a|the) (?:building|house)|two rooms|rooms and|one room|two-rooms?)\b", "rooms of buildings"),
     Word(r"\blost at once\b|\bat once\b", "brittle; immediately, together"),
     Word(r"\bproofs?\b", "certificate", r"\bdamp-proof\b", "a layer of a wall"),
     Word(r"\b(?:for ever|by the clock|goes? round|as it is|lets? be|takes? away|taken away|looks? at|looked at)\b", "no metaphor"),
-    Word(r"\bstands? (?:on|in|by|beside|for|at|over)\b", "is supported by, is in, is listed with"),
+    Word(r"\bstands? (?:on|in|by|beside|for|at|over)\b", "is supported by, is in, is listed with",
+         r"\bcannot stand\b|\bmay stand by jamming\b", "words of an outcome and of a message"),
     Word(r"\bwhat\b(?![^.?!]*\?)", "name the subject"),
     Word(r"\bwhere (?:there|none|no|it|they|one|nothing|neither|both|that)\b", "if, unless, in ... that"),
 ]  # fmt: skip
@@ -82,7 +83,9 @@ def sentences(text: str) -> list[str]:
         cells = [cell for row in rows if row.lstrip().startswith("|") for cell in row.strip().strip("|").split("|")]
         plain = " ".join(row for row in rows if not row.lstrip().startswith("|"))
         for piece in [plain, *cells]:
-            plainer = re.sub(r"\b(Figs?|Eqs?|al|Eng|Struct|Dyn|e\.g|i\.e)\.", r"\1", re.sub(r"\s+", " ", piece).strip(" -*"))
+            plainer = re.sub(
+                r"\b(Figs?|Eqs?|al|Eng|Struct|Dyn|e\.g|i\.e)\.", r"\1", re.sub(r"\s+", " ", piece).strip(" -*")
+            )
             parts = re.split(r"(?:(?<=[.!?])|(?<=[.!?][)\]\"]))\s+(?=[A-Z(\[\"*0-9]|\w+\.md|\w_)", plainer)
             found += [part for part in parts if len(part.split()) > 1]
     return found

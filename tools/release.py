@@ -1,8 +1,8 @@
 """Release a version: `make release VERSION=0.2.0`.
 
-Sets the version wherever it stands, dates its heading in the changelog and opens the next one, commits, tags, and packs the sources into
-dist/. Wheels are made by `sudo tools/wheels.sh` from the tag. Nothing is pushed; the last line says how. Refused where the work tree holds
-changes, the version is no larger than the last one, or the changelog has nothing to tell.
+Sets the version in all files, dates its heading in the changelog and opens the next one, commits, tags, and packs the sources into
+dist/. Wheels are made by `sudo tools/wheels.sh` from the tag. Nothing is pushed; the last line says how. Refused if the work tree holds
+changes, the version is no larger than the last one, or the changelog has no news.
 """
 
 import datetime

@@ -1,15 +1,15 @@
-"""How many faults the tests see: faults are planted one at a time in a copy, built and tested.
+"""Number of faults that the tests detect: faults are planted one at a time in a copy, built and tested.
 
-    python tools/seeded_faults.py [--count 80] [--seed 1] [--place build/faults] [--again] [--room ROOM] [--only FILE:LINE]
+    python tools/seeded_faults.py [--count 80] [--seed 1] [--place build/faults] [--again] [--package NAME] [--only FILE:LINE]
     python tools/seeded_faults.py --suite properties [--python] [--count 30]
 
 In Fortran and C a fault is a changed sign or operator, constant, comparison or bound of a loop; in Python (`--python`), at
 the joins of strategies alone, a changed sign, a dropped key or filter, another set of blocks, a unit factor or an outcome. Its place
-is drawn from the seed; every room gets its share. A fault counts as caught where the build, a quick test of its room or a case
-fails; with `--suite properties` where the build or the property suite alone fails (tests/properties), of the kernels at faults
-of the joins, and of Python by the relations that run through the changed function, the quickest first. What fails
-without a fault is found first, and left out. What becomes of each fault is kept in the place, and a run that was broken off
-goes on from there; `--again` tries those anew that were not caught, after tests were written. Those that are not caught
+is drawn from the seed; every package gets its share. A fault counts as caught if the build, a quick test of its package or a case
+fails; with `--suite properties` if the build or the property suite alone fails (tests/properties), of the kernels at faults
+of the joins, and of Python by the relations that run through the changed function, the quickest first. Tests that fail
+without a fault are found first, and skipped. The fate of each fault is kept in the place, and an interrupted run
+continues from there; `--again` tries those anew that were not caught, after tests were written. Those that are not caught
 are printed with their place, and all are noted for the verification book.
 """
 
@@ -158,7 +158,7 @@ class Fault:
 
     @property
     def room(self) -> str:
-        """The room that the file belongs to."""
+        """The package of the file."""
         return "/".join(self.file.split("/")[:2])
 
     @property
@@ -201,7 +201,7 @@ def faults_of(path: Path) -> list[Fault]:
 
 
 def python_faults_of(path: Path) -> list[Fault]:
-    """Every fault that could be planted in a file of Python: in functions, outside of texts, comments and what only warns."""
+    """Every fault that could be planted in a file of Python: in functions, outside of texts, comments and warnings."""
     text, name = path.read_text(encoding="utf-8"), path.relative_to(apart.ROOT).as_posix()
     lines = text.split("\n")
     bare, outcomes = list(lines), []
@@ -245,7 +245,7 @@ def _is_python(lines: list[str]) -> bool:
 
 
 def draw(count: int, seed: int, rooms: Iterable[str] = ROOMS, python: bool = False, joins: bool = False) -> list[Fault]:
-    """Faults of rooms, of all kinds: each room by the root of what it holds, its kinds in turn; joins: at the joins alone."""
+    """Faults of packages, of all kinds: each package in proportion to the root of its size, its kinds in turn; joins: at the joins alone."""
     by_room: dict[str, list[Fault]] = {}
     if python:
         for join in JOINS:
@@ -286,7 +286,7 @@ def plant(place: Path, fault: Fault, back: bool = False) -> None:
 
 
 def commands(place: Path, room: str) -> list[tuple[list[str], str]]:
-    """What is run for a room, in order, and what each is called where it names no test of its own."""
+    """Commands for a package, in order, each with its name if it names no test of its own."""
     native, python, cases = ROOMS[room]
     pytest = [apart.python(place), "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider"]
     meson = [
@@ -308,7 +308,7 @@ def commands(place: Path, room: str) -> list[tuple[list[str], str]]:
 @cache  # found before the first fault is planted
 def touched(place: Path) -> list[tuple[str, float, set[tuple[str, int]]]]:
     """Tests of the property suite, their seconds, and the functions that they run through: file and first line. Found once,
-    by few cases, without a fault; tests that fail without one, with the cases that a fault is tried with, are left out, and named."""
+    by few cases, without a fault; tests that fail without one, with the cases that a fault is tried with, are skipped, and named."""
     whole = hashlib.sha256()
     for path in sorted([*(place / "tests" / "properties").glob("*.py"), *(place / PACKAGE).rglob("*.py")]):
         if path.name != "_build_info.py":  # the same of two builds
@@ -354,7 +354,7 @@ def relations_of(place: Path, fault: Fault) -> list[str]:
 
 
 def failing_relation(place: Path, fault: Fault, patience: int) -> str:
-    """The first test of the property suite that fails with a fault planted, "" where none does."""
+    """The first test of the property suite that fails with a fault planted, or ""."""
     chosen = relations_of(place, fault)
     if not chosen:
         return ""
@@ -380,7 +380,7 @@ def failing_relation(place: Path, fault: Fault, patience: int) -> str:
 
 
 def failing(place: Path, room: str, patience: int) -> str:
-    """The first test of a room that fails, "" where none does."""
+    """The first failing test of a package, or ""."""
     environment = {**os.environ, "OMP_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
     for command, name in commands(place, room):
         run = subprocess.run(
@@ -396,7 +396,7 @@ def failing(place: Path, room: str, patience: int) -> str:
 
 
 def caught_by(place: Path, fault: Fault, patience: int, properties: bool = False) -> str:
-    """The test that fails with a fault planted, "" where none does; properties: of the property suite alone."""
+    """The test that fails with a fault planted, or ""; properties: of the property suite alone."""
     plant(place, fault)
     try:
         if not fault.in_python:
@@ -417,7 +417,7 @@ def main() -> int:
     parser.add_argument("--patience", type=int, default=300, help="seconds of a processor that a room's tests may take")
     parser.add_argument("--place", type=Path, default=apart.ROOT / "build" / "faults")
     parser.add_argument("--again", action="store_true", help="the faults anew that were not caught")
-    parser.add_argument("--room", choices=list(ROOMS), help="faults of one room alone")
+    parser.add_argument("--package", choices=list(ROOMS), help="faults of one package of the core alone")
     parser.add_argument("--only", help="FILE:LINE, the faults of one line")
     parser.add_argument("--suite", choices=["quick", "properties"], default="quick", help="which tests are to see them")
     parser.add_argument(
@@ -431,7 +431,7 @@ def main() -> int:
     place.mkdir(parents=True, exist_ok=True)
     apart.copy(place)
     apart.build(place, "-Dbuildtype=plain", "-Doptimization=1")
-    chosen = draw(options.count, options.seed, [options.room] if options.room else ROOMS, options.python, properties)
+    chosen = draw(options.count, options.seed, [options.package] if options.package else ROOMS, options.python, properties)
     if options.only:
         file, line = options.only.split(":")
         every = python_faults_of if file.endswith(".py") else faults_of
@@ -457,7 +457,7 @@ def main() -> int:
         kept.write_text(json.dumps(fates, indent=1), encoding="utf-8")
     missed = [str(fault) for fault in chosen if not fates[str(fault)]]
     print(f"{len(chosen) - len(missed)} of {len(chosen)} caught", *missed, sep="\n")
-    if not (options.only or options.room):
+    if not (options.only or options.package):
         notes = apart.ROOT / "build" / "trials"
         notes.mkdir(parents=True, exist_ok=True)
         where, file = "in Fortran and C that no quick test sees", "seeded-faults.json"

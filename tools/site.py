@@ -1,7 +1,7 @@
 """Build the documentation site into build/site: the references, a gallery of cases run now, the dissertation's figures redrawn,
 Sphinx, and FORD for the Fortran.
 
-What it needs is the extra `docs` of pyproject.toml, installed first where it is missing. A warning is an error, and so is a link
+It requires the extra `docs` of pyproject.toml, installed first if it is missing. A warning is an error, and so is a link
 that leads nowhere; nothing is loaded from the network, so that the site and its search work without one.
 """
 
@@ -77,7 +77,7 @@ def gallery() -> None:
 
 
 def redrawn() -> None:
-    """docs/dissertation/redrawn.md: the pictures that its pages name, by running their decks; slow cases are left out."""
+    """docs/dissertation/redrawn.md: the pictures that its pages name, by running their decks; slow cases are skipped."""
     import extrados
 
     runs: dict = {}
@@ -124,7 +124,7 @@ def fortran() -> None:
 
 
 def broken(site: Path) -> list[str]:
-    """Links of a site's pages that lead nowhere, and what they would load from the network: each as "page: link"."""
+    """Broken links of a site's pages, and items that they would load from the network: each as "page: link"."""
     wrong: list[str] = []
     places: dict[Path, set[str]] = {}
     pages = {page: page.read_text(encoding="utf-8") for page in sorted(site.resolve().rglob("*.html"))}
@@ -146,7 +146,7 @@ def broken(site: Path) -> list[str]:
 
 
 def main() -> None:
-    """The site; `--quick` leaves out what takes long, the gallery and the Fortran reference."""
+    """The site; `--quick` skips the slow parts, the gallery and the Fortran reference."""
     extras.install("docs")
     (ROOT / "build").mkdir(exist_ok=True)
     quick = "--quick" in sys.argv

@@ -74,4 +74,6 @@ def test_the_lint_finds_words_of_the_left_column(text: str, found: int) -> None:
 def test_the_lint_reads_sentences_and_messages() -> None:
     page = "# Title\nOne two three (Fig. 5-1). Four five\nsix.\n\n```\nwhat bears\n```\n| seven eight | `what` nine |\n"
     assert [len(s.split()) for s in language.sentences(language.prose(page))] == [5, 3, 2, 2]
-    assert language.strings('"""Module, what it bears."""\nraise E(f"{n} the arch bears it")\nz = "two words"\n') == [" the arch bears it"]
+    assert language.strings('"""Module, what it bears."""\nraise E(f"{n} the arch bears it")\nz = "two words"\n') == [
+        " the arch bears it"
+    ]
