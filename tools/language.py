@@ -58,6 +58,17 @@ GLOSSARY = [
     Word(r"\bwhere (?:there|none|no|it|they|one|nothing|neither|both|that)\b", "if, unless, in ... that"),
 ]  # fmt: skip
 
+#: Rows of the glossary of CONTRIBUTING.md that no pattern holds, each with its reason
+NOT_LINTED = {
+    "stones (in general)": "whether a sentence means blocks in general or stones, units or voussoirs is seen by a reader alone",
+    "demand, capacity": "kept",
+    "tilt (as analysis)": "the key is kept; the analysis is named in backquotes",
+    "deck": "the first use on a page is seen by a reader alone",
+    "the joints would have to be 1.05 times as long": "one sentence of a message, not a word",
+    "a motion by which loads do work that no joint takes": "one sentence of a message, not a word",
+    "saw-tooth, thrust line, voussoir, springing, embrace, extrados, haunch": "kept",
+}
+
 
 def pages() -> list[Path]:
     """README, CONTRIBUTING and the written pages of docs."""

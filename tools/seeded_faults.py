@@ -431,7 +431,9 @@ def main() -> int:
     place.mkdir(parents=True, exist_ok=True)
     apart.copy(place)
     apart.build(place, "-Dbuildtype=plain", "-Doptimization=1")
-    chosen = draw(options.count, options.seed, [options.package] if options.package else ROOMS, options.python, properties)
+    chosen = draw(
+        options.count, options.seed, [options.package] if options.package else ROOMS, options.python, properties
+    )
     if options.only:
         file, line = options.only.split(":")
         every = python_faults_of if file.endswith(".py") else faults_of

@@ -94,6 +94,20 @@ def test_the_readme_quotes_the_verification_book() -> None:
     assert f"{count} results of other programs and methods within {within}" in re.sub(r"\s+", " ", text)
 
 
+def test_the_tree_of_contributing_has_every_package() -> None:
+    tree = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").partition("## The tree")[2].partition("\n```\n")[2]
+    tree = tree.partition("\n```")[0]
+    named = set(re.findall(r"([\w-]+)/", tree))
+    package = ROOT / "python" / "extrados"
+    places = [package, package / "analyses", package / "building", ROOT / "fortran", ROOT / "c", ROOT / "tests"]
+    there = {place.name for above in places if above.exists() for place in above.iterdir() if any(place.glob("*.*"))}
+    assert there - {"__pycache__"} - named == set()
+    known = {
+        place.name for top in ("fortran", "c", "python", "tests") for place in (ROOT / top).rglob("*") if place.is_dir()
+    }
+    assert named - known - {"fortran", "c", "python", "tests", "cases", "tools", "build"} == set()
+
+
 def test_the_deck_of_the_readme_is_its_case() -> None:
     shown = re.search(r"^```toml\n(.*?)^```", (ROOT / "README.md").read_text(encoding="utf-8"), re.S | re.M)
     assert shown is not None

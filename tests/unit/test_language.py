@@ -35,6 +35,16 @@ def test_titles_and_notes_of_decks_keep_the_glossary(deck: Path) -> None:
     assert language.hits(language.prose(language.deck_prose(deck.read_text(encoding="utf-8")))) == []
 
 
+def test_every_row_of_the_glossary_is_linted_or_has_a_reason() -> None:
+    page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    table = page.partition("### Glossary")[2].partition("### ")[0]
+    left = [line.strip("|").split("|")[0].strip() for line in table.splitlines() if line.startswith("| ")][1:]
+    assert len(left) > 30
+    assert {cell for cell in left if not language.hits(cell)} == set(language.NOT_LINTED)
+    assert all(language.NOT_LINTED.values())
+    assert all(bool(word.right) == bool(word.reason) for word in language.GLOSSARY)
+
+
 def test_messages_of_swept_files_keep_the_glossary() -> None:
     """Files on the list are to be rewritten; a file that is clean leaves the list, and none enters it."""
     faulty, listed = set(language.faulty()), language.unswept()
