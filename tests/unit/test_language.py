@@ -27,7 +27,10 @@ language = _tool()
 def test_pages_keep_the_glossary_and_end_their_sentences(page: Path) -> None:
     text = language.prose(page.read_text(encoding="utf-8"))
     assert language.hits(text) == []
-    assert [s for s in language.sentences(text) if len(s.split()) > language.LONGEST] == []
+    sentences = language.sentences(text)
+    assert [s for s in sentences if len(s.split()) > language.LONGEST] == []
+    long = [s for s in sentences if len(s.split()) > language.LONG]
+    assert len(long) <= max(1, language.LONG_SHARE * len(sentences)), long
 
 
 @pytest.mark.parametrize("deck", language.decks(), ids=lambda p: f"{p.parent.name}/{p.stem}")
