@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-#: What belongs to the program and its tests
+#: Files of the program and its tests
 PARTS = ("c", "fortran", "python", "tests", "cases", "docs", "tools", "meson.build", "meson.options", "pyproject.toml",
          "Makefile", "Containerfile", ".github", ".ci", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "CITATION.cff", "LICENSE")  # fmt: skip
 

@@ -21,7 +21,7 @@ ROOM = apart.ROOT / "build" / "coverage"
 HTML = ROOM / "html"
 WANTED = {"Python": 90.0, "Fortran": 85.0, "C": 85.0}
 INTERRUPTED = 2  # of pytest's exit codes: it then keeps no counts
-LEAST = 8  # files of each language that are told
+LEAST = 8  # files of each language that are printed
 #: The words of CONTRIBUTING.md that a whole run writes anew
 NOTE = re.compile(r"At the last whole run \([\d-]+\) they were [\d., and]+ %")
 

@@ -16,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[1]
 ROOM = ROOT / "build" / "oldest"
 #: Debian 12, the oldest system supported, has this one.
 PIP = "23.0.1"
-#: What a run of the suite touches of every library, in two minutes rather than all.
+#: Tests that use every library, in two minutes rather than the whole suite.
 TESTS = ["tests/unit"]
 
 

@@ -35,7 +35,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 import apart
 
-#: room -> tests of its own in Fortran and C, then those in Python, the quickest first, then its cases
+#: package -> tests of its own in Fortran and C, then those in Python, the quickest first, then its cases
 ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
     "fortran/common": (
         ("test_dopri5", "test_motion_set", "test_motion", "test_rocking"),
@@ -88,7 +88,7 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
     "c/common": (("test_handles", "test_threads", "test_blas"), ("unit/test_border.py", "unit/test_cli.py"), "limit/oppenheim"),
 }  # fmt: skip
 
-#: kind -> (pattern of the part that is changed, what stands in its place)
+#: kind -> (pattern of the changed part, its replacements)
 FAULTS = {
     "sign": [(r"(?<=[\w)]) \+ (?=[\w(])", " - "), (r"(?<=[\w)]) - (?=[\w(])", " + ")],
     "operator": [(r"(?<=[\w)]) \* (?=[\w(])", " / ")],
@@ -106,12 +106,12 @@ IN_PYTHON = {
             (r"\.a\b(?! ?=)", ".b"), (r"\.b\b(?! ?=)", ".a")],
     "unit": [(r" / GRAVITY", ""), (r" \* GRAVITY", ""), (r"\b1e3\b", "1e6"), (r"\.depth\b(?! ?=)", ".depth * 2.0"), (r"radians\(", "degrees("), (r"degrees\(", "radians(")],
 }  # fmt: skip
-#: Outcomes and what they are taken for; these are texts
+#: Outcomes and their replacements; these are texts
 OUTCOMES = {
     '"stands"': '"collapses"', '"collapses"': '"stands"', '"cannot-stand"': '"open"', '"open"': '"stands"', '"collapse"': '"recovery"',
     '"recovery"': '"no-hinging"', '"upper"': '"lower"', '"holds"': '"fails"', '"fails"': '"holds"', '"no-sliding"': '"sliding"', '"left"': '"right"',
 }  # fmt: skip
-#: Where strategies join: what makes views of a building, hands them to the core, and makes verdicts of what comes back
+#: Joins of strategies: makers of models of a building, calls of the core, makers of verdicts from its results
 JOINS = (
     "analyses/conclude.py", "analyses/run.py", "analyses/left_out.py", "analyses/motion_source.py", "analyses/assess/asking.py",
     "analyses/assess/words.py", "analyses/assess/reasons.py", "analyses/codes/kinematics.py", "analyses/codes/local_mechanism.py",
@@ -262,12 +262,12 @@ def draw(count: int, seed: int, rooms: Iterable[str] = ROOMS, python: bool = Fal
     weight = {room: len(there) ** 0.5 for room, there in by_room.items()}
     chosen = []
     for room, there in by_room.items():
-        rng = random.Random(f"{seed} {room}")  # of its own: what changes in a room draws nothing else in the others
+        rng = random.Random(f"{seed} {room}")  # of its own: a change in one package draws nothing else in the others
         share = max(1 if joins else 2, round(count * weight[room] / sum(weight.values())))
         kinds = {kind: [f for f in there if f.kind == kind] for kind in sorted({f.kind for f in there})}
         for options in kinds.values():
             rng.shuffle(options)
-        if joins:  # few of a room: its kinds in no order
+        if joins:  # few of a package: its kinds in no order
             kinds = dict(rng.sample(sorted(kinds.items(), key=lambda item: item[0]), len(kinds)))
         while share and any(kinds.values()):
             for options in kinds.values():
@@ -324,7 +324,7 @@ def touched(place: Path) -> list[tuple[str, float, set[tuple[str, int]]]]:
             run = subprocess.run(words, cwd=place, env=environment, capture_output=True, text=True, errors="replace")
             broken |= set(re.findall(r"^(?:FAILED|ERROR) (\S+)", run.stdout, re.M))
         rows = [r for r in half.read_text(encoding="utf-8").splitlines() if json.loads(r)["test"] not in broken]
-        print("left out, since they fail without a fault:", *sorted(broken or {"none"}), flush=True)
+        print("skipped, since they fail without a fault:", *sorted(broken or {"none"}), flush=True)
         half.write_text("\n".join(rows) + "\n", encoding="utf-8")
         half.rename(kept)
     rows = map(json.loads, kept.read_text(encoding="utf-8").splitlines())
@@ -414,7 +414,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--count", type=int, default=80)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--patience", type=int, default=300, help="seconds of a processor that a room's tests may take")
+    parser.add_argument(
+        "--patience", type=int, default=300, help="seconds of a processor that the tests of a package may take"
+    )
     parser.add_argument("--place", type=Path, default=apart.ROOT / "build" / "faults")
     parser.add_argument("--again", action="store_true", help="the faults anew that were not caught")
     parser.add_argument("--package", choices=list(ROOMS), help="faults of one package of the core alone")
@@ -442,16 +444,16 @@ def main() -> int:
     kept = place / name
     fates: dict[str, str] = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
     todo = [f for f in chosen if options.only or str(f) not in fates or (options.again and not fates[str(f)])]
-    todo.sort(key=lambda fault: fault.room)  # the tests of a room pass without a fault before its first is planted
+    todo.sort(key=lambda fault: fault.room)  # the tests of a package pass without a fault before its first is planted
     if properties and todo:
         touched(place)  # which passes without a fault
     for k, fault in enumerate(todo, start=1):
-        if not properties and f"{fault.room} as it is" not in fates:
+        if not properties and f"{fault.room} without a fault" not in fates:
             apart.build(place)  # without the last fault
             if by := failing(place, fault.room, 10 * options.patience):
                 sys.exit(f"{fault.room}: {by} fails without a fault")
             print(f"{fault.room}: its tests pass", flush=True)
-            fates[f"{fault.room} as it is"] = "nothing"
+            fates[f"{fault.room} without a fault"] = "nothing"
         begin = time.monotonic()
         by = fates[str(fault)] = caught_by(place, fault, options.patience, properties)
         seconds = time.monotonic() - begin

@@ -41,7 +41,7 @@ search: false
 preprocess: false
 parallel: 0
 """
-#: Of the pages of FORD: what they load from the network, and what then rests on it
+#: Parts of the pages of FORD that load from the network, and parts that depend on them
 FROM_AFAR = re.compile(
     r"<!-- Bootstrap -->.*?(?=<!-- Font Awesome)|<!-- MathJax -->.*?(?=<!-- Other scripts)|<script>\s*// Enable Bootstrap.*?</script>",
     re.S,
@@ -110,7 +110,7 @@ def redrawn() -> None:
                 lines += ["", f"`cases/{case}.toml`:", "", f"![Fig. {figure}](../_gallery/{picture.name})"]
     if slow:
         left = ", ".join(f"`cases/{case}.toml`" for case in sorted(slow))
-        lines += ["", "## Left out", "", f"Decks that take minutes: {left}."]
+        lines += ["", "## Not drawn", "", f"Decks that take minutes: {left}."]
     REDRAWN.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
@@ -151,8 +151,8 @@ def main() -> None:
     (ROOT / "build").mkdir(exist_ok=True)
     quick = "--quick" in sys.argv
     if quick:
-        PAGE.write_text("# Gallery\n\nLeft out of this quick build.\n", encoding="utf-8")
-        REDRAWN.write_text("# Redrawn now\n\nLeft out of this quick build.\n", encoding="utf-8")
+        PAGE.write_text("# Gallery\n\nNot part of this quick build.\n", encoding="utf-8")
+        REDRAWN.write_text("# Redrawn now\n\nNot part of this quick build.\n", encoding="utf-8")
     else:
         gallery()
         redrawn()

@@ -38,20 +38,20 @@ TITLES = {
     "peer": "Verification: independent programs, and unlike methods of this one",
     "thesis": "Reproduction of the dissertation",
     "experiment": "Validation: experiments",
-    "calibration": "Calibrations: fitted to come out, no proof",
+    "calibration": "Calibrations: fitted, no verification",
     "regression": "Regression: unchanged numbers",
 }
-#: What proves something, the strongest first; a regression compares the program with itself, a calibration was fitted
+#: Kinds of comparison, the strongest first; a regression compares the program with itself, a calibration was fitted
 PROOFS = ("exact", "peer", "thesis", "experiment")
 COLOURS = {"exact": "#0072B2", "peer": "#009E73", "thesis": "#E69F00", "experiment": "#D55E00"}
 MARKS = {"exact": "o", "peer": "s", "thesis": "^", "experiment": "D"}
 #: Relative tolerance from which on a row is listed apart
 LOOSE = 0.15
-#: Measured numbers of one folder from which on bias and scatter are told
+#: Least number of measured rows of one folder for bias and scatter
 ENOUGH = 5
-#: Mark of what was found before the program's last change
+#: Mark of results found before the program's last change
 OLDER = "*"
-#: What a row of a measured curve compares
+#: Quantity compared by a row of a measured curve
 COMPARED = {
     "peak_ratio": "peak", "tail_ratios[0]": "tail at 75 % of the peak", "tail_ratios[1]": "tail at 50 %",
     "tail_ratios[2]": "tail at 25 %",
@@ -139,7 +139,7 @@ def by_quantity(rows: list[Found]) -> list[str]:
         lines.append(f"| {picture} | {' | '.join([*cells, *others])} |")
     return [
         "## Quantity by quantity", "",
-        "Rows of each quantity, by what they were compared with. Exact answers and other programs: the greatest deviation;",
+        "Rows of each quantity, by the kind of comparison. Exact solutions and other programs: the greatest deviation;",
         "the dissertation and experiments: bias (mean of found over expected, less one) and scatter (standard deviation).",
         "Zeros and words have no ratio: they are in the tables below. Calibrated rows were fitted to come out and regressions",
         "compare the program with itself: neither proves anything. Crack paths are compared by eye (docs/sla.md): no number of",
@@ -189,7 +189,7 @@ def draw(rows: list[Found]) -> None:
         low, high = axes.get_ylim()
         axes.set(
             xlim=(0.0, first), ylim=(min(low, 1.0 - 1.5 * LOOSE), max(high, 1.0 + 1.5 * LOOSE)), title=quantity,
-            xlabel="row, by what it was compared with", ylabel="found over expected",
+            xlabel="row, by its kind of comparison", ylabel="found over expected",
         )  # fmt: skip
         axes.xaxis.get_major_locator().set_params(integer=True)
         figure.legend(frameon=False, fontsize=8, loc="outside lower center", ncols=3)
@@ -249,7 +249,7 @@ def trials(book: str) -> list[str]:
         lines[row.split(" | ")[0]] = row
     if not lines:
         return []
-    return [TRIALS, "", "From fixed seeds; a failure is one of what the first column says.", "",
+    return [TRIALS, "", "From fixed seeds; the first column defines a failure.", "",
             "| looked for | tried | found | |\n|---|---|---|---|", *sorted(lines.values()), ""]  # fmt: skip
 
 
@@ -363,7 +363,7 @@ def find(case: Case, kept: dict[str, Any], computed_by: str) -> list[Found]:
 def main() -> int:
     """Run all cases; the number of rows that differ."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--pages", action="store_true", help="from what was kept, computing nothing")
+    parser.add_argument("--pages", action="store_true", help="from the kept results, without computation")
     parser.add_argument("--trials", action="store_true", help="the section of trials alone")
     options = parser.parse_args()
     before = BOOK.read_text(encoding="utf-8") if BOOK.exists() else ""
@@ -378,7 +378,7 @@ def main() -> int:
             found = from_kept(case, kept, computed_by)
             if found is None:
                 why = "kept values are of another state" if case.name in kept else "not kept"
-                print(f"{case.name}: {why}, left out", file=sys.stderr)
+                print(f"{case.name}: {why}, skipped", file=sys.stderr)
             elif any(row.older for row in found):
                 print(f"{case.name}: kept values are older than the program, marked {OLDER}", file=sys.stderr)
             rows += found or []

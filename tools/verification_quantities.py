@@ -2,7 +2,7 @@
 
 import re
 
-#: Quantity -> patterns of `analysis.key` (indices left out) that belong to it; the first that fits wins
+#: Quantity -> patterns of `analysis.key` (without indices) that belong to it; the first that fits wins
 QUANTITIES: dict[str, tuple[str, ...]] = {
     "code check": (r"(?:local-mechanism|code-checks)\S*\.", r"checks\."),
     "ground motion and spectrum": (r"^motion", r"^shake-table"),
