@@ -17,6 +17,8 @@ PLACE = ROOT / "docs" / "pictures"
 FIGURES: dict[str, tuple[str, str, str, tuple[int, ...], int]] = {
     "section": ("vault/vezelay-like", "tilt", "tilt-collapse", (), 900),
     "margins": ("assess/facade", "assess", "assess-margins", (), 800),
+    "strip-arch": ("arch/readme", "tilt", "tilt-collapse", (0,), 560),
+    "strip-house": ("building/two-rooms", "pushover", "pushover-space", (1, 2), 560),
     "arch": ("arch/readme", "tilt", "tilt-collapse", (0, 1), 900),
     "house": ("building/two-rooms", "pushover", "pushover-space", (), 900),
     "bridge": ("bridge/road", "moving-load", "", (), 900),
@@ -56,6 +58,10 @@ def draw(name: str) -> None:
     chosen = drawn[figure or next(iter(drawn))]
     box: object = "tight"
     if axes:
+        for k, other in enumerate(chosen.axes):
+            other.set_visible(k in axes)
+        for legend in chosen.legends:
+            legend.set_visible(False)
         chosen.canvas.draw()
         seen = [chosen.axes[k].get_tightbbox() for k in axes]
         box = mpl.transforms.Bbox.union(seen).padded(8).transformed(chosen.dpi_scale_trans.inverted())
