@@ -99,8 +99,9 @@ ANALYSES: dict[str, AnalysisKind] = {
         "statistics", "HarmonicMap", "harmonic_map", "statistics:draw_harmonic_map", "rocking/el-centro-block"
     ),
     "code-checks": _analysis("codes", "CodeChecks", "code_checks", "statistics:draw_code_checks", "rocking/el-centro-block"),
-    "local-mechanism": _analysis(
-        "codes", "LocalMechanism", "local_mechanism", "codes:draw_local_mechanism", "codes/facade"
+    "local-mechanism": AnalysisKind(
+        "analyses.codes.tables:LocalMechanism", "analyses.codes.local_mechanism:run", "results.codes:LocalMechanisms",
+        "plots.codes:draw_local_mechanism", "codes/facade.toml",
     ),
     "motion": _analysis("motion", "MotionStudy", "motion_study", "motion:draw_motion", "motion/el-centro"),
     "shake-table": _analysis("motion", "ShakeTable", "shake_table", "motion:draw_shake_table", "motion/appendix-c"),
