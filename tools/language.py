@@ -33,7 +33,11 @@ GLOSSARY = [
     Word(r"\bblows?\b", "impact"),
     Word(r"\b(?:falls?|fell|fallen|falling)\b", "collapses, overturns; for a quantity: drops",
          r"\bfree fall\b|\bfalling weight\b", "free fall is a motion of mechanics"),
-    Word(r"\b(?:comes?|came|coming|brings?|brought|bring it|brings it|takes?) (?:it |them |a bridge )?down\b", "collapses; causes collapse"),
+    Word(r"\b(?:comes?|came|coming|takes?|br(?:ing|ings|ought)(?: \w+){0,5}) (?:it |them )?down\b", "collapses; causes collapse"),
+    Word(r"\bstays? up\b", "stands, does not collapse"),
+    Word(r"\bhold (?:it|them) from\b", "restrains"),
+    Word(r"\bnobody\b", "name the unknown: it is indeterminate, uncertain"),
+    Word(r"\b(?:goes|go|going) on\b", "continues"),
     Word(r"\b(?:bears?|bore|borne)\b", "carries, resists; capacity"),
     Word(r"\b(?:fly|flies|flew|flying)\b", "airborne, detached", r"\bflying buttress(?:es)?\b", "a member of a church"),
     Word(r"\b(?:what holds|holding|holds it|holds them)\b", "restraint (tie, damper, prop)"),
@@ -52,7 +56,7 @@ GLOSSARY = [
     Word(r"\brooms?\b", "module, package", r"\b(?:rooms? of (?:a|the) (?:building|house)|two rooms|rooms and|one room|two-rooms?)\b", "rooms of buildings"),
     Word(r"\blost at once\b|\bat once\b", "brittle; immediately, together"),
     Word(r"\bproofs?\b", "certificate", r"\bdamp-proof\b", "a layer of a wall"),
-    Word(r"\b(?:for ever|by the clock|goes? round|as it is|lets? be|takes? away|taken away|looks? at|looked at)\b", "no metaphor"),
+    Word(r"\b(?:for ever|the clock|goes? round|as it is|lets? be|takes? away|taken away|looks? at|looked at)\b", "no metaphor"),
     Word(r"\bstands? (?:on|in|by|beside|for|at|over)\b", "is supported by, is in, is listed with",
          r"\bcannot stand\b|\bmay stand by jamming\b", "words of an outcome and of a message"),
     Word(r"\bwhat\b(?![^.?!]*\?)", "name the subject"),
@@ -103,6 +107,11 @@ def sentences(text: str) -> list[str]:
     return found
 
 
+def words(text: str) -> set[str]:
+    """Words of the left column that a text has, in lower case."""
+    return {hit.partition("'")[2].partition("'")[0].lower() for hit in hits(text)}
+
+
 def hits(text: str) -> list[str]:
     """Occurrences of words of the left column, each as "found: use this"."""
     found = []
@@ -113,7 +122,7 @@ def hits(text: str) -> list[str]:
 
 
 def strings(source: str) -> list[str]:
-    """Texts of a Python file that a user may read: string constants of three words or more; docstrings are none of them."""
+    """Texts of a Python file that a user may read: string constants of two words or more; docstrings are none of them."""
     tree = ast.parse(source)
     docstrings = {
         id(node.body[0].value)
@@ -123,7 +132,7 @@ def strings(source: str) -> list[str]:
         and isinstance(node.body[0], ast.Expr)
     }
     found = [node for node in ast.walk(tree) if isinstance(node, ast.Constant) and id(node) not in docstrings]
-    return [node.value for node in found if isinstance(node.value, str) and len(node.value.split()) >= 3]
+    return [node.value for node in found if isinstance(node.value, str) and len(node.value.split()) >= 2]
 
 
 def files() -> list[Path]:
@@ -131,9 +140,11 @@ def files() -> list[Path]:
     return sorted(path for path in (ROOT / "python" / "extrados").rglob("*.py"))
 
 
-def unswept() -> set[str]:
-    """Files of the package whose texts have not been rewritten, by their paths."""
-    return {line for line in UNSWEPT.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")}
+def unswept() -> dict[str, set[str]]:
+    """Files of the package whose texts have not been rewritten: by path, the words of the left column that they may still have."""
+    lines = UNSWEPT.read_text(encoding="utf-8").splitlines()
+    named = [line.partition(": ") for line in lines if line and not line.startswith("#")]
+    return {path: set(words.split(", ")) for path, _, words in named}
 
 
 def decks() -> list[Path]:
@@ -148,22 +159,22 @@ def deck_prose(source: str) -> str:
     return "\n\n".join([data.get("title", ""), data.get("note", ""), *comments])
 
 
-def faulty() -> list[str]:
-    """Files of the package with words of the left column."""
-    return [
-        path.relative_to(ROOT).as_posix()
-        for path in files()
-        if any(hits(text) for text in strings(path.read_text(encoding="utf-8")))
-    ]
+def faulty() -> dict[str, set[str]]:
+    """Files of the package with words of the left column, by path."""
+    texts = {path: strings(path.read_text(encoding="utf-8")) for path in files()}
+    found = {path: {word for text in there for word in words(text)} for path, there in texts.items()}
+    return {path.relative_to(ROOT).as_posix(): there for path, there in found.items() if there}
 
 
 def shrink() -> None:
-    """Take the files that are clean off the list of unswept ones; print the faulty files that are not on it."""
-    left = faulty()
-    lines = UNSWEPT.read_text(encoding="utf-8").splitlines()
-    kept = [line for line in lines if line.startswith("#") or line in left]
-    UNSWEPT.write_text("\n".join(kept) + "\n", encoding="utf-8")
-    print(*sorted(set(left) - unswept()), sep="\n")
+    """Take words that a file no longer has, and files that are clean, off the list; print words that are not on it."""
+    found, listed = faulty(), unswept()
+    head = [line for line in UNSWEPT.read_text(encoding="utf-8").splitlines() if line.startswith("#")]
+    kept = {path: there & found.get(path, set()) for path, there in listed.items()}
+    lines = [f"{path}: {', '.join(sorted(there))}" for path, there in sorted(kept.items()) if there]
+    UNSWEPT.write_text("\n".join([*head, *lines]) + "\n", encoding="utf-8")
+    new = {path: there - listed.get(path, set()) for path, there in found.items()}
+    print(*(f"{path}: {', '.join(sorted(there))}" for path, there in new.items() if there), sep="\n")
 
 
 def main() -> None:
