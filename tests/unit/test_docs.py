@@ -95,17 +95,24 @@ def test_the_readme_quotes_the_verification_book() -> None:
 
 
 def test_the_tree_of_contributing_has_every_package() -> None:
-    tree = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8").partition("## The tree")[2].partition("\n```\n")[2]
-    tree = tree.partition("\n```")[0]
+    """And the way of a deck to a number, the block after it, names files that exist."""
+    tree, way = re.findall(r"^```\n(.*?)^```", (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8"), re.S | re.M)[:2]
     named = set(re.findall(r"([\w-]+)/", tree))
     package = ROOT / "python" / "extrados"
-    places = [package, package / "analyses", package / "building", ROOT / "fortran", ROOT / "c", ROOT / "tests"]
-    there = {place.name for above in places if above.exists() for place in above.iterdir() if any(place.glob("*.*"))}
-    assert there - {"__pycache__"} - named == set()
-    known = {
-        place.name for top in ("fortran", "c", "python", "tests") for place in (ROOT / top).rglob("*") if place.is_dir()
+    there = {path.parent.name for path in package.rglob("*.py")}
+    there |= {
+        path.parent.name
+        for top in ("fortran", "c")
+        for end in ("f90", "c", "h")
+        for path in (ROOT / top).rglob(f"*.{end}")
     }
-    assert named - known - {"fortran", "c", "python", "tests", "cases", "tools", "build"} == set()
+    assert there - named - {"extrados"} == set()
+    folders = {
+        path.name for top in ("fortran", "c", "python", "tests") for path in (ROOT / top).rglob("*") if path.is_dir()
+    }
+    assert named - folders - {"fortran", "c", "python", "tests", "cases", "tools", "build"} == set()
+    files = re.findall(r"[\w/]+\.py\b", way)
+    assert len(files) > 9 and [file for file in files if not list(package.rglob(file))] == []
 
 
 def test_the_deck_of_the_readme_is_its_case() -> None:
