@@ -148,15 +148,16 @@ def unswept() -> dict[str, set[str]]:
 
 
 def decks() -> list[Path]:
-    """Decks of `cases/`."""
-    return sorted(path for path in (ROOT / "cases").rglob("*.toml") if not path.name.endswith(".expect.toml"))
+    """Decks of `cases/` and their files of expectations."""
+    return sorted((ROOT / "cases").rglob("*.toml"))
 
 
 def deck_prose(source: str) -> str:
-    """Title, note and comments of a deck."""
+    """Title, note and comments of a deck; sources of the rows of a file of expectations."""
     data = tomllib.loads(source)
     comments = re.findall(r"(?:^|\s)#\s*(.*)$", source, re.M)
-    return "\n\n".join([data.get("title", ""), data.get("note", ""), *comments])
+    sources = [row.get("source", "") for row in data.get("expect", [])]
+    return "\n\n".join([data.get("title", ""), data.get("note", ""), *comments, *sources])
 
 
 def faulty() -> dict[str, set[str]]:

@@ -34,7 +34,7 @@ def test_pages_keep_the_glossary_and_end_their_sentences(page: Path) -> None:
 
 
 @pytest.mark.parametrize("deck", language.decks(), ids=lambda p: f"{p.parent.name}/{p.stem}")
-def test_titles_and_notes_of_decks_keep_the_glossary(deck: Path) -> None:
+def test_titles_notes_and_sources_of_decks_keep_the_glossary(deck: Path) -> None:
     assert language.hits(language.prose(language.deck_prose(deck.read_text(encoding="utf-8")))) == []
 
 
