@@ -81,10 +81,15 @@ def pages() -> list[Path]:
     return [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *written]
 
 
+def comments(fence: re.Match[str]) -> str:
+    """Comments of a block of code, as paragraphs."""
+    return "\n\n".join(re.findall(r"(?:^|\s)#\s+(.*)$", fence[0], re.M))
+
+
 def prose(text: str) -> str:
-    """Text of a page of Markdown without code, links' targets and HTML; words in backquotes become one word."""
-    text = re.sub(r"^ *```.*?^ *```", "", text, flags=re.S | re.M)
+    """Text of a page of Markdown, and comments of its code, without code, links' targets and HTML; words in backquotes become one word."""
     text = re.sub(r"<!-- language: off -->.*?<!-- language: on -->|<!--.*?-->", "", text, flags=re.S)
+    text = re.sub(r"^ *```.*?^ *```", comments, text, flags=re.S | re.M)
     text = re.sub(r"`[^`]*`", "CODE", text)
     text = re.sub(r"\$[^$]*\$", "FORMULA", text)
     text = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", text)
@@ -155,9 +160,9 @@ def decks() -> list[Path]:
 def deck_prose(source: str) -> str:
     """Title, note and comments of a deck; sources of the rows of a file of expectations."""
     data = tomllib.loads(source)
-    comments = re.findall(r"(?:^|\s)#\s*(.*)$", source, re.M)
+    remarks = re.findall(r"(?:^|\s)#\s*(.*)$", source, re.M)
     sources = [row.get("source", "") for row in data.get("expect", [])]
-    return "\n\n".join([data.get("title", ""), data.get("note", ""), *comments, *sources])
+    return "\n\n".join([data.get("title", ""), data.get("note", ""), *remarks, *sources])
 
 
 def faulty() -> dict[str, set[str]]:
