@@ -147,9 +147,12 @@ def files() -> list[Path]:
 
 def unswept() -> dict[str, set[str]]:
     """Files of the package whose texts have not been rewritten: by path, the words of the left column that they may still have."""
-    lines = UNSWEPT.read_text(encoding="utf-8").splitlines()
-    named = [line.partition(": ") for line in lines if line and not line.startswith("#")]
-    return {path: set(words.split(", ")) for path, _, words in named}
+    listed: dict[str, set[str]] = {}
+    for line in UNSWEPT.read_text(encoding="utf-8").splitlines():
+        if line and not line.startswith("#"):
+            path, _, named = line.partition(": ")
+            listed.setdefault(path, set()).update(named.split(", "))
+    return listed
 
 
 def decks() -> list[Path]:
