@@ -267,6 +267,29 @@ def test_a_row_says_what_its_strategy_says(verdict: Verdict, name: str) -> None:
 
 
 @QUICK
+@given(
+    VERDICTS,
+    st.sampled_from(NAMES),
+    st.lists(st.sampled_from(["[[ties]]", "[supports] abutting_wall", "[supports] damping_ratio"]), unique=True),
+)
+def test_no_collapse_without_the_restraints_of_the_deck_decides(
+    verdict: Verdict, name: str, without: list[str]
+) -> None:
+    """Asked without a tie, a strategy looks at a weaker building: where that stands this one does, and no more follows."""
+    strategy = strategies.of(name)
+    result, demand = Result(strategy.kind, results=Judged(verdict=verdict)), Demanded(0.2, "sine", 0.4, 0.2)
+    row, whole = (
+        row_of(strategy, result, "", demand, 0.05, None, tuple(without)),
+        row_of(strategy, result, "", demand, 0.05),
+    )
+    restrained = {"[[ties]]", "[supports] abutting_wall"} & set(without)
+    if whole.outcome == "collapses" and restrained:
+        assert (row.outcome, row.margin) == ("open", None) and all(what in row.violated[-1] for what in restrained)
+    else:
+        assert row == whole
+
+
+@QUICK
 @given(VERDICTS, st.sampled_from(["left", "right", None]), FACTORS)
 def test_no_row_stands_by_an_upper_bound_or_beside_what_is_violated(
     verdict: Verdict, wall: str | None, cracked: float
@@ -306,16 +329,22 @@ def test_a_share_of_collapses_decides_by_its_bounds(count: int, collapsed: int, 
 
 
 @QUICK
-@given(st.lists(st.tuples(FACTORS, st.booleans()), min_size=1, max_size=8, unique_by=lambda pair: pair[0]))
-def test_the_margin_of_a_motion_lies_below_the_first_factor_that_collapses(pairs: list[tuple[float, bool]]) -> None:
-    pairs.sort()
+@given(st.lists(st.tuples(FACTORS, st.booleans(), st.booleans()), min_size=1, max_size=8, unique_by=lambda row: row[0]))
+def test_the_margin_of_a_motion_lies_below_the_first_factor_that_collapses(
+    rows: list[tuple[float, bool, bool]],
+) -> None:
+    """And below the first at which blocks slide: beyond it rocking does not say what brings the building down."""
+    rows.sort()
     results = OverLevels.model_construct(
-        levels=[level for level, _ in pairs], collapsed=[int(down) for _, down in pairs]
+        levels=[level for level, _, _ in rows],
+        collapsed=[int(down) for _, down, _ in rows],
+        sliding_share=[float(slides) for _, _, slides in rows],
+        hinges_elsewhere_share=[0.0] * len(rows),
     )
     low, high = scaled_margin(results)
-    down = [level for level, falls in pairs if falls]
-    below = [level for level, _ in pairs if not down or level < down[0]]
-    assert (low, high) == (max(below, default=None), min(down, default=None))
+    ends = [(level, down and not slides) for level, down, slides in rows if down or slides]
+    below = [level for level, _, _ in rows if not ends or level < ends[0][0]]
+    assert (low, high) == (max(below, default=None), ends[0][0] if ends and ends[0][1] else None)
 
 
 OVERALL = st.sampled_from(["stands under all", "collapses under all", "cannot stand", "depends", "open"])
