@@ -4,7 +4,7 @@ PYTHON := .venv/bin/python
 # An import after a pull may build anew, and meson then looks for numpy-config and ninja on the path.
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
-.PHONY: browser run test verify bench oldest lint format wheel setup table-5-3 impact-map docs references coverage release clean
+.PHONY: browser run test verify bench oldest lint format wheel setup table-5-3 impact-map docs coverage release clean
 
 run: setup
 	@.venv/bin/extrados run $(DECK)
@@ -43,10 +43,7 @@ coverage: setup  ## of Python, Fortran and C by the quick suite, which it builds
 release: setup  ## VERSION=0.2.0: sets it everywhere, dates the changelog, commits, tags, packs the sources
 	@$(PYTHON) tools/release.py $(VERSION)
 
-references: setup  ## of decks and results, and what `explain` tells, from their models
-	@$(PYTHON) tools/references.py
-
-docs: references  ## the site, in build/site, with its search offline; installs its own needs
+docs: setup  ## the site, in build/site, with its search offline; installs its own needs
 	@$(PYTHON) tools/site.py
 
 table-5-3: setup  ## refit the assessment criterion (thesis Table 5.3); RULE=inelastic prints it by another impact rule

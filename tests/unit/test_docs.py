@@ -1,8 +1,6 @@
 """The documentation shows decks that are right and names tests and cases that exist."""
 
 import re
-import subprocess
-import sys
 import tomllib
 from pathlib import Path
 
@@ -86,13 +84,6 @@ def test_every_case_has_expected_rows_of_a_quantity(deck: Path, monkeypatch: pyt
 
     rows = tomllib.loads(deck.with_suffix(".expect.toml").read_text(encoding="utf-8"))["expect"]
     assert rows and all(quantity_of(row["quantity"]) for row in rows)
-
-
-def test_the_deck_reference_is_up_to_date() -> None:
-    made = subprocess.run(
-        [sys.executable, "-m", "extrados.cli", "explain", "--manual"], capture_output=True, text=True, check=True
-    )
-    assert made.stdout == (ROOT / "docs" / "decks.md").read_text(encoding="utf-8"), "run `make references`"
 
 
 def test_the_conda_recipe_has_the_libraries_of_the_project() -> None:

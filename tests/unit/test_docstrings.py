@@ -11,7 +11,7 @@ import pytest
 
 import extrados
 from extrados import kinds
-from extrados.decks import manual
+from extrados.decks import explain
 
 PACKAGE = Path(extrados.__file__).parent
 ROOT = Path(__file__).resolve().parents[2]
@@ -63,7 +63,7 @@ def test_what_is_public_says_what_it_takes_and_gives(name: str, thing: typing.An
 
 def test_every_key_of_a_table_says_what_it_is_and_how_many() -> None:
     """A list of numbers tells its length and unit also where it may be left out."""
-    known = {(table.section, table.kind): table for table in manual.stored()}
+    known = {(table.section, table.kind): table for table in explain.facts()}
     lists = 0
     for section, there in kinds.TABLES.items():
         for kind in there:
