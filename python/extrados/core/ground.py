@@ -41,7 +41,7 @@ class Ground:
         return int(self.samples.shape[0] if self.samples is not None else _given("linear", self.linear).shape[1])
 
     def sample(self, time: np.ndarray, channel: int = 0) -> np.ndarray:
-        """Acceleration (n) [m/s^2] of a channel at times (n) [s]; zero outside the motion."""
+        """Acceleration (n) [m/s^2] of a channel at the times `time` (n) [s]; zero outside the motion."""
         if self.samples is not None:
             axis = self.start + self.step * np.arange(self.samples.shape[1])
             return np.interp(time, axis, self.samples[channel], left=0.0, right=0.0)
