@@ -7,7 +7,7 @@ import importlib
 from dataclasses import dataclass
 from typing import Any
 
-from extrados import room  # which also looks at the room for SciPy before it is loaded
+from extrados import room
 
 
 @dataclass(frozen=True)
