@@ -27,24 +27,24 @@ class AnalysisKind:
 
 
 STRUCTURES: dict[str, str] = {
-    "arch": "building.templates.arch:Arch",
-    "block": "building.templates.block:Block",
-    "vault": "building.templates.vault:Vault",
-    "aisled-vault": "building.templates.aisled_vault:AisledVault",
-    "pointed-arch": "building.templates.arches:PointedArch",
-    "elliptical-arch": "building.templates.arches:EllipticalArch",
-    "bridge": "building.templates.bridge:Bridge",
-    "blocks": "building.templates.blocks:Blocks",
-    "panel": "building.templates.walls:Panel",
-    "mesh": "building.templates.walls:MeshFile",
-    "column": "building.templates.masonry:Column",
-    "brickwork": "building.templates.brickwork:Brickwork",
-    "frame": "building.templates.frame:Frame",
-    "stack": "building.templates.stack:Stack",
-    "building": "building.templates.plan:Plan",
-    "wall": "building.templates.wall:Wall",
-    "dome": "building.templates.dome:Dome",
-    "cross-vault": "building.templates.cross_vault:CrossVault",
+    "arch": "model.structures.arch:Arch",
+    "block": "model.structures.block:Block",
+    "vault": "model.structures.vault:Vault",
+    "aisled-vault": "model.structures.aisled_vault:AisledVault",
+    "pointed-arch": "model.structures.arches:PointedArch",
+    "elliptical-arch": "model.structures.arches:EllipticalArch",
+    "bridge": "model.structures.bridge:Bridge",
+    "blocks": "model.structures.blocks:Blocks",
+    "panel": "model.structures.walls:Panel",
+    "mesh": "model.structures.walls:MeshFile",
+    "column": "model.structures.masonry:Column",
+    "brickwork": "model.structures.brickwork:Brickwork",
+    "frame": "model.structures.frame:Frame",
+    "stack": "model.structures.stack:Stack",
+    "building": "model.structures.plan:Plan",
+    "wall": "model.structures.wall:Wall",
+    "dome": "model.structures.dome:Dome",
+    "cross-vault": "model.structures.cross_vault:CrossVault",
 }
 MOTIONS: dict[str, str] = {
     "constant": "motions.tables:Constant",
@@ -63,14 +63,14 @@ MOTIONS: dict[str, str] = {
 def _analysis(place: str, table: str, driver: str, figures: str, example: str) -> AnalysisKind:
     """The results of a kind are called as its table is."""
     return AnalysisKind(
-        f"analyses.{place}.tables:{table}", f"analyses.{place}.{driver}:run", f"results.{place}:{table}", f"plots.{figures}",
+        f"analyses.{place}.tables:{table}", f"analyses.{place}.{driver}:run", f"results.{place}:{table}", f"show.{figures}",
         f"{example}.toml",
     )  # fmt: skip
 
 
 ANALYSES: dict[str, AnalysisKind] = {
     "tilt": AnalysisKind(
-        "analyses.limit.tables:Tilt", "analyses.limit.tilt:run", "results.solids:Tilt", "plots.solids:draw_tilt", "limit/oppenheim.toml"
+        "analyses.limit.tables:Tilt", "analyses.limit.tilt:run", "results.solids:Tilt", "show.solids:draw_tilt", "limit/oppenheim.toml"
     ),
     "thrust": _analysis("limit", "Thrust", "thrust", "limit.thrust:draw", "vault/dejong-a"),
     "sweep": _analysis("limit", "Sweep", "sweep", "limit.sweep:draw_sweep", "vault/vezelay-sweep"),

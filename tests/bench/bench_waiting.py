@@ -53,7 +53,7 @@ mark("analyses")
 with tempfile.TemporaryDirectory() as folder:
     run.write(Path(folder) / "run", figures=False)
     mark("writing")
-    from extrados.plots.report import write_report
+    from extrados.show.report import write_report
     for options in deck.analyses:
         kinds.load(kinds.ANALYSES[options.kind].figures)
     mark("imports of the figures")

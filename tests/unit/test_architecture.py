@@ -23,34 +23,35 @@ MAY_IMPORT = {
     "geometry": {"errors", "schema"},
     "errors": set(),
     "limit": {"geometry", "errors", "core", "schema"},
-    "rockers": {"building", "geometry", "errors", "limit", "core", "schema"},
-    "building": {"geometry", "errors", "rockers", "schema"},
+    "rockers": {"model", "views", "geometry", "errors", "limit", "core", "schema"},
+    "model": {"views", "geometry", "errors", "rockers", "schema"},
+    "views": {"model", "geometry", "errors", "rockers", "schema"},
     "motions": {"core", "schema"},
-    "tables": {"building", "schema"},
-    "decks": {"kinds", "tables", "building", "schema"},
+    "tables": {"model", "views", "schema"},
+    "decks": {"kinds", "tables", "model", "views", "schema"},
     "results": {"kinds", "schema", "_build_info"},
     "analyses": {
-        "kinds", "tables", "decks", "building", "geometry", "errors", "rockers", "motions", "limit", "core", "results",
+        "kinds", "tables", "decks", "model", "views", "geometry", "errors", "rockers", "motions", "limit", "core", "results",
         "schema", "interrupts", "room",
     },
-    "plots": {"interrupts", "kinds", "results", "schema"},
-    "running": {"interrupts", "objects", "kinds", "analyses", "tables", "building", "geometry", "errors", "decks", "motions", "results", "plots", "schema", "_build_info"},
+    "show": {"interrupts", "kinds", "results", "schema"},
+    "running": {"interrupts", "objects", "kinds", "analyses", "tables", "model", "views", "geometry", "errors", "decks", "motions", "results", "show", "schema", "_build_info"},
     "explore": {
-        "interrupts", "kinds", "analyses", "tables", "building", "geometry", "errors", "limit", "decks", "motions", "core", "results", "plots",
+        "interrupts", "kinds", "analyses", "tables", "model", "views", "geometry", "errors", "limit", "decks", "motions", "core", "results", "show",
         "running", "schema", "_build_info",
     },
     "objects": {"kinds", "decks", "schema"},
-    "bridges": {"decks", "building", "geometry", "errors", "rockers", "schema", "_build_info"},
-    "cli": {"bridges", "interrupts", "kinds", "analyses", "decks", "results", "plots", "running", "explore", "schema", "_build_info", "room"},
+    "bridges": {"decks", "model", "views", "geometry", "errors", "rockers", "schema", "_build_info"},
+    "cli": {"bridges", "interrupts", "kinds", "analyses", "decks", "results", "show", "running", "explore", "schema", "_build_info", "room"},
     "__main__": {"cli", "interrupts"},
     "": {"analyses", "bridges", "decks", "objects", "results", "running", "explore"},
 }  # fmt: skip
 #: Rooms within rooms: the deck tables of analyses are what decks read; views of a building that rock need limit
 #: analysis, which knows blocks and joints alone
 WITHIN = (
-    (re.compile(r"building[./]geometry\b"), "geometry"),
-    (re.compile(r"building[./]errors\b"), "errors"),
-    (re.compile(r"building[./]rockers\b"), "rockers"),
+    (re.compile(r"model[./]geometry\b"), "geometry"),
+    (re.compile(r"model[./]errors\b"), "errors"),
+    (re.compile(r"views[./]rockers\b"), "rockers"),
     (re.compile(r"analyses[./](\w+[./])?tables?\b"), "tables"),
 )
 #: Fortran room -> rooms it may use
@@ -158,7 +159,7 @@ def test_no_evaluation_of_code() -> None:
                 assert not names & {"pickle", "marshal", "shelve", "dill", "joblib"}, path
 
 
-@pytest.mark.parametrize("room", ["analyses", "building"])
+@pytest.mark.parametrize("room", ["analyses", "model", "views"])
 def test_a_refusal_says_which_key_is_to_blame(room: str) -> None:
     """Or, by WHOLE, that none is: so that it is told with file and line wherever that can be."""
     silent = []

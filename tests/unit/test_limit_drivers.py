@@ -291,7 +291,7 @@ def test_same_run_same_bits() -> None:
     ],
 )
 def test_axes_call_keys_by_words(key: str, words: str) -> None:
-    from extrados.plots.limit.sweep import spoken
+    from extrados.show.limit.sweep import spoken
 
     assert spoken(key) == words
 

@@ -6,8 +6,8 @@ import pytest
 
 import extrados
 from extrados import kinds
-from extrados.plots.report import write_report
 from extrados.results.limits import LIMITS
+from extrados.show.report import write_report
 
 
 def test_every_kind_has_them_and_no_other() -> None:

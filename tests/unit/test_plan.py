@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry, NoView
-from extrados.building.mesh.shells import ShellOptions, nodal_areas
-from extrados.building.properties import Material
-from extrados.building.templates.plan import Plan, meeting
+from extrados.model.errors import BadGeometry, NoView
+from extrados.model.properties import Material
+from extrados.model.structures.plan import Plan, meeting
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
+from extrados.views.shell.mesh import ShellOptions, nodal_areas
 
 WALLS = (
     {"name": "front", "start": [0.0, 0.0], "end": [6.0, 0.0], "thickness": 0.3,

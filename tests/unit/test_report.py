@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 import extrados
-from extrados.building.dimensions import dimensions
 from extrados.decks.reader import DeckError, make_deck
-from extrados.plots import html, typeset
-from extrados.plots.document import Code, Document, Heading, Table, Words
-from extrados.plots.report import write_report
-from extrados.plots.telling import _flowing
+from extrados.model.dimensions import dimensions
 from extrados.results.limits import LIMITS
 from extrados.results.store import StoreError
+from extrados.show import html, typeset
+from extrados.show.document import Code, Document, Heading, Table, Words
+from extrados.show.report import write_report
+from extrados.show.telling import _flowing
 
 ARCH = {"kind": "arch", "radius": 2.0, "thickness": 0.4, "embrace": 180.0, "voussoirs": 12}
 

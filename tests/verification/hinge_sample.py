@@ -13,15 +13,15 @@ from functools import cache, cached_property
 import numpy as np
 
 from extrados.analyses.dem import model as dem_model
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.mechanism import MechanismModel
-from extrados.building.templates.arch import ArchAssembly, make_arch
 from extrados.core import arch as core_arch
 from extrados.core import dem, rocking
 from extrados.decks.reader import make_deck
+from extrados.model.structures.arch import ArchAssembly, make_arch
 from extrados.motions import pulses
 from extrados.motions.motion import Motion
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.arch import ArchModel
+from extrados.views.rockers.mechanism import MechanismModel
 
 #: t/R, embrace in degrees, voussoirs.
 ARCHES = [

@@ -12,12 +12,12 @@ import pytest
 
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.rocking.failure_domain import shortest_durations
-from extrados.building.properties import Joints, Material
-from extrados.building.rockers.mechanism import MechanismModel
 from extrados.core import dem
 from extrados.decks.reader import read_deck
+from extrados.model.properties import Joints, Material
 from extrados.motions import pulses
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.mechanism import MechanismModel
 
 ROOT = Path(__file__).resolve().parents[2]
 #: Rotation of a buttress that counts as rocking [rad]

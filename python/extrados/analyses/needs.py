@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Any
 from extrados import kinds
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.table import Analysis
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry, Key, NoView
-from extrados.building.geometry.assembly import Assembly
 from extrados.limit.errors import CannotStand
+from extrados.model.errors import BadGeometry, Key, NoView
+from extrados.model.geometry.assembly import Assembly
 from extrados.schema.programs import ffmpeg
+from extrados.views.building import Building
 
 if TYPE_CHECKING:
-    from extrados.building.geometry.solids.assembly import SolidAssembly
+    from extrados.model.geometry.solids.assembly import SolidAssembly
 
 Need = Callable[[], Any]
 #: Keys that ask for solids

@@ -9,15 +9,15 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.left_out import Remark, left_out
 from extrados.analyses.needs import complaints
 from extrados.analyses.table import Analysis
-from extrados.building.building import Building
-from extrados.building.errors import WHOLE, BadGeometry
 from extrados.core.errors import Cancelled, CoreError
 from extrados.decks.reader import Deck
 from extrados.limit.errors import CannotStand, Immovable, NoAnswer
+from extrados.model.errors import WHOLE, BadGeometry
 from extrados.results.model import Result
 from extrados.results.store import StoreError
 from extrados.results.typed import shapes
 from extrados.results.verdict import KindResults
+from extrados.views.building import Building
 
 
 def _check(result: Result) -> None:

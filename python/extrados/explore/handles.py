@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.structure import Structure
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.structure import Structure
 
 #: More vertices than these are not for hands
 MOST_VERTICES = 400

@@ -13,10 +13,10 @@ from extrados.analyses.rocking.history import answer, rest_time, run_history
 from extrados.analyses.rocking.shapes import States, shapes
 from extrados.analyses.rocking.tables import Assessment, FailureDomain, Rocking
 from extrados.analyses.run import run_one
-from extrados.building.building import Building
-from extrados.building.geometry.assembly import Assembly
+from extrados.model.geometry.assembly import Assembly
 from extrados.motions.motion import Motion
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
 
 #: Pictures of a history, and points of its curves
 MOST_PICTURES, MOST_POINTS = 600, 1600

@@ -11,10 +11,6 @@ import numpy as np
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.common import limit_of, tie_rows
 from extrados.analyses.limit.tables import LimitAnalysisTable
-from extrados.building.building import Building
-from extrados.building.errors import NoView
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.chains import is_stack
 from extrados.limit.answer import assess, cannot_stand
 from extrados.limit.errors import CannotStand
 from extrados.limit.graphic import force_polygon, thrust_joint, thrust_of
@@ -23,6 +19,10 @@ from extrados.limit.motion import finite_motion
 from extrados.limit.places import place_of
 from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State
 from extrados.limit.states import blended
+from extrados.model.errors import NoView
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.chains import is_stack
+from extrados.views.building import Building
 
 #: Of a joint: so near to its end the line makes a hinge
 TOUCHES = 1e-4

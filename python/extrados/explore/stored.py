@@ -265,7 +265,7 @@ class _Maker:
 
     def _cracked(self, parts: list[np.ndarray], bends: list[bool], width: np.ndarray) -> np.ndarray:
         """Tones (states, faces) of elements: of floors 1, of walls and vaults, which bend, 0, or 2 to 5 by quarters of the widest crack."""
-        from extrados.plots.shell import LEAST_WIDTH
+        from extrados.show.shell import LEAST_WIDTH
 
         counts = [len(part) for part in parts]
         wall = np.repeat(np.array(bends, dtype=bool), counts)
@@ -405,7 +405,7 @@ class _Maker:
             )
 
     def sla(self) -> None:
-        from extrados.plots.sla import CORNERS
+        from extrados.show.sla import CORNERS
 
         self._curve()
         if "state_event" not in self.arrays:

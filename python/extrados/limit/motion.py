@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.states import Mechanism
+from extrados.model.geometry.assembly import GROUND, Assembly
 
 STEPS = 12
 MOST_PARTS = 60  # more moving parts, as in a wall, are carried along their velocities without correction

@@ -11,7 +11,6 @@ from extrados.analyses.conclude import concluded
 from extrados.analyses.context import Context, default_threads
 from extrados.analyses.run import run_one
 from extrados.analyses.table import Analysis
-from extrados.building.building import Building
 from extrados.decks.reader import WORDS, Deck, DeckError, make_deck
 from extrados.motions.motion import Motion
 from extrados.results import store
@@ -19,6 +18,7 @@ from extrados.results.model import Result
 from extrados.results.verdict import KindResults
 from extrados.running.run import Run
 from extrados.schema.table import Table
+from extrados.views.building import Building
 
 #: Views, motions and, for each analysis, results that are kept: the newest ones
 MOST_VIEWS, MOST_MOTIONS, MOST_RESULTS = 64, 16, 32

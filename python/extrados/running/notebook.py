@@ -30,7 +30,7 @@ def _told(row: dict) -> str:
 
 def _figure(run: "Run") -> str:
     """The first figure of the first analysis that is drawn, as PNG within the page."""
-    from extrados.plots.drawn import draw
+    from extrados.show.drawn import draw
 
     pages = (draw(run, row["name"]).html(1) for row in run.analyses if row["status"] == "ok")
     return next((page for page in pages if page), "")

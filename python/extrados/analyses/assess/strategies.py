@@ -10,12 +10,12 @@ from extrados import kinds
 from extrados.analyses.assess.hazard import STRONG, strong_end
 from extrados.analyses.assess.tables import Assess
 from extrados.analyses.context import Context
-from extrados.building.building import Building
-from extrados.building.errors import NoView
-from extrados.building.templates.plan import Plan
+from extrados.model.errors import NoView
+from extrados.model.structures.plan import Plan
 from extrados.motions.tables import Compatible
 from extrados.results.limits import LIMITS
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
 
 #: Shares of the budget that a strategy may take
 SHARES = {"probability": 0.15, "sla": 0.2, "push-x": 0.3, "push-y": 0.3, "dem": 0.15}

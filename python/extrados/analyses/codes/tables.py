@@ -10,7 +10,7 @@ from extrados.schema.spectrum import CodeSpectrum
 from extrados.schema.table import Table, key
 
 if TYPE_CHECKING:
-    from extrados.building.building import Building
+    from extrados.views.building import Building
 
 
 class CodeChecks(BuildingAnalysis):

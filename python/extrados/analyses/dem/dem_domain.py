@@ -18,15 +18,15 @@ from extrados.analyses.dem.tables import DemDomain
 from extrados.analyses.dem.trial import start
 from extrados.analyses.needs import stones_of
 from extrados.analyses.rocking.failure_domain import settling_time, shortest_durations, unit_pulse
-from extrados.building.errors import BadGeometry
-from extrados.building.geometry.assembly import Assembly
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.templates.arch import ArchAssembly
 from extrados.core import dem, dem3, dem_run
 from extrados.core.errors import CoreError
+from extrados.model.errors import BadGeometry
+from extrados.model.geometry.assembly import Assembly
+from extrados.model.structures.arch import ArchAssembly
 from extrados.results import dem as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.arch import ArchModel
 
 FAILED = ("collapse", "left")
 #: Times at which a swing is looked at [s], and rotations below which bodies vibrate [rad].

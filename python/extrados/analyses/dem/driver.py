@@ -7,7 +7,7 @@ from extrados.analyses.dem.solid_model import make_solid_model
 from extrados.analyses.dem.standing import compared
 from extrados.analyses.dem.tables import Dem
 from extrados.analyses.needs import stones_of
-from extrados.building.geometry.assembly import Assembly
+from extrados.model.geometry.assembly import Assembly
 from extrados.results.model import Result
 
 

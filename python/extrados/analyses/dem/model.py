@@ -10,15 +10,15 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import impact_rules
 from extrados.analyses.dem.solid_model import SolidModel, SolidValues
 from extrados.analyses.dem.tables import DemTable
-from extrados.building.building import Building
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.earth import passive_left_out
-from extrados.building.geometry.rigid import RigidBodies
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.templates.arch import ArchAssembly
 from extrados.core import dem, dem3, dem_run
 from extrados.core.errors import Cancelled, status_code
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.earth import passive_left_out
+from extrados.model.structures.arch import ArchAssembly
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
+from extrados.views.rigid import RigidBodies
+from extrados.views.rockers.arch import ArchModel
 
 Found = TypeVar("Found", dem.Run, dem3.Run)
 

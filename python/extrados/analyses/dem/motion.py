@@ -18,11 +18,11 @@ from extrados.analyses.dem.trial import Trial
 from extrados.analyses.dem.variations import vary
 from extrados.analyses.dem.words import motion_answer
 from extrados.analyses.limit.common import geometry_arrays
-from extrados.building.rockers.block import BlockModel
-from extrados.building.templates.block import BlockAssembly
 from extrados.core import dem
+from extrados.model.structures.block import BlockAssembly
 from extrados.results import dem as out
 from extrados.results.model import Array, Result, TableData
+from extrados.views.rockers.block import BlockModel
 
 
 @dataclass(frozen=True)

@@ -3,11 +3,11 @@
 import numpy as np
 
 from extrados.analyses.limit.common import geometry_arrays
-from extrados.building.building import Building
-from extrados.building.errors import NoView
 from extrados.limit.errors import CannotStand
+from extrados.model.errors import NoView
 from extrados.results.model import Array, Result
 from extrados.results.verdict import SelfWeight
+from extrados.views.building import Building
 
 
 def collapses_at_rest(kind: str, proof: CannotStand, building: Building) -> Result:

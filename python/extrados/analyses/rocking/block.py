@@ -7,12 +7,12 @@ from extrados.analyses.limit.tilt import geometry_arrays
 from extrados.analyses.rocking.doubts import doubts
 from extrados.analyses.rocking.history import answer, rest_time, rocking_result, run_history, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
-from extrados.building.rockers.block import BlockModel
-from extrados.building.rockers.restraints import Restraints
-from extrados.building.rockers.rocker import Rocker
 from extrados.core import rocking as core_rocking
 from extrados.results.model import Array, Result
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.block import BlockModel
+from extrados.views.rockers.restraints import Restraints
+from extrados.views.rockers.rocker import Rocker
 
 
 def run(context: Context, options: Rocking, rocker: Rocker) -> Result:

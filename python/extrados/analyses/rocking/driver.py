@@ -12,14 +12,14 @@ from extrados.analyses.rocking.common import with_moving_supports
 from extrados.analyses.rocking.doubts import doubts
 from extrados.analyses.rocking.history import answer, rest_time, rocking_result, run_history, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.block import BlockModel
-from extrados.building.rockers.mechanism import MechanismModel
-from extrados.building.rockers.rocker import Rocker
-from extrados.building.templates.arch import ArchAssembly
 from extrados.core import arch as core_arch
 from extrados.core import rocking as core_rocking
+from extrados.model.structures.arch import ArchAssembly
 from extrados.results.model import Array, Result
+from extrados.views.rockers.arch import ArchModel
+from extrados.views.rockers.block import BlockModel
+from extrados.views.rockers.mechanism import MechanismModel
+from extrados.views.rockers.rocker import Rocker
 
 
 def run(context: Context, options: Rocking) -> Result:

@@ -4,12 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.block import BlockModel
-from extrados.building.rockers.mechanism import MechanismModel
-from extrados.building.rockers.rocker import Rocker
 from extrados.core import arch as core_arch
 from extrados.results.model import Array, Result
+from extrados.views.rockers.arch import ArchModel
+from extrados.views.rockers.block import BlockModel
+from extrados.views.rockers.mechanism import MechanismModel
+from extrados.views.rockers.rocker import Rocker
 
 #: Pictures of a film in a second of real time, and the most that are kept
 RATE, MOST = 30.0, 900

@@ -6,13 +6,13 @@ from pydantic import Field, model_validator
 
 from extrados.analyses.sla.tables import INTERFACES, MATERIAL, CrackOptions, Staged, without_effect
 from extrados.analyses.table import BuildingAnalysis
-from extrados.building.mesh.shells import ShellOptions
-from extrados.building.places import Range
+from extrados.model.places import Range
 from extrados.schema.quantities import Angle, Force, Length, Stress
 from extrados.schema.table import Table, key
+from extrados.views.shell.mesh import ShellOptions
 
 if TYPE_CHECKING:
-    from extrados.building.building import Building
+    from extrados.views.building import Building
 
 
 class Drive(Table):

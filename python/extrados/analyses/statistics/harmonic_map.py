@@ -9,12 +9,12 @@ from extrados.analyses.rocking.conditions import Counted, astray_of, of_many, to
 from extrados.analyses.rocking.doubts import too_fast
 from extrados.analyses.runs import runs_job
 from extrados.analyses.statistics.tables import HarmonicMap
-from extrados.building.rockers.arch import ArchModel
 from extrados.motions import pulses
 from extrados.results import statistics as out
 from extrados.results.model import Array, Result, TableData
 from extrados.results.rocking import COLLAPSE
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.arch import ArchModel
 
 
 def run(context: Context, options: HarmonicMap) -> Result:

@@ -15,7 +15,6 @@ import tomlkit
 from extrados import kinds
 from extrados._build_info import VERSION
 from extrados.analyses.context import Refused
-from extrados.building.geometry.polygons import signed_area
 from extrados.decks.explain import starter
 from extrados.decks.reader import LARGEST, read_text
 from extrados.explore import statics, stored
@@ -26,6 +25,7 @@ from extrados.explore.folder import NotThere
 from extrados.explore.frames import Reply
 from extrados.explore.handles import MOST_VERTICES
 from extrados.explore.messages import BadMessage, Message, path
+from extrados.model.geometry.polygons import signed_area
 from extrados.running.live import Live
 
 #: Bytes of a drawing or a record that is dropped on the page
