@@ -30,7 +30,7 @@ from extrados.core.ground import Ground, as_motion_set
 from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.model.geometry.solids.columns import drums
 from extrados.model.geometry.solids.sections import drawn_out
-from extrados.model.geometry.solids.supports import supports_of
+from extrados.views.solid_supports import supports_of
 from extrados.model.structures.arch import make_arch
 from extrados.model.structures.brickwork import Bond
 from extrados.model.structures.dome import make_dome
