@@ -11,6 +11,44 @@ from extrados import room  # which also looks at the room for SciPy before it is
 
 
 @dataclass(frozen=True)
+class Lacks:
+    """Why a kind of structure has no such view, in words."""
+
+    reason: str
+
+
+#: Where the maker of a view lives, "module:name" within the package; or why there is none
+View = str | Lacks
+
+
+@dataclass(frozen=True)
+class StructureKind:
+    """Where the parts of a structure live, each "module:name" within the package.
+
+    table: its deck table. The makers of its views take the building: blocks, piers and solids give its stones; rigid
+    (building, groups, floor) rigid bodies; rocker (building, linear) the mechanism by which it rocks; mesh (building, options,
+    seed) finite elements; shell (building, options) flat shells. hands: what hands take hold of on the drawing of the
+    page; None where no key is for them.
+    """
+
+    table: str
+    blocks: View
+    piers: View
+    solids: View
+    rigid: View
+    rocker: View
+    mesh: View
+    shell: View
+    hands: str | None
+
+    @property
+    def lacks(self) -> dict[str, str]:
+        """The views that analyses may look at and this kind has not, each with the reason."""
+        views = {"blocks": self.blocks, "solids": self.solids, "rocker": self.rocker, "mesh": self.mesh}
+        return {name: view.reason for name, view in views.items() if isinstance(view, Lacks)}
+
+
+@dataclass(frozen=True)
 class AnalysisKind:
     """Where the parts of an analysis live, each "module:name" within the package.
 
@@ -26,26 +64,70 @@ class AnalysisKind:
     example: str
 
 
-STRUCTURES: dict[str, str] = {
-    "arch": "model.structures.arch:Arch",
-    "block": "model.structures.block:Block",
-    "vault": "model.structures.vault:Vault",
-    "aisled-vault": "model.structures.aisled_vault:AisledVault",
-    "pointed-arch": "model.structures.arches:PointedArch",
-    "elliptical-arch": "model.structures.arches:EllipticalArch",
-    "bridge": "model.structures.bridge:Bridge",
-    "blocks": "model.structures.blocks:Blocks",
-    "panel": "model.structures.walls:Panel",
-    "mesh": "model.structures.walls:MeshFile",
-    "column": "model.structures.masonry:Column",
-    "brickwork": "model.structures.brickwork:Brickwork",
-    "frame": "model.structures.frame:Frame",
-    "stack": "model.structures.stack:Stack",
-    "building": "model.structures.plan:Plan",
-    "wall": "model.structures.wall:Wall",
-    "dome": "model.structures.dome:Dome",
-    "cross-vault": "model.structures.cross_vault:CrossVault",
-}
+#: Makers that several kinds share, and reasons
+BLOCKS, PIERS, RIGID = "views.blocks:make_blocks", "views.blocks:make_piers", "views.rigid:make_rigid"
+ROCKER = "views.rockers.rocker:make_rocker"
+SECTION, SPATIAL = "views.solids:solids_of_section", "views.solids:solids_of_spatial"
+MESH_OF_STONES, RODS = "views.mesh.stones:make_stones", "views.mesh.rods:add_rods"
+NO_SECTION = Lacks("it is no plane section; `tilt` and `dem` look at its solids")
+NO_STONES = Lacks("a mesh file holds elements, no stones: describe the wall as `panel` or `blocks`")
+NO_PIERS = Lacks("only a wall, of the kinds panel and brickwork, has piers")
+NO_SHELL = Lacks(
+    "this kind of structure has no shells; they are made of the kinds building, arch, vault, dome, cross-vault and mesh"
+)
+
+
+def _stones(
+    table: str, *, piers: View = NO_PIERS, solids: View = SECTION, mesh: View = MESH_OF_STONES, shell: View = NO_SHELL,
+    hands: str | None = None,
+) -> StructureKind:  # fmt: skip
+    """A plane structure of blocks and joints."""
+    return StructureKind(
+        f"model.structures.{table}", BLOCKS, piers, solids, RIGID, ROCKER, mesh, shell,
+        None if hands is None else f"explore.handles:{hands}",
+    )  # fmt: skip
+
+
+def _solids(table: str, shell: View = NO_SHELL) -> StructureKind:
+    """Blocks in space, no plane section."""
+    return StructureKind(
+        f"model.structures.{table}", NO_SECTION, NO_PIERS, SPATIAL, NO_SECTION, NO_SECTION, NO_SECTION, shell, None
+    )
+
+
+STRUCTURES: dict[str, StructureKind] = {
+    "arch": _stones(
+        "arch:Arch", solids="views.solids:solids_of_arch", shell="views.shell.vaults:shell_of_arch", hands="ARCH"
+    ),
+    "block": _stones("block:Block", hands="BLOCK"),
+    "vault": _stones("vault:Vault", shell="views.shell.vaults:shell_of_vault", hands="VAULT"),
+    "aisled-vault": _stones("aisled_vault:AisledVault", hands="AISLED_VAULT"),
+    "pointed-arch": _stones("arches:PointedArch", hands="POINTED"),
+    "elliptical-arch": _stones("arches:EllipticalArch", hands="ELLIPTICAL"),
+    "bridge": _stones("bridge:Bridge", hands="BRIDGE"),
+    "blocks": _stones("blocks:Blocks", solids="views.solids:solids_of_blocks", hands="BLOCKS"),
+    "panel": _stones("walls:Panel", piers=PIERS, mesh="views.mesh.panel:mesh_panel", hands="PANEL"),
+    "mesh": StructureKind(
+        "model.structures.walls:MeshFile", NO_STONES, NO_PIERS, SECTION, RIGID, NO_STONES, "views.mesh.file:mesh_file",
+        "views.shell.file:shell_of_file", None,
+    ),
+    "column": _stones("masonry:Column", solids="views.solids:solids_of_column", hands="COLUMN"),
+    "brickwork": _stones("brickwork:Brickwork", piers=PIERS, hands="BRICKWORK"),
+    "frame": _stones("frame:Frame", hands="FRAME"),
+    "stack": _stones("stack:Stack", hands="STACK"),
+    "building": StructureKind(
+        "model.structures.plan:Plan",
+        Lacks("a building on a plan has walls, no stones in a plane: draw one of its walls as `panel` or `blocks`; the whole is for "
+              "`pushover`, with [analysis.frame] for its piers by codes, its walls out of plane for `local-mechanism`"),
+        NO_PIERS, SECTION, RIGID,
+        Lacks("a building on a plan does not rock as one body: draw one of its walls"),
+        Lacks("the walls of a building stand in space: its analysis is `pushover`; draw one of them as `panel`"),
+        "views.shell.plan:shell_of_plan", None,
+    ),
+    "wall": _solids("wall:Wall"),
+    "dome": _solids("dome:Dome", shell="views.shell.vaults:shell_of_dome"),
+    "cross-vault": _solids("cross_vault:CrossVault", shell="views.shell.vaults:shell_of_cross_vault"),
+}  # fmt: skip
 MOTIONS: dict[str, str] = {
     "constant": "motions.tables:Constant",
     "step-pulse": "motions.tables:StepPulse",
@@ -114,7 +196,7 @@ ANALYSES: dict[str, AnalysisKind] = {
 
 #: Section of a deck -> its kinds, each with the place of its table
 TABLES: dict[str, dict[str, str]] = {
-    "structure": STRUCTURES,
+    "structure": {kind: parts.table for kind, parts in STRUCTURES.items()},
     "motion": MOTIONS,
     "analysis": {kind: parts.table for kind, parts in ANALYSES.items()},
 }

@@ -30,12 +30,12 @@ from extrados.core.ground import Ground, as_motion_set
 from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.model.geometry.solids.columns import drums
 from extrados.model.geometry.solids.sections import drawn_out
-from extrados.views.solid_supports import supports_of
 from extrados.model.structures.arch import make_arch
 from extrados.model.structures.brickwork import Bond
 from extrados.model.structures.dome import make_dome
 from extrados.model.structures.wall import make_wall
 from extrados.schema.constants import GRAVITY
+from extrados.views.solid_supports import supports_of
 
 FRICTION = 0.7
 

@@ -9,7 +9,7 @@ from extrados.model.properties import Material
 from extrados.model.structures.plan import Plan
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
-from extrados.views.shell.mesh import ShellOptions
+from extrados.views.shell.options import ShellOptions
 
 MASONRY = Material(density=2000.0, young=2e9, poisson=0.0)
 STEEL = Material(density=0.0, young=200e9)

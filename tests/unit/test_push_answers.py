@@ -16,7 +16,7 @@ from extrados.results.store import read
 from extrados.schema.constants import GRAVITY
 from extrados.show import shell as figures
 from extrados.views.building import Building
-from extrados.views.shell.mesh import ShellOptions
+from extrados.views.shell.options import ShellOptions
 
 DECK = """
     [structure]

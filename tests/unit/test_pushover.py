@@ -12,7 +12,7 @@ from extrados.analyses.shell.tables import Pushover
 from extrados.model.properties import Material
 from extrados.model.structures.plan import Plan
 from extrados.views.building import Building
-from extrados.views.shell.mesh import ShellOptions
+from extrados.views.shell.options import ShellOptions
 
 MASONRY = Material(density=1900.0, young=3e9, poisson=0.2, tensile_strength=0.1e6, fracture_energy=40.0)
 DECK = """

@@ -16,7 +16,8 @@ from extrados.running.check import check_building
 from extrados.running.run import compute
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
-from extrados.views.shell.mesh import ShellOptions, nodal_areas
+from extrados.views.shell.mesh import nodal_areas
+from extrados.views.shell.options import ShellOptions
 
 meshio = pytest.importorskip("meshio")
 N = 4  # elements of a side

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 import extrados
 from extrados.cli import app
 from extrados.decks.reader import read_text
-from extrados.views.shell.mesh import ShellOptions
+from extrados.views.shell.options import ShellOptions
 
 BED = """
     [structure]

@@ -15,7 +15,7 @@ from extrados.model.properties import Joints, Material
 from extrados.model.structures.plan import Plan
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
-from extrados.views.shell.mesh import ShellOptions
+from extrados.views.shell.options import ShellOptions
 
 FACADE = {
     "structure": {

@@ -18,7 +18,8 @@ from extrados.model.structures.cross_vault import CrossVault
 from extrados.model.structures.dome import Dome
 from extrados.model.structures.vault import Vault
 from extrados.views.building import Building
-from extrados.views.shell.mesh import ShellOptions, nodal_areas
+from extrados.views.shell.mesh import nodal_areas
+from extrados.views.shell.options import ShellOptions
 
 MASONRY = Material(density=2000.0, young=5e9, poisson=0.0)
 BARREL = Arch(kind="arch", radius=5.0, thickness=0.5, embrace=160.0, voussoirs=20, depth=2.0)

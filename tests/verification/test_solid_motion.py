@@ -16,9 +16,9 @@ from extrados.core.ground import Ground
 from extrados.model.geometry.solids.assembly import mass_properties
 from extrados.model.geometry.solids.polyhedra import Polyhedron, prism
 from extrados.model.geometry.solids.sections import drawn_out
-from extrados.views.solid_supports import supports_of
 from extrados.model.structures.arch import make_arch
 from extrados.schema.constants import GRAVITY
+from extrados.views.solid_supports import supports_of
 
 RADIUS, SIDES = 0.5, 96
 COIN, DRUM = 0.1, 2.0  # heights

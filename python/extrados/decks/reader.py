@@ -356,7 +356,7 @@ class _Checker:
         elif isinstance(structure, dict) and isinstance(structure.get("kind"), str):
             shape = structure["kind"]
             known = shape in kinds.STRUCTURES
-            lacks = kinds.table("structure", shape).lacks if known else {}
+            lacks = kinds.STRUCTURES[shape].lacks if known else {}
             if known and wanted is not None and shape not in wanted:
                 self.complain(path, f"{kind} does not take a structure of kind '{shape}'; expected {_words(wanted)}")
             elif (

@@ -14,7 +14,8 @@ from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 from extrados.views.mesh.mesh import EDGES, Mesh
 from extrados.views.mesh.options import MeshOptions
-from extrados.views.shell.mesh import ShellMesh, ShellOptions
+from extrados.views.shell.mesh import ShellMesh
+from extrados.views.shell.options import ShellOptions
 
 #: Elements of a wall beyond which its drawing would be all lines
 MOST_ELEMENTS = 60_000

@@ -113,7 +113,7 @@ def _in_two(
         "impact_times_s": get["impact_time"].tolist()[:400], "peak_rotation_rad": r.peak_rotation_rad,
         "peak_rotation_ratio": r.peak_rotation_ratio, "critical_rad": [r.critical_rotation_rad] * 2,
         "uplift_g": r.uplift_acceleration_g, "restitution": r.restitution, "peak_ground_g": r.peak_ground_acceleration_g,
-        "stop_time_s": end, "end_time_s": end, "word": building._structure().word, "answer": result.answer,
+        "stop_time_s": end, "end_time_s": end, "word": building.require_structure().word, "answer": result.answer,
         "warnings": result.warnings, "active_s": min(1.05 * float(time[moving[-1]]), end) if len(moving) else end,
     }  # fmt: skip
     keep = slice(0, None, max(1, -(-len(time) // MOST_POINTS)))

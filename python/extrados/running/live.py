@@ -43,8 +43,8 @@ class Live:
         self._take(deck)
 
     def _take(self, deck: Deck) -> None:
-        building = replace(deck.building, _views=self._views)
-        buildings = [replace(b, _views=self._views) for b in deck.buildings]
+        building = replace(deck.building, views=self._views)
+        buildings = [replace(b, views=self._views) for b in deck.buildings]
         self.deck = replace(deck, building=building, buildings=buildings)
         self.names = store.group_names([options.kind for options in deck.analyses])
 

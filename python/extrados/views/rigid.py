@@ -22,6 +22,7 @@ from extrados.model.geometry.convex import (
 from extrados.model.geometry.mass import together
 from extrados.model.geometry.polygons import crossing_edges, distance, following, inside
 from extrados.model.geometry.polygons import signed_area as area
+from extrados.views.blocks import Masonry
 
 #: An outline is taken for its hull where that is bigger by no more than this, and no joint lies inside the hull:
 #: the concave arc of a voussoir's intrados touches nothing.
@@ -63,6 +64,11 @@ class RigidBodies:
 
     def __repr__(self) -> str:
         return f"<RigidBodies: {self.count} bodies, {len(self.mass) - self.count} supports>"
+
+
+def make_rigid(building: Masonry, groups: tuple[tuple[int, ...], ...], floor: float | None) -> "RigidBodies":
+    """The blocks of a building as rigid bodies, their corners worn off as [joints] says."""
+    return rigid_bodies(building.blocks(), groups, building.joints.worn_corners, floor)
 
 
 def rigid_bodies(

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import model_validator
 
+from extrados import kinds
 from extrados.analyses.table import BuildingAnalysis
 from extrados.schema.quantities import Acceleration, Angle, Force, Length, Stress, Time, Velocity
 from extrados.schema.spectrum import CodeSpectrum
@@ -198,4 +199,6 @@ class LocalMechanism(BuildingAnalysis):
     def of_stones(self, building: "Building") -> bool:
         """Whether the mechanism is that of the deck's stones, not of a body by itself or of the walls of a plan."""
         structure = building.structure
-        return self.mechanism == "building" and (structure is None or "blocks" not in structure.lacks)
+        return self.mechanism == "building" and (
+            structure is None or "blocks" not in kinds.STRUCTURES[structure.kind].lacks
+        )

@@ -412,7 +412,7 @@ def _varied(building: Building, variant: Variant) -> Building:
     plan = building.structure
     changed = replace(
         building, material=material(building.material),
-        materials={name: material(of) for name, of in building.materials.items()}, _views={},
+        materials={name: material(of) for name, of in building.materials.items()}, views={},
     )  # fmt: skip
     if not isinstance(plan, Plan):
         return changed

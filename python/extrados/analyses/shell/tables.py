@@ -9,7 +9,7 @@ from extrados.analyses.table import BuildingAnalysis
 from extrados.model.places import Range
 from extrados.schema.quantities import Angle, Force, Length, Stress
 from extrados.schema.table import Table, key
-from extrados.views.shell.mesh import ShellOptions
+from extrados.views.shell.options import ShellOptions
 
 if TYPE_CHECKING:
     from extrados.views.building import Building

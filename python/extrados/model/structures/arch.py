@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
@@ -13,11 +13,6 @@ from extrados.model.geometry.sectors import ring_sector, sector_outlines
 from extrados.model.structure import Structure
 from extrados.schema.quantities import Angle, Length
 from extrados.schema.table import key
-
-if TYPE_CHECKING:
-    from extrados.model.geometry.solids.assembly import SolidAssembly
-    from extrados.views.building import Building
-    from extrados.views.shell.mesh import ShellMesh, ShellOptions
 
 
 @dataclass(frozen=True, repr=False)
@@ -123,23 +118,10 @@ class Arch(Structure):
     def assembly(self, density: float, folder: Path) -> ArchAssembly:
         if self.skew:
             raise NoView("a skew arch is no plane section; `tilt` and `dem` look at its solids", ("structure", "skew"))
-        return self._section(density)
+        return self.section(density)
 
-    def solids(self, building: "Building") -> "SolidAssembly":
-        from extrados.model.geometry.solids.sections import barrel
-
-        return barrel(self._section(building.material.density), self.stones_across, np.radians(self.skew))
-
-    def shell(self, building: "Building", options: "ShellOptions") -> "ShellMesh":
-        from extrados.views.shell.vaults import mesh_barrel
-
-        if self.skew:
-            raise NoView("a skew arch is no shell yet; `tilt` looks at its solids", ("structure", "skew"))
-        return mesh_barrel(
-            building, options, self.radius, self.thickness * self.thickness_factor, self.embrace, self.depth
-        )
-
-    def _section(self, density: float) -> ArchAssembly:
+    def section(self, density: float) -> ArchAssembly:
+        """The ring of voussoirs in the plane."""
         return make_arch(
             self.radius, self.thickness * self.thickness_factor, self.embrace, self.voussoirs, density, self.depth
         )

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -15,7 +15,7 @@ from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.chains import with_chains
 from extrados.model.geometry.compas import is_compas, read_compas
 from extrados.model.geometry.contacts import MOST_NEIGHBOURS, box_pairs, shortest_joint
-from extrados.model.geometry.drawing import UNITS, Drawing, Layer, Polygon, parsed, read_json
+from extrados.model.geometry.drawing import Drawing, Layer, Polygon, parsed, read_json
 from extrados.model.geometry.dxf import SAGITTA, read_dxf
 from extrados.model.geometry.inspection import Inspection, areas, inspect, refuse
 from extrados.model.geometry.linework import MOST_PAIRS
@@ -23,10 +23,6 @@ from extrados.model.geometry.polygons import properties
 from extrados.model.structure import Structure
 from extrados.schema.quantities import Density, Length
 from extrados.schema.table import Table, key
-
-if TYPE_CHECKING:
-    from extrados.model.geometry.solids.assembly import SolidAssembly
-    from extrados.views.building import Building
 
 SOLID = (".obj", ".stl")  # files of solids, which have no plane section
 SMALL = 1e-4  # of the size of solids: the greatest tolerance that is a default
@@ -234,42 +230,6 @@ class Blocks(Structure):
         ground = None if self.ground is None else np.array(self.ground)
         found = inspect(drawing, ground, self.contact_tolerance, self.foundation_levels, corner)
         return found, self.depth or depth or 1.0
-
-    def solids(self, building: "Building") -> "SolidAssembly":
-        from extrados.model.geometry.solids.assembly import assemble as touch
-        from extrados.model.geometry.solids.meshes import read_obj, read_solids, read_stl, stones_of
-
-        value = None
-        file = None if self.file is None else read(self.file, LARGEST_FILE, building.folder)
-        sort = "" if file is None else file.path.suffix.lower()
-        if file is not None and sort == ".json":
-            value = parsed(file)
-        if file is None or not (sort in SOLID or is_compas(value)):
-            return super().solids(building)
-        name = file.path.name
-        if self.layers is not None or self.layer or self.ground is not None or self.origin is not None:
-            raise BadGeometry(
-                f"{name}: layers, ground and origin belong to plane drawings; solids stand on foundation_levels"
-            )
-        if sort == ".obj":
-            meshes = read_obj(file.text(), name)
-        else:
-            meshes = read_stl(file.content, name) if sort == ".stl" else read_solids(value, name)
-        tolerance = self.contact_tolerance
-        if "contact_tolerance" not in self.model_fields_set:
-            points = np.concatenate([mesh.points for mesh in meshes])
-            tolerance = min(tolerance, SMALL * UNITS[self.unit or "m"] * float(np.ptp(points, axis=0).max()))
-        try:
-            stones = stones_of(meshes, building.material.density, self.unit, name, tolerance)
-        except BadGeometry as error:
-            try:  # prisms of one depth may be concave: their section is parted in convex pieces
-                whole = value is not None and read_compas(value, name, self.unit)[1] is not None
-            except NoView:
-                whole = False
-            if not whole:
-                raise error from None
-            return super().solids(building)
-        return touch(stones, tolerance, self.foundation_levels, name)
 
     def inspection(self, folder: Path) -> Inspection | None:
         try:

@@ -1,6 +1,6 @@
 """Groin vaults: two barrels that cross over a bay."""
 
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
@@ -11,10 +11,6 @@ from extrados.model.geometry.solids.sections import body
 from extrados.model.structures.spatial import Spatial
 from extrados.schema.quantities import Angle, Length
 from extrados.schema.table import key
-
-if TYPE_CHECKING:
-    from extrados.views.building import Building
-    from extrados.views.shell.mesh import ShellMesh, ShellOptions
 
 LEAST_PIECE = 0.3  # of a stone's length: where the bed of a piece is shorter, it joins its neighbour
 QUARTER = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
@@ -134,16 +130,9 @@ class CrossVault(Spatial):
                 raise ValueError(f"stone_length: about {count:.0f} stones are too many, expected at most {MOST_SOLIDS}")
         return self
 
-    def solids(self, building: "Building") -> SolidAssembly:
+    def solids(self, density: float) -> SolidAssembly:
         edge = self.thickness if self.edge is None else self.edge
         return make_cross_vault(
             self.radius, self.thickness * self.thickness_factor, self.embrace, self.voussoirs, edge, self.stone_length,
-            self.springers, self.oblong, building.material.density,
+            self.springers, self.oblong, density,
         )  # fmt: skip
-
-    def shell(self, building: "Building", options: "ShellOptions") -> "ShellMesh":
-        from extrados.views.shell.vaults import mesh_cross_vault
-
-        edge = self.thickness if self.edge is None else self.edge
-        thickness = self.thickness * self.thickness_factor
-        return mesh_cross_vault(building, options, self.radius, thickness, self.embrace, edge, self.oblong)

@@ -1,6 +1,6 @@
 """Domes of stones in rings."""
 
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
@@ -10,10 +10,6 @@ from extrados.model.geometry.solids.polyhedra import loft
 from extrados.model.structures.spatial import Spatial
 from extrados.schema.quantities import Angle, Length
 from extrados.schema.table import key
-
-if TYPE_CHECKING:
-    from extrados.views.building import Building
-    from extrados.views.shell.mesh import ShellMesh, ShellOptions
 
 
 def make_dome(
@@ -90,15 +86,8 @@ class Dome(Spatial):
             raise ValueError(f"rings: {self.rings * self.lunes} stones are too many, expected at most {MOST_SOLIDS}")
         return self
 
-    def solids(self, building: "Building") -> SolidAssembly:
+    def solids(self, density: float) -> SolidAssembly:
         return make_dome(
             self.radius, self.thickness * self.thickness_factor, self.embrace, self.rings, self.lunes, self.oculus,
-            building.material.density, self.bond == "running",
+            density, self.bond == "running",
         )  # fmt: skip
-
-    def shell(self, building: "Building", options: "ShellOptions") -> "ShellMesh":
-        from extrados.views.shell.vaults import mesh_dome
-
-        return mesh_dome(
-            building, options, self.radius, self.thickness * self.thickness_factor, self.embrace, self.oculus
-        )

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -13,10 +13,6 @@ from extrados.model.geometry.polygons import properties
 from extrados.model.structure import RocksAs, Structure
 from extrados.schema.quantities import Force, Length
 from extrados.schema.table import key
-
-if TYPE_CHECKING:
-    from extrados.model.geometry.solids.assembly import SolidAssembly
-    from extrados.views.building import Building
 
 
 def stones_and_joints(
@@ -103,7 +99,8 @@ class Column(Structure):
         return self
 
     @property
-    def _heights(self) -> list[float]:
+    def drum_heights(self) -> list[float]:
+        """Heights of the drums from below [m]."""
         return [self.height / self.drums] * self.drums if self.height is not None else self.heights
 
     def assembly(self, density: float, folder: Path) -> Assembly:
@@ -117,17 +114,4 @@ class Column(Structure):
                 "dowels are known in space alone: ask `tilt` with a direction, or leave them out",
                 ("structure", "dowels"),
             )
-        return make_column(self.width, self._heights, self.top_width, density, self.depth)
-
-    def solids(self, building: "Building") -> "SolidAssembly":
-        from extrados.model.geometry.solids.columns import doweled, drums
-        from extrados.model.geometry.solids.sections import drawn_out
-
-        density = building.material.density
-        if self.section == "round":
-            made = drums(self.width, self._heights, self.top_width, self.sides, self.flute_depth, density)
-        else:
-            made = drawn_out(make_column(self.width, self._heights, self.top_width, density, self.depth))
-        if self.dowels is None:
-            return made
-        return doweled(made, np.inf if self.dowels == "unbroken" else float(self.dowels), self.dowel_reach or np.inf)
+        return make_column(self.width, self.drum_heights, self.top_width, density, self.depth)

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from itertools import pairwise
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -12,10 +12,6 @@ from extrados.model.places import Opening, Range
 from extrados.model.structure import Structure
 from extrados.schema.quantities import Force, Length, Stiffness, Stress
 from extrados.schema.table import Table, key
-
-if TYPE_CHECKING:
-    from extrados.views.building import Building
-    from extrados.views.shell.mesh import ShellMesh, ShellOptions
 
 #: Distance within which two walls meet [m]
 MEETS = 1e-6
@@ -189,12 +185,6 @@ class Plan(Structure):
     { name = "left", start = [0, 5], end = [0, 0], thickness = 0.3 },
 ]""",
         "floors": '[{ storey = 1, young = "50 MPa", thickness = "5 cm", load = "2 kPa" }, { storey = 2, young = "50 MPa", thickness = "5 cm", load = "1 kPa" }]',
-    }
-    lacks: ClassVar = {
-        "blocks": "a building on a plan has walls, no stones in a plane: draw one of its walls as `panel` or `blocks`; the whole is for "
-        "`pushover`, with [analysis.frame] for its piers by codes, its walls out of plane for `local-mechanism`",
-        "rocker": "a building on a plan does not rock as one body: draw one of its walls",
-        "mesh": "the walls of a building stand in space: its analysis is `pushover`; draw one of them as `panel`",
     }
     storeys: list[Length] = key(about="heights of the storeys, from the ground up", min_length=1, max_length=50)
     walls: list[PlanWall] = key(about="[[structure.walls]]", min_length=1, max_length=200)
@@ -378,11 +368,6 @@ class Plan(Structure):
                 raise BadGeometry(f"{what}: walls '{self.walls[a].name}' and '{self.walls[b].name}' do not meet")
             corners.append(at)
         return [(w, corners[k - 1][1], corners[k][0]) for k, w in enumerate(walls)]
-
-    def shell(self, building: "Building", options: "ShellOptions") -> "ShellMesh":
-        from extrados.views.shell.plan import mesh_plan
-
-        return mesh_plan(self, building, options)
 
 
 def nearly_meeting(one: PlanWall, two: PlanWall) -> float | None:

@@ -1,13 +1,14 @@
 """The base of the kinds that are solids and no plane section."""
 
-from typing import ClassVar
+from abc import abstractmethod
 
+from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.model.structure import Structure
-
-NO_SECTION = "it is no plane section; `tilt` and `dem` look at its solids"
 
 
 class Spatial(Structure):
     """What all kinds share that are solids alone."""
 
-    lacks: ClassVar = dict.fromkeys(("blocks", "rocker", "mesh"), NO_SECTION)
+    @abstractmethod
+    def solids(self, density: float) -> SolidAssembly:
+        """Blocks in space, of a density [kg/m^3]; BadGeometry with the part and the bound."""

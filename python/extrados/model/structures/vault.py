@@ -1,7 +1,7 @@
 """Barrel vaults on buttresses (thesis 3.4)."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -11,10 +11,6 @@ from extrados.model.geometry.builder import Builder, springing_path
 from extrados.model.structures.presets import PresetStructure
 from extrados.schema.quantities import Angle, Length
 from extrados.schema.table import key
-
-if TYPE_CHECKING:
-    from extrados.views.building import Building
-    from extrados.views.shell.mesh import ShellMesh, ShellOptions
 
 # Sizes inferred by fitting published results, or guessed from public facts; never the authors' own.
 VAULT_PRESETS = {
@@ -114,16 +110,4 @@ class Vault(PresetStructure):
         return make_vault(
             self.radius, self.thickness, self.embrace, self.voussoirs, self.face, self.buttress_width, self.height,
             self.width_from, self.height_to, density, self.depth,
-        )  # fmt: skip
-
-    def shell(self, building: "Building", options: "ShellOptions") -> "ShellMesh":
-        """The vault on walls as thick as the buttresses, their middle planes where those have them."""
-        from extrados.views.shell.vaults import mesh_barrel
-
-        section = self.assembly(building.material.density, building.folder)
-        outline = section.outlines[section.buttresses[1]]
-        back, sole = float(outline[:, 0].max()), float(outline[:, 1].min())
-        return mesh_barrel(
-            building, options, self.radius, self.thickness, self.embrace, self.depth,
-            (back - self.face, 0.5 * (back + self.face), sole),
         )  # fmt: skip

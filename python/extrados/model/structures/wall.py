@@ -2,7 +2,7 @@
 
 import itertools
 from collections.abc import Callable
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
@@ -16,9 +16,6 @@ from extrados.model.structures.brickwork import Bond, laid, levels_of, lintels_o
 from extrados.model.structures.spatial import Spatial
 from extrados.schema.quantities import Length
 from extrados.schema.table import Table, key
-
-if TYPE_CHECKING:
-    from extrados.views.building import Building
 
 LEFT = np.array([[0.0, -1.0], [1.0, 0.0]])
 
@@ -175,7 +172,7 @@ class Wall(Spatial):
             raise ValueError(f"closed needs four legs at least, found {len(self.legs)}")
         return self
 
-    def solids(self, building: "Building") -> SolidAssembly:
+    def solids(self, density: float) -> SolidAssembly:
         bond = Bond(
             self.unit_length,
             self.unit_height,
@@ -189,4 +186,4 @@ class Wall(Spatial):
             (leg.length, leg.turn == "left", [(o.x[0], o.x[1], o.y[0], o.y[1]) for o in leg.openings])
             for leg in self.legs
         ]
-        return make_wall(bond, self.thickness, self.height, legs, self.closed, building.material.density)
+        return make_wall(bond, self.thickness, self.height, legs, self.closed, density)

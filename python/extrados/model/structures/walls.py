@@ -3,12 +3,12 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from extrados.model.errors import BadGeometry, NoView, blaming
+from extrados.model.errors import NoView
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.places import Placed
 from extrados.model.structure import RocksAs, Structure
@@ -16,12 +16,6 @@ from extrados.model.structures.brickwork import Laid, make_brickwork
 from extrados.model.structures.piers import make_piers
 from extrados.schema.quantities import Angle, Force, Length, Stress
 from extrados.schema.table import Table, key
-
-if TYPE_CHECKING:
-    from extrados.views.building import Building
-    from extrados.views.mesh.mesh import Mesh
-    from extrados.views.mesh.options import MeshOptions
-    from extrados.views.shell.mesh import ShellMesh, ShellOptions
 
 
 class Region(Placed):
@@ -166,16 +160,6 @@ class Panel(Laid, MeshedWall):
             ratio[region.holds(made.centroid)] = densities[region.material] / density
         return replace(made, mass=made.mass * ratio, inertia=made.inertia * ratio)
 
-    def mesh(self, building: "Building", options: "MeshOptions", seed: int | None) -> "Mesh":
-        from extrados.views.mesh.panel import make_panel
-        from extrados.views.mesh.stones import make_stones
-
-        if options.joints is not None:
-            if self.regions:
-                raise BadGeometry("a panel meshed unit by unit takes no regions: give its joints by joints.types")
-            return make_stones(building, options)
-        return make_panel(self, building, options, seed)
-
 
 Vector = Annotated[list[Stress], Field(min_length=3, max_length=3)]
 Force3 = Annotated[list[Force], Field(min_length=3, max_length=3)]
@@ -204,9 +188,6 @@ class MeshFile(MeshedWall):
     kind: Literal["mesh"]
     starter_analysis: ClassVar = "sla"
     starter: ClassVar = {"thickness": '"30 cm"', "file": '"extrados:example-wall"', "scale": "0.001"}
-    lacks: ClassVar = dict.fromkeys(
-        ("blocks", "rocker"), "a mesh file holds elements, no stones: describe the wall as `panel` or `blocks`"
-    )
     file: str = key(
         about="mesh file of triangles or quadrilaterals: in the x, y plane for `sla`, in space with z up for `pushover`",
         min_length=1,
@@ -217,15 +198,3 @@ class MeshFile(MeshedWall):
         max_length=1000,
     )  # fmt: skip
     scale: float = key(1.0, "metres per unit of the file", gt=0, le=1e6)
-
-    def mesh(self, building: "Building", options: "MeshOptions", seed: int | None) -> "Mesh":
-        from extrados.views.mesh.file import read_mesh
-
-        with blaming("file"):
-            return read_mesh(self, building, options)
-
-    def shell(self, building: "Building", options: "ShellOptions") -> "ShellMesh":
-        from extrados.views.shell.file import read_shell
-
-        with blaming("file"):
-            return read_shell(self, building, options)

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from extrados.model.errors import BadGeometry
+from extrados.model.description import Description
+from extrados.model.errors import BadGeometry, blaming
 from extrados.model.files import read
 from extrados.model.structures.walls import MeshFile
 from extrados.schema.files import File
@@ -17,7 +18,6 @@ from extrados.views.mesh.options import MeshOptions
 if TYPE_CHECKING:
     import meshio
 
-    from extrados.views.building import Building
 
 #: Formats that keep a mesh in several files: meshio would open whatever path the first one names
 IN_PARTS = {".xdmf", ".xmf", ".node", ".ele"}
@@ -30,7 +30,7 @@ EXPECTED = "expected a complete file of gmsh, Abaqus, VTU or another format that
 FARTHEST = 1e6
 
 
-def open_mesh(wall: MeshFile, building: "Building") -> tuple[str, "meshio.Mesh"]:
+def open_mesh(wall: MeshFile, building: Description) -> tuple[str, "meshio.Mesh"]:
     """The name of the file and what meshio finds in it, places in its own unit; BadGeometry says what is wrong."""
     try:
         import meshio
@@ -70,7 +70,14 @@ def open_mesh(wall: MeshFile, building: "Building") -> tuple[str, "meshio.Mesh"]
     return path.name, mesh
 
 
-def read_mesh(wall: MeshFile, building: "Building", options: MeshOptions) -> Mesh:
+def mesh_file(building: Description, options: MeshOptions, seed: int | None = None) -> Mesh:
+    """Finite elements of a mesh file, which draws no random pattern."""
+    assert isinstance(building.structure, MeshFile)
+    with blaming("file"):
+        return read_mesh(building.structure, building, options)
+
+
+def read_mesh(wall: MeshFile, building: Description, options: MeshOptions) -> Mesh:
     """The plane elements of a file, of one kind; other cells (lines, points) are passed over."""
     if wall.groups:
         raise BadGeometry(

@@ -1,18 +1,16 @@
 """A finite-element mesh: nodes, elements by group, boundary edges, and the nodes that a place in a deck means."""
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from extrados.model.description import Description
 from extrados.model.errors import BadGeometry
 from extrados.model.places import Placed
 from extrados.model.properties import Held, Material
 from extrados.model.structures.walls import Bar, MeshedWall, TiedNodes
 from extrados.views.mesh.options import MeshOptions
-
-if TYPE_CHECKING:
-    from extrados.views.building import Building
 
 EDGES = {"T3": (0, 1, 2), "T6": (0, 1, 2), "Q4": (0, 1, 2, 3), "Q8": (0, 1, 2, 3)}
 
@@ -207,7 +205,7 @@ def add_middles(xy: np.ndarray, kind: str, connect: np.ndarray) -> tuple[np.ndar
 
 
 def build_mesh(
-    wall: MeshedWall, building: "Building", options: MeshOptions, xy: np.ndarray, kind: str, connect: np.ndarray,
+    wall: MeshedWall, building: Description, options: MeshOptions, xy: np.ndarray, kind: str, connect: np.ndarray,
     size: float,
 ) -> Mesh:  # fmt: skip
     """Split the elements of a wall into groups by its regions; unused nodes are dropped, bad elements refused."""

@@ -2,19 +2,17 @@
 
 import itertools
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from extrados.model.description import Description
 from extrados.model.errors import BadGeometry
 from extrados.model.structures.walls import Panel
+from extrados.views.blocks import Masonry
 from extrados.views.mesh.mesh import Mesh, add_middles, build_mesh
 from extrados.views.mesh.options import LARGEST_MESH, MeshOptions
 from extrados.views.mesh.outline import JITTER, fill_outline
-
-if TYPE_CHECKING:
-    from extrados.views.building import Building
-
+from extrados.views.mesh.stones import make_stones
 
 #: Elements along the lesser side of a wall where no size is given
 DEFAULT_DIVISIONS = 20
@@ -32,7 +30,18 @@ class Layout:
     size: float
 
 
-def make_panel(panel: Panel, building: "Building", options: MeshOptions, seed: int | None = None) -> Mesh:
+def mesh_panel(building: Masonry, options: MeshOptions, seed: int | None = None) -> Mesh:
+    """Finite elements of a panel: of its units with joints between them where [analysis.mesh] joints asks for them."""
+    panel = building.structure
+    assert isinstance(panel, Panel)
+    if options.joints is None:
+        return make_panel(panel, building, options, seed)
+    if panel.regions:
+        raise BadGeometry("a panel meshed unit by unit takes no regions: give its joints by joints.types")
+    return make_stones(building, options)
+
+
+def make_panel(panel: Panel, building: Description, options: MeshOptions, seed: int | None = None) -> Mesh:
     """Mesh of a panel; `seed` overrides that of the options. BadGeometry says what does not fit."""
     seed = options.seed if seed is None else seed
     notes: tuple[str, ...] = ()

@@ -1,18 +1,15 @@
 """Bars in a finite-element mesh: where a point lies in an element, and the strain of a bar by the nodes around it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.polygons import inside
 from extrados.model.ties import Tie
+from extrados.views.blocks import Masonry
 from extrados.views.mesh.mesh import Mesh
-
-if TYPE_CHECKING:
-    from extrados.views.building import Building
 
 HAIR = 1e-6  # of an element: so near to its sides a point lies in it
 LEAST = 1e-9  # of a bar: shorter pieces are rounding
@@ -152,14 +149,12 @@ def bonded(corners: Corners, ends: np.ndarray, what: str) -> Rod:
     return Rod(np.array(nodes), np.array(gradient), np.array(lengths), np.array(middles))
 
 
-def rods_of(building: "Building", mesh: Mesh) -> list[tuple[Tie, Rod]]:
-    """The [[ties]] of a building in its mesh."""
-    if not building.ties:
-        return []
+def add_rods(building: Masonry, mesh: Mesh) -> Mesh:
+    """The mesh with the [[ties]] of its building as bars."""
     corners = Corners.of(mesh)
     everywhere = np.arange(len(corners.connect))
     stones = building.anchored().block if mesh.has_joints else np.zeros((len(building.ties), 2), dtype=int)
-    found = []
+    found: list[tuple[Tie, Rod]] = []
     for tie, blocks in zip(building.ties, stones.tolist(), strict=True):
         among: list[np.ndarray | None] = []
         for block, grounded in zip(blocks, (False, tie.ground is not None), strict=True):
@@ -168,4 +163,4 @@ def rods_of(building: "Building", mesh: Mesh) -> list[tuple[Tie, Rod]]:
                 elements = np.flatnonzero(inside(building.blocks().outlines[block], corners.middle))
             among.append(None if grounded else elements)
         found.append((tie, anchored(corners, np.array([tie.start, tie.far], dtype=float), among)))
-    return found
+    return replace(mesh, rods=found)

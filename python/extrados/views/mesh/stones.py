@@ -8,7 +8,6 @@ all of it on the ground). Where more than two stones meet nothing ties them.
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,12 +17,10 @@ from extrados.model.geometry.earth import passive_left_out
 from extrados.model.geometry.polygons import following, signed_area
 from extrados.model.properties import NO_SLIDING_COEFFICIENT, Material
 from extrados.schema.constants import GRAVITY
+from extrados.views.blocks import Masonry
 from extrados.views.mesh.mesh import ElementGroup, JointLaw, Mesh, element_areas
 from extrados.views.mesh.options import LARGEST_MESH, MeshOptions
 from extrados.views.mesh.triangles import fill_ring
-
-if TYPE_CHECKING:
-    from extrados.views.building import Building
 
 #: Elements along a joint where no size is given (fewer along those shorter than the median), and along the shortest
 DIVISIONS, FEWEST = 8, 2
@@ -56,8 +53,11 @@ class Stone:
     along: dict[int, np.ndarray]
 
 
-def make_stones(building: "Building", options: MeshOptions) -> Mesh:
-    """Mesh of the stones and joints of a building; BadGeometry says what does not fit."""
+def make_stones(building: Masonry, options: MeshOptions, seed: int | None = None) -> Mesh:
+    """Mesh of the stones and joints of a building; BadGeometry says what does not fit.
+
+    seed: of random patterns, of which there are none here.
+    """
     _refuse(options)
     assembly = building.blocks()
     size, most = options.size, LARGEST_MESH
@@ -126,7 +126,7 @@ def make_stones(building: "Building", options: MeshOptions) -> Mesh:
 
 
 def _rows(
-    building: "Building", assembly: Assembly, thickness: float, nodes: np.ndarray, row: np.ndarray, joint: np.ndarray
+    building: Masonry, assembly: Assembly, thickness: float, nodes: np.ndarray, row: np.ndarray, joint: np.ndarray
 ) -> tuple[list[Material], ElementGroup]:
     """Joints as thin rows of elements that crack along their own direction."""
     turned = element_areas(nodes, "Q4", row) < 0.0
@@ -146,7 +146,7 @@ def _rows(
 
 
 def _interfaces(
-    building: "Building", assembly: Assembly, thickness: float, nodes: np.ndarray, row: np.ndarray, joint: np.ndarray
+    building: Masonry, assembly: Assembly, thickness: float, nodes: np.ndarray, row: np.ndarray, joint: np.ndarray
 ) -> tuple[list[Material], ElementGroup]:
     """Joints of no thickness. Their stiffness is the joint's, or that of a layer of stone of `thickness`."""
     names = (
@@ -194,7 +194,7 @@ def _interfaces(
     )  # fmt: skip
 
 
-def _in_series(building: "Building", assembly: Assembly, per_length: float) -> np.ndarray:
+def _in_series(building: Masonry, assembly: Assembly, per_length: float) -> np.ndarray:
     """Normal stiffness of each joint [Pa/m]: given, or that of stone of a thickness 1 / per_length [m]; on the ground in
     series with the ground's."""
     given = building.joint_property("normal_stiffness")
@@ -223,7 +223,7 @@ def _refuse(options: MeshOptions) -> None:
 
 
 def _joint_materials(
-    building: "Building", assembly: Assembly, thickness: float
+    building: Masonry, assembly: Assembly, thickness: float
 ) -> tuple[list[Material], np.ndarray, np.ndarray]:
     """Materials of the rows, the index of each joint's, and which joints are dry.
 

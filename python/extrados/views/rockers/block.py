@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,9 +9,7 @@ from extrados.core.rocking import Body, block_body
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.structures.block import BlockAssembly, monolith
 from extrados.schema.constants import GRAVITY
-
-if TYPE_CHECKING:
-    from extrados.views.building import Building
+from extrados.views.blocks import Masonry
 
 
 @dataclass(frozen=True)
@@ -91,7 +88,7 @@ class BlockModel:
         )
 
 
-def block_model(building: "Building", linear: bool = False, stones: Assembly | None = None) -> BlockModel:
+def block_model(building: Masonry, linear: bool = False, stones: Assembly | None = None) -> BlockModel:
     """A `block`, or a `column` or a wall taken as one body, with the impact that [joints] asks for.
 
     A wall is its only pier: one that openings divide rocks by a mechanism. stones: instead of the building's own.

@@ -4,7 +4,6 @@ import functools
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -20,10 +19,8 @@ from extrados.model.geometry.anchors import stone_at
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.model.structures.block import BlockAssembly
 from extrados.model.ties import Tie
+from extrados.views.blocks import Masonry
 from extrados.views.rockers.block import BlockModel
-
-if TYPE_CHECKING:
-    from extrados.views.building import Building
 
 #: Of a free block or arch the rotations that are tabulated, over the rotation of collapse
 BEYOND = 1.5
@@ -186,7 +183,7 @@ def block_reach(block: BlockModel) -> tuple[tuple[float, float], tuple[float, fl
     return (BEYOND * right, 4.0 * right), (BEYOND * left, 4.0 * left)
 
 
-def members_of(building: "Building", assembly: Assembly, linkages: tuple[Linkage, Linkage]) -> tuple[Restraint, ...]:
+def members_of(building: Masonry, assembly: Assembly, linkages: tuple[Linkage, Linkage]) -> tuple[Restraint, ...]:
     """The ties, dampers and added hinges of a building, anchored in its stones; hinges at joints that stay shut are left out.
 
     NoView where one cannot be followed, BadGeometry where one is anchored nowhere.
@@ -196,7 +193,7 @@ def members_of(building: "Building", assembly: Assembly, linkages: tuple[Linkage
     return tuple(m for m in found if m.sort != TURN or any(part[m.blocks[0]] != part[m.blocks[1]] for part in number))
 
 
-def restraints_of(building: "Building", stones: Callable[[], Assembly]) -> Iterator[Callable[[], list[Restraint]]]:
+def restraints_of(building: Masonry, stones: Callable[[], Assembly]) -> Iterator[Callable[[], list[Restraint]]]:
     """What holds a building, each made when it is called: a tie or damper one restraint, an added hinge one at each of
     its joints."""
     for key, one in zip(building.restraint_keys, building.restraints, strict=True):

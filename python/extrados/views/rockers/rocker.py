@@ -1,7 +1,6 @@
 """What analyses need to know of any rocking structure, block, arch or mechanism."""
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +14,7 @@ from extrados.model.properties import NO_SLIDING_COEFFICIENT
 from extrados.model.structures.arch import ArchAssembly
 from extrados.model.structures.frame import FrameAssembly
 from extrados.schema.constants import GRAVITY
+from extrados.views.blocks import Masonry
 from extrados.views.rockers.arch import ArchModel
 from extrados.views.rockers.block import BlockModel, block_model
 from extrados.views.rockers.frame import FrameModel
@@ -23,9 +23,6 @@ from extrados.views.rockers.restraints import Restraints, block_linkages, block_
 from extrados.views.rockers.soft_base import UNDAMPED, SoftBaseModel, soft_base_model
 from extrados.views.rockers.watch import Watch, sliding_capacity
 from extrados.views.rockers.words import refuse_words, rocks_as_block
-
-if TYPE_CHECKING:
-    from extrados.views.building import Building
 
 OTHER_RULE = 'the impact rule "thesis" is of circular arches that nothing but their weight holds: "energy-safe" stands in its place'
 
@@ -100,7 +97,7 @@ class Rocker:
 
 
 def make_rocker(
-    building: "Building", linear: bool = False, stones: Assembly | None = None, soft_base: bool = False
+    building: Masonry, linear: bool = False, stones: Assembly | None = None, soft_base: bool = False
 ) -> Rocker:
     """The building as one rocking mechanism; NoView says why there is none.
 
@@ -152,7 +149,7 @@ def make_rocker(
 
 
 def _watched(
-    free: Rocker, building: "Building", stones: Assembly, linkages: tuple[Linkage, Linkage]
+    free: Rocker, building: Masonry, stones: Assembly, linkages: tuple[Linkage, Linkage]
 ) -> Rocker:  # fmt: skip
     """The rocker with its joints watched; CannotStand where the friction of the joints does not carry its weight."""
     given = building.friction()
@@ -175,7 +172,7 @@ def _watched(
     return replace(free, body=watch.watched(free.body), watch=watch)
 
 
-def _on_soft_base(building: "Building", linear: bool, stones: Assembly | None) -> Rocker:
+def _on_soft_base(building: Masonry, linear: bool, stones: Assembly | None) -> Rocker:
     """A block, a column or a wall taken as one body, on a base that gives way."""
     structure, ratio = building.structure, building.initial.rotation_ratio
     assert structure is not None
@@ -190,11 +187,11 @@ def _on_soft_base(building: "Building", linear: bool, stones: Assembly | None) -
     )  # fmt: skip
 
 
-def _is_restrained(building: "Building") -> bool:
+def _is_restrained(building: Masonry) -> bool:
     return bool(building.restraints) or building.supports.abutting_wall is not None
 
 
-def _restrained(free: Rocker, building: "Building") -> Rocker | None:
+def _restrained(free: Rocker, building: Masonry) -> Rocker | None:
     """The rocker with the ties, dampers, added hinges and the wall of its building; None where nothing holds it."""
     if not _is_restrained(building):
         return None

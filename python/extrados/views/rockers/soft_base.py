@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,11 +10,9 @@ from extrados.model.errors import BadGeometry, NoView
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.structures.block import BlockAssembly
 from extrados.schema.constants import GRAVITY
+from extrados.views.blocks import Masonry
 from extrados.views.rockers.block import BlockModel, block_model
 from extrados.views.rockers.words import refuse_soft_base
-
-if TYPE_CHECKING:
-    from extrados.views.building import Building
 
 #: Rotations tried up to the one taken as collapse, in the search for equilibria
 LOOKS = 400
@@ -195,7 +192,7 @@ class SoftBaseModel:
         return np.stack([x, self.core.height * np.cos(rotation) - sinking, -rotation], axis=1)[:, None, :]
 
 
-def soft_base_model(building: "Building", linear: bool = False, stones: Assembly | None = None) -> SoftBaseModel:
+def soft_base_model(building: Masonry, linear: bool = False, stones: Assembly | None = None) -> SoftBaseModel:
     """A block, a column or a wall without openings taken as one body, on the base of [supports]; NoView where the
     building is none of these, or held by more. stones: instead of the building's own."""
     supports, structure = building.supports, building.structure

@@ -1,21 +1,17 @@
 """What the words of a deck alone say of how its building rocks, before any mechanics."""
 
-from typing import TYPE_CHECKING
-
 from extrados.model.errors import NoView
-
-if TYPE_CHECKING:
-    from extrados.views.building import Building
+from extrados.views.blocks import Masonry
 
 
-def rocks_as_block(building: "Building") -> bool:
+def rocks_as_block(building: Masonry) -> bool:
     """Whether all of it rocks as one block: what is one, and a wall that is one pier."""
     structure = building.structure
     assert structure is not None
     return structure.rocks_as == "block" or (structure.rocks_as == "piers" and len(building.pier_blocks().mass) == 1)
 
 
-def refuse_words(building: "Building", linear: bool = False) -> None:
+def refuse_words(building: Masonry, linear: bool = False) -> None:
     """NoView, with the key, where the words of a deck alone say that the building does not rock as one mechanism."""
     wall, ratio = building.supports.abutting_wall, building.initial.rotation_ratio
     assert building.structure is not None
@@ -47,7 +43,7 @@ def refuse_words(building: "Building", linear: bool = False) -> None:
         raise NoView(f"it cannot start turned to the {wall}, where the wall stands", ("initial", "rotation_ratio"))
 
 
-def refuse_soft_base(building: "Building") -> None:
+def refuse_soft_base(building: Masonry) -> None:
     """NoView, with the key, where the words of a deck alone say that nothing but `dem` follows it on a base that gives way."""
     key = ("supports", "stiffness")
     if not rocks_as_block(building):

@@ -4,17 +4,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from extrados.model.errors import BadGeometry, Key
+from extrados.model.description import Description
+from extrados.model.errors import BadGeometry, Key, blaming
 from extrados.model.structures.walls import MeshFile, MeshGroup
 from extrados.schema.constants import GRAVITY
 from extrados.views.mesh.file import open_mesh
 from extrados.views.mesh.options import LARGEST_MESH
-from extrados.views.shell.mesh import Foot, ShellMesh, ShellOptions, ShellPart, nodal_areas, pieces
+from extrados.views.shell.mesh import Foot, ShellMesh, ShellPart, nodal_areas, pieces
+from extrados.views.shell.options import ShellOptions
 
 if TYPE_CHECKING:
     import meshio
 
-    from extrados.views.building import Building
 
 #: Where a deck says what its groups are
 GROUPS = ("structure", "groups")
@@ -34,7 +35,14 @@ ON_EACH_OTHER = 1.0 - 1e-6
 APART = 1e-6
 
 
-def read_shell(structure: MeshFile, building: "Building", options: ShellOptions) -> ShellMesh:
+def shell_of_file(building: Description, options: ShellOptions) -> ShellMesh:
+    """Flat shells of a mesh file."""
+    assert isinstance(building.structure, MeshFile)
+    with blaming("file"):
+        return read_shell(building.structure, building, options)
+
+
+def read_shell(structure: MeshFile, building: Description, options: ShellOptions) -> ShellMesh:
     """The triangles and quadrilaterals of a file with what its groups say; BadGeometry names file, group and what fits."""
     for name in ("regions", "ties", "bars"):
         if getattr(structure, name):
@@ -279,7 +287,7 @@ def _warping(xyz: np.ndarray, connect: np.ndarray) -> float:
 
 
 def _mesh(
-    building: "Building", xyz: np.ndarray, parts: list[ShellPart], held: set[tuple[int, int]], feet: list[Foot],
+    building: Description, xyz: np.ndarray, parts: list[ShellPart], held: set[tuple[int, int]], feet: list[Foot],
     push: np.ndarray, warnings: list[str], file: str,
 ) -> ShellMesh:  # fmt: skip
     """The mesh of the nodes that its elements have; nodes of membranes alone move in their plane, which is level."""
@@ -324,7 +332,7 @@ def _mesh(
 
 
 def _to_the_rim(
-    building: "Building", xyz: np.ndarray, parts: list[ShellPart], bent: np.ndarray, push: np.ndarray, file: str
+    building: Description, xyz: np.ndarray, parts: list[ShellPart], bent: np.ndarray, push: np.ndarray, file: str
 ) -> None:
     """What weighs on the inner nodes of membranes goes to their nodes on walls, by the area that these stand for: a membrane
     does not bend, its inner nodes are held upright."""

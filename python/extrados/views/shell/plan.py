@@ -3,10 +3,10 @@
 import itertools
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from extrados.model.description import Description
 from extrados.model.errors import BadGeometry, blaming
 from extrados.model.properties import NO_SLIDING, Material
 from extrados.model.structures.plan import (
@@ -28,14 +28,11 @@ from extrados.views.shell.mesh import (
     ShellBar,
     ShellJoint,
     ShellMesh,
-    ShellOptions,
     ShellPart,
     WallPlane,
     pieces,
 )
-
-if TYPE_CHECKING:
-    from extrados.views.building import Building
+from extrados.views.shell.options import ShellOptions
 
 #: What a rigid floor is: a concrete slab
 RIGID_YOUNG, RIGID_THICKNESS = 30e9, 0.2
@@ -68,8 +65,10 @@ class _Grid:
         )  # fmt: skip
 
 
-def mesh_plan(plan: Plan, building: "Building", options: ShellOptions) -> ShellMesh:
-    """Mesh of a building; BadGeometry says what does not fit."""
+def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
+    """Walls on a plan with the floors between them; BadGeometry says what does not fit."""
+    plan = building.structure
+    assert isinstance(plan, Plan)
     size = options.size or min(0.1 * plan.storeys[0], min(wall.length for wall in plan.walls) / 8.0)
     area = sum(wall.length for wall in plan.walls) * plan.levels[-1]
     if area / size**2 > LARGEST_MESH:
@@ -376,7 +375,7 @@ STRENGTHS = (
 )  # fmt: skip
 
 
-def _strength(plan: Plan, building: "Building", name: str, size: float) -> dict[str, float]:
+def _strength(plan: Plan, building: Description, name: str, size: float) -> dict[str, float]:
     """What [joints] and [[joints.types]] say of a joint; NaN where they say nothing, of friction where it excludes sliding."""
     own = {what: getattr(building.joints, what) for what in (*STRENGTHS, "normal_stiffness")}
     named: dict[str, int] = {}
@@ -602,7 +601,7 @@ def _prestress(
     push[nodes, 2] -= load.force * share / share.sum()
 
 
-def _rod(rod: Rod, k: int, xyz: np.ndarray, used: np.ndarray, building: "Building", size: float) -> ShellBar:
+def _rod(rod: Rod, k: int, xyz: np.ndarray, used: np.ndarray, building: Description, size: float) -> ShellBar:
     there, ends = np.flatnonzero(used), []
     for place in (rod.start, rod.end):
         away = np.linalg.norm(xyz[there] - np.asarray(place), axis=1)

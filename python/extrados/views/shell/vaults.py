@@ -4,17 +4,18 @@ All lie where the stones of the same structure do: the centre of the circle at h
 outward, so that the last layer is the extrados.
 """
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from extrados.model.errors import BadGeometry
+from extrados.model.description import Description
+from extrados.model.errors import BadGeometry, NoView
 from extrados.model.properties import Material
+from extrados.model.structures.arch import Arch
+from extrados.model.structures.cross_vault import CrossVault
+from extrados.model.structures.dome import Dome
+from extrados.model.structures.vault import Vault
 from extrados.views.mesh.options import LARGEST_MESH
-from extrados.views.shell.mesh import Foot, ShellMesh, ShellOptions, ShellPart
-
-if TYPE_CHECKING:
-    from extrados.views.building import Building
+from extrados.views.shell.mesh import Foot, ShellMesh, ShellPart
+from extrados.views.shell.options import ShellOptions
 
 #: Elements along the arc of a section where no size is asked for
 ALONG = 32
@@ -62,7 +63,7 @@ def _part(
 
 
 def _mesh(
-    xyz: np.ndarray, parts: list[ShellPart], feet: list[Foot], building: "Building", size: float, extra: list[Material]
+    xyz: np.ndarray, parts: list[ShellPart], feet: list[Foot], building: Description, size: float, extra: list[Material]
 ) -> ShellMesh:
     """The mesh on its feet, which are held in all freedoms."""
     held = sorted({(int(n), d) for foot in feet for n in foot.nodes for d in range(6)})
@@ -74,7 +75,7 @@ def _mesh(
 
 
 def mesh_barrel(
-    building: "Building", options: ShellOptions, radius: float, thickness: float, embrace: float, length: float,
+    building: Description, options: ShellOptions, radius: float, thickness: float, embrace: float, length: float,
     walls: tuple[float, float, float] | None = None,
 ) -> ShellMesh:  # fmt: skip
     """Barrel vault of a circular section, `length` along y; embrace in degrees, lengths in m.
@@ -143,7 +144,7 @@ def mesh_barrel(
 
 
 def mesh_dome(
-    building: "Building", options: ShellOptions, radius: float, thickness: float, embrace: float, oculus: float
+    building: Description, options: ShellOptions, radius: float, thickness: float, embrace: float, oculus: float
 ) -> ShellMesh:
     """Spherical dome on its springing; embrace and oculus in degrees. Without an oculus triangles close the crown."""
     half, top = np.radians(0.5 * embrace), np.radians(0.5 * oculus)
@@ -182,7 +183,7 @@ CORNERS = {"north-east": (1, 1), "north-west": (-1, 1), "south-west": (-1, -1), 
 
 
 def mesh_cross_vault(
-    building: "Building",
+    building: Description,
     options: ShellOptions,
     radius: float,
     thickness: float,
@@ -231,3 +232,41 @@ def mesh_cross_vault(
         way = np.array([right, ahead * oblong, 0.0]) / np.hypot(1.0, oblong)
         made.append(Foot(word, nodes, np.tile(way, (len(nodes), 1)), np.arange(len(nodes), dtype=float)))
     return _mesh(xyz, parts, made, building, size, [])
+
+
+def shell_of_arch(building: Description, options: ShellOptions) -> ShellMesh:
+    """An arch as a barrel vault on its springings."""
+    arch = building.structure
+    assert isinstance(arch, Arch)
+    if arch.skew:
+        raise NoView("a skew arch is no shell yet; `tilt` looks at its solids", ("structure", "skew"))
+    return mesh_barrel(building, options, arch.radius, arch.thickness * arch.thickness_factor, arch.embrace, arch.depth)
+
+
+def shell_of_vault(building: Description, options: ShellOptions) -> ShellMesh:
+    """A vault on walls as thick as the buttresses, their middle planes where those have them."""
+    vault = building.structure
+    assert isinstance(vault, Vault)
+    section = vault.assembly(building.material.density, building.folder)
+    outline = section.outlines[section.buttresses[1]]
+    back, sole = float(outline[:, 0].max()), float(outline[:, 1].min())
+    return mesh_barrel(
+        building, options, vault.radius, vault.thickness, vault.embrace, vault.depth,
+        (back - vault.face, 0.5 * (back + vault.face), sole),
+    )  # fmt: skip
+
+
+def shell_of_dome(building: Description, options: ShellOptions) -> ShellMesh:
+    """A dome on its springing."""
+    dome = building.structure
+    assert isinstance(dome, Dome)
+    return mesh_dome(building, options, dome.radius, dome.thickness * dome.thickness_factor, dome.embrace, dome.oculus)
+
+
+def shell_of_cross_vault(building: Description, options: ShellOptions) -> ShellMesh:
+    """A groin vault on its four corners."""
+    vault = building.structure
+    assert isinstance(vault, CrossVault)
+    edge = vault.thickness if vault.edge is None else vault.edge
+    thickness = vault.thickness * vault.thickness_factor
+    return mesh_cross_vault(building, options, vault.radius, thickness, vault.embrace, edge, vault.oblong)
