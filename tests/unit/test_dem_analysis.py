@@ -9,6 +9,7 @@ import pytest
 
 import extrados
 from extrados.analyses.context import Context
+from extrados.analyses.dem.from_deck import make_model
 from extrados.analyses.run import run_analyses
 from extrados.decks.reader import DeckError, make_deck
 from extrados.model.structures.arch import make_arch
@@ -119,7 +120,7 @@ def test_overlapping_blocks_are_refused_by_name(monkeypatch: pytest.MonkeyPatch)
         )
     )
     monkeypatch.setattr(Column, "assembly", lambda *_: column)
-    model = dem_model.make_model(context, Dem(kind="dem"))
+    model = make_model(context, Dem(kind="dem"))
     with pytest.raises(Exception, match="drum 1 and drum 2 overlap"):
         dem_model.checked(dem.run(model.bodies(), dem.Options(1.0)), model)
 
@@ -127,7 +128,6 @@ def test_overlapping_blocks_are_refused_by_name(monkeypatch: pytest.MonkeyPatch)
 def test_failure_curve_resumes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """An interrupted sweep goes on from what it has: the answers kept are not computed again."""
     from extrados.analyses.dem import dem_domain
-    from extrados.analyses.dem import model as dem_model
     from extrados.core import dem
 
     deck = make_deck(
@@ -143,7 +143,7 @@ def test_failure_curve_resumes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     )  # fmt: skip
     options = deck.analyses[0]
     first = Context(deck, out=tmp_path / "run")
-    model = dem_model.make_model(first, options)
+    model = make_model(first, options)
     asked = [(0, 0.6 * 9.80665, 0.2), (0, 0.6 * 9.80665, 0.8)]
     curves = [dem_domain.Curve("as given", model.values)]
     search = dem_domain.Search(first, options, model, curves, 4)

@@ -9,7 +9,7 @@ import pytest
 import extrados
 from extrados.analyses.context import Context
 from extrados.analyses.dem import standing
-from extrados.analyses.dem.model import make_model
+from extrados.analyses.dem.from_deck import make_model
 from extrados.analyses.dem.settlement import TIMES, closed_settlement, farthest_settlement
 from extrados.core import dem, dem_run
 from extrados.core.ground import as_motion_set

@@ -13,6 +13,7 @@ from functools import cache, cached_property
 import numpy as np
 
 from extrados.analyses.dem import model as dem_model
+from extrados.analyses.dem.from_deck import joint_values
 from extrados.core import arch as core_arch
 from extrados.core import dem, rocking
 from extrados.decks.reader import make_deck
@@ -117,7 +118,7 @@ class Sample:
                 "analysis": [{"kind": "tilt"}],
             }
         ).building  # fmt: skip
-        return dem_model.Model(building.blocks(), building.rigid(), dem_model.joint_values(building))
+        return dem_model.Model(building.blocks(), building.rigid(), joint_values(building))
 
     def falls(self, motion: Motion) -> bool:
         """Does it fall in discrete elements?"""

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from extrados.analyses.dem import model as dem_model
+from extrados.analyses.dem.from_deck import joint_values
 from extrados.analyses.rocking.failure_domain import shortest_durations
 from extrados.core import dem
 from extrados.decks.reader import read_deck
@@ -33,7 +34,7 @@ def vault():
 def elements(modulus: float) -> dem_model.Model:
     building = read_deck(ROOT / "cases" / "vault" / "dejong-a.toml").building
     building = building.having(material=Material(young=modulus), joints=Joints(friction=2.0))
-    return dem_model.Model(building.blocks(), building.rigid(), dem_model.joint_values(building))
+    return dem_model.Model(building.blocks(), building.rigid(), joint_values(building))
 
 
 def falls(modulus: float, amplitude: float, duration: float) -> int:

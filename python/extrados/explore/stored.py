@@ -405,7 +405,7 @@ class _Maker:
             )
 
     def sla(self) -> None:
-        from extrados.show.sla import CORNERS
+        from extrados.show.cracked import CORNERS
 
         self._curve()
         if "state_event" not in self.arrays:

@@ -15,6 +15,7 @@ from extrados.results import checkpoint, store
 from extrados.results.model import Result, Streamed
 from extrados.results.store import Stored
 from extrados.running.described import described
+from extrados.running.notebook import page_of
 from extrados.running.provenance import computed, provenance
 
 if TYPE_CHECKING:
@@ -53,8 +54,6 @@ class Run(Stored):
 
     def _repr_html_(self) -> str:
         """In a notebook: a short table and the main figure, never the arrays."""
-        from extrados.running.notebook import page_of
-
         return page_of(self)
 
     def plot(self, analysis: str) -> "Drawn":

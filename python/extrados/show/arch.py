@@ -1,6 +1,5 @@
 """Figures of what rocks: history, failure domain, assessment."""
 
-import itertools
 from pathlib import Path
 from typing import Any
 
@@ -8,19 +7,8 @@ import numpy as np
 
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
-from extrados.show import animation, style
-
-
-def outlines(run: Stored, name: str) -> list[np.ndarray]:
-    """Outlines of the blocks of an analysis."""
-    vertices, start = run.array(name, "outline"), run.array(name, "outline_start")
-    return [vertices[a:b] for a, b in itertools.pairwise(start)]
-
-
-def moved(outline: np.ndarray, centroid: np.ndarray, pose: np.ndarray) -> np.ndarray:
-    """An outline carried to a pose x, y, rotation of its centroid."""
-    c, s = np.cos(pose[2]), np.sin(pose[2])
-    return (outline - centroid) @ np.array([[c, s], [-s, c]]) + pose[:2]
+from extrados.show import film, style
+from extrados.show.stones import Stones, moved, outlines
 
 
 def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -82,7 +70,7 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         found.append(_draw_restraints(run, name, folder, t))
     if r.soft_base:
         found.append(_draw_base(run, name, folder, t))
-    animation.draw_rocking(run, name, folder)
+    film_rocking(run, name, folder)
     moving = _rocks(run, name)
     if moving.any() and run.array(name, "required_friction").shape[1] > 1:
         found.append(_draw_friction(run, name, folder, t, moving))
@@ -120,6 +108,54 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 )
             )
     return found
+
+
+def film_rocking(run: Stored, name: str, folder: Path) -> None:
+    """The stones as they rock, with the line of thrust, beside ground motion and rotation."""
+    kind, speed = film.asked(run, name)
+    if kind == "none" or "film_time" not in run.arrays[name]:
+        return
+    time, pose = run.array(name, "film_time"), run.array(name, "film_pose")
+    line = run.arrays[name].get("film_line")
+    history = run.array(name, "time")
+    with style.canvas(film.PIXELS[0] / film.DPI, film.PIXELS[1] / film.DPI) as fig:
+        ax, (ground, rotation) = film.axes(fig, 2)
+        stones = Stones(run, name, ax)
+        film.poses_window(ax, stones, pose)
+        (thrust,) = ax.plot([], [], color=style.THRUST, linewidth=1.6, zorder=4, label="line of thrust")
+        if line is not None:
+            ax.legend(loc="upper right")
+        ground.plot(history, run.array(name, "ground") / GRAVITY, color=style.GROUND, linewidth=0.8)
+        ground.set_ylabel("ground [g]")
+        upper = "rotation_upper" in run.arrays[name]  # of two stacked blocks
+        rotation.plot(
+            history,
+            1e3 * run.array(name, "rotation"),
+            color=style.HINGE,
+            linewidth=1.0,
+            label="lower block" if upper else None,
+        )
+        if upper:
+            rotation.plot(
+                history,
+                1e3 * run.array(name, "rotation_upper"),
+                "--",
+                color=style.GROUND,
+                linewidth=1.0,
+                label="upper block",
+            )
+            rotation.legend()
+        rotation.set_ylabel("rotation [mrad], + to +x")
+        rotation.set_xlabel("time [s]")
+        rotation.set_xlim(0.0, float(time[-1]))
+        cursors = [a.axvline(0.0, color=style.THRUST, linewidth=1.0) for a in (ground, rotation)]
+
+        def show(k: int) -> None:
+            stones.place(pose[k])
+            if line is not None:
+                thrust.set_data(*line.data[k].T)
+
+        film.history(ax, folder / "figures" / f"{name}.{kind}", time, speed, show, cursors, [stones.drawn, thrust])
 
 
 def _draw_restraints(run: Stored, name: str, folder: Path, t: np.ndarray) -> tuple[str, str]:

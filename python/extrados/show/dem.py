@@ -11,8 +11,8 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from extrados.results.dem import HINGED_FIRST, HINGED_SECOND, SolidDemRun, SolidDemTilt
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
-from extrados.show import animation, solid_dem, style
-from extrados.show.arch import moved, outlines
+from extrados.show import film, solid_dem, style
+from extrados.show.stones import Stones, moved, outlines
 
 SHOWN = 6
 MOST_HINGES = 40
@@ -121,7 +121,7 @@ def draw_dem(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             figures.append(_hinge_map(run, name, folder))
         if run[name].sensitivity:
             figures.append(_sensitivity(run, name, folder))
-    animation.draw_dem(run, name, folder)
+    film_dem(run, name, folder)
     return figures
 
 
@@ -336,3 +336,42 @@ def draw_parameters(run: Stored, name: str, folder: Path) -> list[tuple[str, str
         ax.legend()
         saved = style.save(fig, folder, f"{name}-damping")
     return [(saved, "Fraction of critical damping at the impact frequencies of the joints.")]
+
+
+def film_dem(run: Stored, name: str, folder: Path) -> None:
+    """Blocks as they rock, hinge, slide and fall, beside ground motion and rotations."""
+    kind, speed = film.asked(run, name)
+    if kind == "none" or "rotation" not in run.arrays[name]:
+        return
+    time, rotation = run.array(name, "time"), run.array(name, "rotation")
+    frames, _ = film.pictures(time, kind, speed)
+    scene = Scene(run, name, frames.tolist())
+    tracked = run.array(name, "tracked")
+    most = tracked[np.argsort(-np.abs(rotation[:, tracked]).max(axis=0), kind="stable")[:SHOWN]]
+    label = dict(zip(tracked.tolist(), run[name].peak_rotation_rad, strict=True))
+    with style.canvas(film.PIXELS[0] / film.DPI, film.PIXELS[1] / film.DPI) as fig:
+        ax, (ground, turn) = film.axes(fig, 2)
+        ground.plot(time, run.array(name, "ground") / GRAVITY, color=style.GROUND, linewidth=0.8)
+        ground.set_ylabel("ground [g]")
+        for i in most:
+            turn.plot(time, 1e3 * rotation[:, i], label=label[int(i)], linewidth=1.0)
+        if len(most) > 1:
+            turn.legend(loc="upper left", ncols=2)
+        turn.set_ylabel("rotation [mrad]" + (f" of {label[int(most[0])]}" if len(most) == 1 else ""))
+        turn.set_xlabel("time [s]")
+        turn.set_xlim(float(time[0]), float(time[-1]))
+        cursors = [a.axvline(0.0, color=style.THRUST, linewidth=1.0) for a in (ground, turn)]
+        for support in scene.supports:
+            ax.fill(*support.T, facecolor="#d7d3cb", edgecolor="none", zorder=0)
+        stones = Stones(run, name, ax)
+        (hinges,) = ax.plot([], [], "o", color=style.HINGE, markersize=6, markerfacecolor="white", markeredgewidth=1.6)
+        left, right, bottom, top = scene.window
+        ax.set_xlim(left, right)
+        ax.set_ylim(bottom, top)
+        style.section_axes(ax)
+
+        def show(k: int) -> None:
+            stones.place(scene.place[k])
+            hinges.set_data(*scene.hinges(k).T)
+
+        film.history(ax, folder / "figures" / f"{name}.{kind}", time, speed, show, cursors, [stones.drawn, hinges])

@@ -13,7 +13,8 @@ from extrados.results.shell import PushCurve
 from extrados.results.sla import PREFIXES
 from extrados.results.store import Stored
 from extrados.show import scene, style
-from extrados.show.sla import CRACKS, LOST, SENSES
+from extrados.show.cracked import CRACKS
+from extrados.show.sla import LOST, SENSES
 
 FLOOR = "#dbe3ea"
 #: Where the building is looked at from

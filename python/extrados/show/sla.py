@@ -5,17 +5,16 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.colors import Normalize
 
 from extrados.results.model import Array
 from extrados.results.sla import PREFIXES, Sla
 from extrados.results.store import Stored
-from extrados.show import animation, style
+from extrados.show import style
+from extrados.show.cracked import CORNERS, CRACKS, at_points, polygons, scale
+from extrados.show.sla_film import film_sla
 
-#: Of crack widths: its lightest colour stands out from white
-CRACKS = LinearSegmentedColormap.from_list("cracks", ["#f4a261", "#d1495b", "#7b2d8b", "#10002b"])
 LOST, ENVELOPE = "#d9822b", "#1f4e79"
-CORNERS = {3: 3, 6: 3, 4: 4, 8: 4}
 #: Panels that stand beside each other at most; one more does before the next row begins
 MOST_BESIDE = 3
 STAGES = ("#7b93ab", "#b3342d", "#1f4e79", "#d9822b", "#3a7d44", "#7b2d8b")
@@ -28,20 +27,6 @@ NOTHING = 1e-3  # of the greatest stress: less is drawn as none
 MOST_PLATEAU = 20.0
 #: Part of the wall by which a state has moved that came apart
 APART = 0.05
-
-
-def _polygons(run: Stored, name: str, xy: np.ndarray) -> list[np.ndarray]:
-    return [p for a in run.series(name, "elements") for p in xy[a.data[:, : CORNERS[a.data.shape[1]]]]]
-
-
-def _scale(span: np.ndarray, moved: np.ndarray, part: float = 0.06) -> float:
-    """A round factor that makes the largest displacement a small part of the wall."""
-    most = np.hypot(*moved.T).max()
-    if not most > 0.0:
-        return 1.0
-    exact = part * span.max() / most
-    power = 10.0 ** np.floor(np.log10(exact))
-    return float(max(s for s in (1.0, 2.0, 5.0) if s * power <= exact or s == 1.0) * power)
 
 
 def _wall(ax: Axes, polygons: list[np.ndarray], **options) -> PolyCollection:
@@ -67,7 +52,7 @@ def _outline(run: Stored, name: str) -> np.ndarray:
 def draw_sla(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """All figures of one analysis."""
     figures = [_curve(run, name, folder)]
-    animation.draw_sla(run, name, folder)
+    film_sla(run, name, folder)
     for prefix in PREFIXES:
         if f"{prefix}state_event" in run.arrays[name]:
             figures += [_cracks(run, name, folder, prefix), _stresses(run, name, folder, prefix)]
@@ -283,7 +268,7 @@ def _draw_cracks(run: Stored, name: str, folder: Path, shown: list[tuple[str, in
     moves = [get(prefix, "displacement", s) for prefix, s, _ in shown]
     apart = [bool(np.abs(moved).max() > APART * span.max()) for moved in moves]
     whole = [k for k in range(len(shown)) if not apart[k]] or list(range(len(shown)))
-    common = _scale(span, np.concatenate([moves[k] for k in whole]))
+    common = scale(span, np.concatenate([moves[k] for k in whole]))
     widest = [max(float(get(prefix, f"width_{d}", s).max()) for d in "ns") for prefix, s, _ in shown]
     most = max(widest[k] for k in whole)
     edges = _outline(run, name)
@@ -293,13 +278,13 @@ def _draw_cracks(run: Stored, name: str, folder: Path, shown: list[tuple[str, in
             ax.set_axis_off()
         for k, (ax, (prefix, s, words)) in enumerate(zip(axes, shown, strict=False)):
             moved, load = moves[k], get(prefix, "load", s)
-            factor = common if k in whole else _scale(span, moved)
+            factor = common if k in whole else scale(span, moved)
             shape = xy + factor * moved
-            _wall(ax, _polygons(run, name, shape), facecolors="white", edgecolors="#e4e4e4")
+            _wall(ax, polygons(run, name, shape), facecolors="white", edgecolors="#e4e4e4")
             ax.add_collection(LineCollection(shape[edges], colors=style.EDGE, linewidths=0.7))
             angle = get(prefix, "angle", s)
             widths = [get(prefix, f"width_{d}", s) for d in "ns"]
-            place = at + factor * _at_points(run, name, moved)
+            place = at + factor * at_points(run, name, moved)
             for width, turn in zip(widths, (0.5 * np.pi, 0.0), strict=True):
                 # A crack runs across its normal; those too fine to matter are left out
                 wide = width > max(1e-3 * most, 1e-9)
@@ -320,13 +305,6 @@ def _draw_cracks(run: Stored, name: str, folder: Path, shown: list[tuple[str, in
             beyond = "max" if max(widest) > 1.001 * most else "neither"
             fig.colorbar(drawn, ax=list(axes), shrink=0.7, label="crack width [mm]", extend=beyond)
         return style.save(fig, folder, file)
-
-
-def _at_points(run: Stored, name: str, moved: np.ndarray) -> np.ndarray:
-    """Displacements carried from the nodes to the points: the mean of their element's corners."""
-    blocks = [a.data for a in run.series(name, "elements")]
-    per_element = np.concatenate([moved[c[:, : CORNERS[c.shape[1]]]].mean(axis=1) for c in blocks])
-    return per_element[run.array(name, "point_element")]
 
 
 def _panels(span: np.ndarray, count: int):
@@ -350,7 +328,7 @@ def _stresses(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
         for ax, value, title, cmap in zip(axes, stresses, ("greater", "lesser"), ("Reds", "Blues_r"), strict=True):
             low, high = np.percentile(value, [2, 98])
             limits = (0.0, max(high, least)) if title == "greater" else (min(low, -least), 0.0)
-            _wall(ax, _polygons(run, name, xy), facecolors="none", linewidths=0.1)
+            _wall(ax, polygons(run, name, xy), facecolors="none", linewidths=0.1)
             size = np.clip(9000.0 / len(at), 0.3, 40.0)
             drawn = ax.scatter(*at.T, c=value, s=size, cmap=cmap, vmin=limits[0], vmax=limits[1], linewidths=0)
             fig.colorbar(drawn, ax=ax, shrink=0.7, label="stress [MPa]")

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from extrados.results.dem import SolidDemRun, SolidDemTilt
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
-from extrados.show import animation, scene, style
+from extrados.show import film, scene, style
 from extrados.show.solids import FILM_PIXELS, VIEW, faces_of
 
 SHOWN = 6
@@ -144,13 +144,13 @@ def _contacts(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 def _film(run: Stored, name: str, folder: Path) -> None:
     """The motion as a film, where the deck asks for one."""
-    kind, speed = animation.asked(run, name)
+    kind, speed = film.asked(run, name)
     if kind == "none":
         return
     time = run.array(name, "time")
-    frames, rate = animation.pictures(time, kind, speed)
+    frames, rate = film.pictures(time, kind, speed)
     stage = _Stage(run, name, frames.tolist(), FILM_PIXELS)
-    width, height = (side / animation.DPI for side in animation.PIXELS)
+    width, height = (side / film.DPI for side in film.PIXELS)
     with style.figure(width, height) as (fig, (ax,)):
         stage.show(ax, int(frames[0]), None)
         if stage.share.any():
@@ -163,4 +163,4 @@ def _film(run: Stored, name: str, folder: Path) -> None:
             title.set_text(f"{time[frames[k]]:.2f} s")
 
         path = folder / "figures" / f"{name}.{kind}"
-        animation.write(fig, path, kind, rate, np.arange(len(frames)), show, [drawn, title])
+        film.write(fig, path, kind, rate, np.arange(len(frames)), show, [drawn, title])

@@ -12,7 +12,7 @@ from extrados.results.limit import DILATANT
 from extrados.results.solid_files import rotations
 from extrados.results.solids import SolidTilt
 from extrados.results.store import Stored
-from extrados.show import animation, scene, style
+from extrados.show import film, scene, style
 from extrados.show.limit import tilt
 
 VIEW = scene.View()
@@ -119,14 +119,14 @@ def _film(
     run: Stored, name: str, folder: Path, r: SolidTilt, frame: tuple[float, float, float, float], colours: np.ndarray
 ) -> None:
     """The mechanism as a film, where the deck asks for one: out and back, so that it goes on without a jump."""
-    kind, speed = animation.asked(run, name)
+    kind, speed = film.asked(run, name)
     if kind == "none":
         return
     pose = run.array(name, "mechanism_pose")
     stones = faces_of(run, name)
-    times = np.linspace(0.0, FILM, 1 + round(FILM * animation.RATES[kind] / max(speed, 1e-3)))
+    times = np.linspace(0.0, FILM, 1 + round(FILM * film.RATES[kind] / max(speed, 1e-3)))
     share = np.sin(np.pi * times / FILM) ** 2
-    width, height = (side / animation.DPI for side in animation.PIXELS)
+    width, height = (side / film.DPI for side in film.PIXELS)
     with style.figure(width, height) as (fig, (ax,)):
         scene.show(ax, scene.picture(stones, VIEW, frame, colours, FILM_PIXELS), frame)
         (drawn,) = ax.images
@@ -138,7 +138,7 @@ def _film(
             drawn.set_data(scene.picture(faces_of(run, name, share[k] * pose), VIEW, frame, colours, FILM_PIXELS))
 
         path = folder / "figures" / f"{name}.{kind}"
-        animation.write(fig, path, kind, animation.RATES[kind], np.arange(len(times)), draw, [drawn])
+        film.write(fig, path, kind, film.RATES[kind], np.arange(len(times)), draw, [drawn])
 
 
 def _speeds(stones: scene.Faces, moved: scene.Faces, count: int) -> np.ndarray:

@@ -230,7 +230,7 @@ def _sla(asked: Asked) -> Choice:
 
 
 def _dem(asked: Asked) -> Choice:
-    from extrados.analyses.dem.model import joint_values
+    from extrados.analyses.dem.from_deck import joint_values
 
     building = asked.building
     try:

@@ -9,6 +9,7 @@ import numpy as np
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import measures, solid_settlement
 from extrados.analyses.dem import model as dem_model
+from extrados.analyses.dem.from_deck import make_model
 from extrados.analyses.dem.model import JointValues, Model
 from extrados.analyses.dem.runs import Runs, SolidRuns, SolidTask, Task, answered
 from extrados.analyses.dem.settlement import farthest_settlement
@@ -132,7 +133,7 @@ def run(context: Context, options: DemDomain) -> Result:
     """Curves of the shortest failing durations, with their sensitivity, beside those of the four-hinge model."""
     model: Model | SolidModel
     if isinstance(stones_of(context.building, options), Assembly):
-        model = dem_model.make_model(context, options)
+        model = make_model(context, options)
         context.warnings += dem_model.warnings(model, options)
         varied = _varied(options, model.values)
     else:

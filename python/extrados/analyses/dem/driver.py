@@ -3,6 +3,7 @@
 from extrados.analyses.context import Context
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem import motion, solid_motion, solid_tilt, tilt
+from extrados.analyses.dem.from_deck import make_model
 from extrados.analyses.dem.solid_model import make_solid_model
 from extrados.analyses.dem.standing import compared
 from extrados.analyses.dem.tables import Dem
@@ -15,7 +16,7 @@ def run(context: Context, options: Dem) -> Result:
     """A run with its variations, or a tilt test; of a section, or of solids."""
     tilted = options.test == "tilt"
     if isinstance(stones_of(context.building, options), Assembly):
-        model = dem_model.make_model(context, options)
+        model = make_model(context, options)
         context.warnings += dem_model.warnings(model, options)
         of_section = tilt if tilted else motion
         return compared(context, options.rigid, model, lambda: of_section.run(context, options, model))

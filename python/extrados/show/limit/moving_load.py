@@ -11,6 +11,7 @@ from extrados.results.limit import DILATANT, MovingLoad
 from extrados.results.store import Stored
 from extrados.show import style
 from extrados.show.limit import section
+from extrados.show.stones import outlines
 
 LONG = 0.5  # height over length: below it section and mechanism stand one over the other
 MOST_LETTERS = 8  # hinges: letters of more would run into each other
@@ -20,7 +21,7 @@ EVEN = "#c98a2b"  # loads
 def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """The worst place with its thrust line, the mechanism, and the capacity over place."""
     r = run[name]
-    blocks, centroid = section.outlines(run, name), run.array(name, "centroid")
+    blocks, centroid = outlines(run, name), run.array(name, "centroid")
     place, size = run.array(name, "place"), float(np.ptp(np.concatenate(blocks)[:, 0]))
     road = _road_of(run, name, blocks)
     start, joints = run.array(name, "chain_start"), run.array(name, "chain_joint")

@@ -9,6 +9,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from extrados.results.limit import Hinge
 from extrados.results.store import Stored
 from extrados.show import style
+from extrados.show.stones import moved
 
 MOST_LETTERED = 26  # hinges: more are dots
 MOST_FLOW = 3.0  # points: width of the greatest force between stones
@@ -26,19 +27,9 @@ def paths(run: Stored, name: str, what: str) -> dict[str, np.ndarray]:
     return {str(n): points[a:b] for n, a, b in zip(names, start[:-1], start[1:], strict=True)}
 
 
-def outlines(run: Stored, name: str, what: str = "outline") -> list[np.ndarray]:
-    """Outlines of the blocks of an analysis."""
-    vertices, start = run.array(name, what), run.array(name, what + "_start")
-    return [vertices[a:b] for a, b in itertools.pairwise(start)]
-
-
 def carried(blocks: list[np.ndarray], centroid: np.ndarray, pose: np.ndarray) -> list[np.ndarray]:
     """Outlines carried to poses x, y, rotation of their centroids."""
-    found = []
-    for outline, c, (x, y, turn) in zip(blocks, centroid, pose, strict=True):
-        cos, sin = np.cos(turn), np.sin(turn)
-        found.append((outline - c) @ np.array([[cos, sin], [-sin, cos]]) + (x, y))
-    return found
+    return [moved(*one) for one in zip(blocks, centroid, pose, strict=True)]
 
 
 def stone(ax: Axes, blocks: list[np.ndarray], *, ghost: bool = False) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 from extrados.results.store import Stored
 from extrados.show import style
 from extrados.show.limit import section
+from extrados.show.stones import outlines
 
 #: Greatest displacement that is drawn, over the size of the structure
 SHOWN = 0.08
@@ -14,7 +15,7 @@ SHOWN = 0.08
 
 def draw_self_weight(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """The blocks as drawn in the deck, and displaced along the collapse motion of the certificate."""
-    blocks, centroid = section.outlines(run, name), run.array(name, "centroid")
+    blocks, centroid = outlines(run, name), run.array(name, "centroid")
     velocity = run.array(name, "collapse_velocity")
     corners = np.concatenate(blocks)
     size = float(np.ptp(corners, axis=0).max())

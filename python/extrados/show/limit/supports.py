@@ -5,17 +5,18 @@ from pathlib import Path
 import numpy as np
 
 from extrados.results.store import Stored
-from extrados.show import animation, style
+from extrados.show import film, style
 from extrados.show.limit import section
+from extrados.show.stones import Stones, outlines
 
 MOST_OPENINGS = 12  # openings that are written beside their joints
 
 
 def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """The arch on the way to its fall, and how the thrust changes; of any structure, the joints that open."""
-    animation.draw_supports(run, name, folder)
+    film_supports(run, name, folder)
     r = run[name]
-    blocks, centroid = section.outlines(run, name), run.array(name, "centroid")
+    blocks, centroid = outlines(run, name), run.array(name, "centroid")
     if "settled_pose" in run.arrays[name]:
         return [_draw_settled(run, name, folder, blocks, centroid)]
     movement, pose, points = (run.array(name, f"shown_{what}") for what in ("movement", "pose", "point"))
@@ -86,4 +87,53 @@ def _draw_settled(run: Stored, name: str, folder: Path, blocks, centroid) -> tup
         return (
             style.save(fig, folder, f"{name}-openings"),
             f"Where supports give way joints open; movements and openings are drawn {factor:g} times as large, dotted: before.",
+        )
+
+
+def film_supports(run: Stored, name: str, folder: Path) -> None:
+    """The arch follows the movement of its support, with its line of thrust, beside the thrust."""
+    kind, speed = film.asked(run, name)
+    arrays = run.arrays[name]
+    if kind == "none":
+        return
+    follows = "film_movement" in arrays
+    if follows:
+        movement, pose = 1e3 * run.array(name, "film_movement"), run.array(name, "film_pose")
+    else:
+        centroid = run.array(name, "centroid")
+        rest = np.column_stack([centroid, np.zeros(len(centroid))])
+        share = np.linspace(0.0, 1.0, 60)
+        movement, pose = 100.0 * share, rest + share[:, None, None] * (run.array(name, "settled_pose") - rest)
+    with style.canvas(film.PIXELS[0] / film.DPI, film.PIXELS[1] / film.DPI) as fig:
+        ax, charts = film.axes(fig, 1)
+        stones = Stones(run, name, ax)
+        film.poses_window(ax, stones, pose)
+        (thrust,) = ax.plot([], [], color=style.THRUST, linewidth=1.6, zorder=4, label="line of thrust")
+        if follows:
+            ax.legend(loc="upper right")
+        if follows:
+            x, y = 1e3 * run.array(name, "movement"), run.array(name, "force")[:, 0] / 1e3
+            charts[0].set_xlabel("movement of the support [mm]")
+            charts[0].set_ylabel("thrust [kN]")
+        else:
+            opening = run.array(name, "settled_opening")[:, :2].max(axis=1)
+            x, y = movement, movement / 100.0 * 1e3 * float(opening.max())
+            charts[0].set_xlabel("share of the movement [%]")
+            charts[0].set_ylabel("widest joint [mm]")
+        charts[0].plot(x, y, color=style.HINGE)
+        cursor = charts[0].axvline(0.0, color=style.THRUST, linewidth=1.0)
+        title = ax.set_title("")
+
+        def draw(k: int) -> None:
+            stones.place(pose[k])
+            if follows:
+                thrust.set_data(*run.array(name, "film_line")[k].T)
+            cursor.set_xdata([movement[k], movement[k]])
+            title.set_text(
+                f"support moved by {movement[k]:.1f} mm" if follows else f"{movement[k]:.0f} % of the movement"
+            )
+
+        frames, rate = film.pictures(np.linspace(0.0, film.LASTS, len(movement)), kind, speed)
+        film.write(
+            fig, folder / "figures" / f"{name}.{kind}", kind, rate, frames, draw, [stones.drawn, thrust, cursor, title]
         )

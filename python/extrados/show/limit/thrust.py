@@ -7,12 +7,13 @@ import numpy as np
 from extrados.results.store import Stored
 from extrados.show import style
 from extrados.show.limit import section
+from extrados.show.stones import outlines
 
 
 def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """The three lines and their force polygons; friction needed along the joints."""
     r = run[name]
-    blocks = section.outlines(run, name)
+    blocks = outlines(run, name)
     colours = {"least": style.THRUST, "central": "#444444", "most": style.HINGE}
     lines_of = {which: line for which in colours if (line := getattr(r, which)) is not None}
     if not lines_of:  # a wall whose most central state did not settle

@@ -6,15 +6,16 @@ import numpy as np
 
 from extrados.results.limit import DILATANT, Tilt
 from extrados.results.store import Stored
-from extrados.show import animation, style
+from extrados.show import film, style
 from extrados.show.limit import section
+from extrados.show.stones import Stones, outlines, turned, window
 
 
 def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Section at collapse, mechanism, force polygon; thrust upright; monolithic beside fractured."""
-    animation.draw_tilt(run, name, folder)
+    film_tilt(run, name, folder)
     r = run[name]
-    blocks, centroid = section.outlines(run, name), run.array(name, "centroid")
+    blocks, centroid = outlines(run, name), run.array(name, "centroid")
     points = np.concatenate(blocks)
     tall = float(np.ptp(points[:, 1]) / max(np.ptp(points[:, 0]), 1e-9))
     height = float(np.clip(3.4 * tall + 1.2, 3.6, 7.0))
@@ -110,7 +111,7 @@ def _draw_fracture(run: Stored, name: str, folder: Path, blocks, centroid, heigh
         section.stone(
             cracked,
             section.carried(
-                section.outlines(run, name, "crack_outline"),
+                outlines(run, name, "crack_outline"),
                 run.array(name, "crack_centroid"),
                 run.array(name, "crack_pose"),
             ),
@@ -125,4 +126,76 @@ def _draw_fracture(run: Stored, name: str, folder: Path, blocks, centroid, heigh
         return (
             style.save(fig, folder, f"{name}-fracture"),
             f"Mechanisms with the buttress whole and cracked; the crack starts {f.crack_height_m:.2f} m above the base, the wedge below it stays.",
+        )
+
+
+def film_tilt(run: Stored, name: str, folder: Path) -> None:
+    """The ground is tilted until the lines of least and greatest thrust are one; then the mechanism moves."""
+    kind, speed = film.asked(run, name)
+    if kind == "none" or "mechanism_pose" not in run.arrays[name]:
+        return
+    arrays = run.arrays[name]
+    centroid = run.array(name, "centroid")
+    rest = np.column_stack([centroid, np.zeros(len(centroid))])
+    falls = run.array(name, "mechanism_pose")
+    last = np.radians(run[name].tilt_angle_deg)
+    lines = "film_tilt" in arrays
+    tilt = np.radians(run.array(name, "film_tilt")) if lines else np.linspace(0.0, last, 40)
+    moves = len(tilt) // 2
+    with style.canvas(film.PIXELS[0] / film.DPI, film.PIXELS[1] / film.DPI) as fig:
+        ax, charts = film.axes(fig, 1)
+        stones = Stones(run, name, ax)
+        corners = np.concatenate(stones.outlines)
+        far = [turned(corners, -a) for a in (0.0, last)]
+        window(ax, np.concatenate(far))
+        drawn = {
+            word: ax.plot([], [], style_of, color=colour, linewidth=1.6, zorder=4, label=f"{word} thrust")[0]
+            for word, style_of, colour in (("least", "--", style.HINGE), ("greatest", ":", style.GROUND))
+        }
+        base = np.array([corners.min(axis=0), [corners[:, 0].max(), corners[:, 1].min()]])
+        (ground,) = ax.plot(*base.T, color="#777777", linewidth=1.0)
+        chart = charts[0]
+        if lines:
+            ax.legend(loc="upper right")
+            for word, key_of, style_of, colour in (
+                ("least", "film_thrust_min", "--", style.HINGE),
+                ("greatest", "film_thrust_max", ":", style.GROUND),
+            ):
+                chart.plot(
+                    np.degrees(tilt), run.array(name, key_of) / 1e3, style_of, color=colour, label=f"{word} thrust"
+                )
+            chart.set_ylabel("horizontal thrust [kN]")
+            chart.legend()
+        else:
+            chart.plot(np.degrees(tilt), np.tan(tilt), color=style.HINGE)
+            chart.set_ylabel("horizontal acceleration [g]")
+        chart.set_xlabel("tilt [degrees]")
+        cursor = chart.axvline(0.0, color=style.THRUST, linewidth=1.0)
+        title = ax.set_title("")
+
+        def draw(k: int) -> None:
+            angle = tilt[min(k, len(tilt) - 1)]
+            share = max(0.0, (k - len(tilt) + 1) / moves)
+            stones.place(rest + share * (falls - rest), -angle)
+            ground.set_data(*turned(base, -angle).T)
+            for word, key_of in (("least", "film_least"), ("greatest", "film_most")) if lines else ():
+                points = run.array(name, key_of)[min(k, len(tilt) - 1)]
+                drawn[word].set_data(*(turned(points, -angle).T if share == 0.0 else np.empty((2, 0))))
+            cursor.set_xdata([np.degrees(angle)] * 2)
+            title.set_text(
+                f"ground tilted by {np.degrees(angle):.2f} degrees, as {np.tan(angle):.4f} g to the side"
+                + (": it comes down" if share else "")
+            )
+
+        count = len(tilt) + moves
+        time = np.linspace(0.0, film.LASTS, count)
+        frames, rate = film.pictures(time, kind, speed)
+        film.write(
+            fig,
+            folder / "figures" / f"{name}.{kind}",
+            kind,
+            rate,
+            frames,
+            draw,
+            [ground, stones.drawn, *drawn.values(), cursor, title],
         )
