@@ -4,7 +4,6 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import model_validator
 
-from extrados import kinds
 from extrados.analyses.table import BuildingAnalysis
 from extrados.schema.quantities import Acceleration, Angle, Force, Length, Stress, Time, Velocity
 from extrados.schema.spectrum import CodeSpectrum
@@ -199,6 +198,4 @@ class LocalMechanism(BuildingAnalysis):
     def of_stones(self, building: "Building") -> bool:
         """Whether the mechanism is that of the deck's stones, not of a body by itself or of the walls of a plan."""
         structure = building.structure
-        return self.mechanism == "building" and (
-            structure is None or "blocks" not in kinds.STRUCTURES[structure.kind].lacks
-        )
+        return self.mechanism == "building" and (structure is None or "blocks" not in building.kind.lacks)
