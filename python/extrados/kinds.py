@@ -5,6 +5,7 @@ Only names stand here: a command loads no more than the kinds that its deck asks
 
 import importlib
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
 from extrados import room  # which also looks at the room for SciPy before it is loaded
@@ -52,16 +53,21 @@ class StructureKind:
 class AnalysisKind:
     """Where the parts of an analysis live, each "module:name" within the package.
 
-    table: its deck table. driver: run(context, options) -> Result. results: the typed model of what it gives, or a
-    union of models. figures: draws a stored analysis, (run, name, folder) -> [(figure, caption)]. example: a deck with
-    known answers, below cases/.
+    table: its deck table. needs: (context, options) -> steps that refuse what it cannot begin with. driver:
+    run(context, options) -> Result. results: the typed model of what it gives, or a union of models. validity: what it
+    assumes, and its limits. figures: draws a stored analysis, (run, name, folder) -> [(figure, caption)]. page: its charts on the
+    page, of explore.stored.Shown. example: a deck with known answers, below cases/. strategies: those of `assess` that ask it.
     """
 
     table: str
+    needs: str
     driver: str
     results: str
+    validity: str
     figures: str
+    page: str
     example: str
+    strategies: tuple[str, ...]
 
 
 #: Makers that several kinds share, and reasons
@@ -142,56 +148,44 @@ MOTIONS: dict[str, str] = {
 }
 
 
-def _analysis(place: str, table: str, driver: str, figures: str, example: str) -> AnalysisKind:
-    """The results of a kind are called as its table is."""
+def _analysis(
+    package: str, table: str, driver: str, figures: str, page: str, example: str, strategies: tuple[str, ...] = (),
+    results: str | None = None,
+) -> AnalysisKind:  # fmt: skip
+    """The results of a kind are called as its table is and so is its validity."""
     return AnalysisKind(
-        f"analyses.{place}.tables:{table}", f"analyses.{place}.{driver}:run", f"results.{place}:{table}", f"show.{figures}",
-        f"{example}.toml",
+        f"analyses.{package}.tables:{table}", f"analyses.{package}.needs:needs", f"analyses.{package}.{driver}:run",
+        f"results.{results or f'{package}:{table}'}", f"results.validity:{table}", f"show.{figures}", f"explore.stored:Shown.{page}",
+        f"{example}.toml", strategies,
     )  # fmt: skip
 
 
 ANALYSES: dict[str, AnalysisKind] = {
-    "tilt": AnalysisKind(
-        "analyses.limit.tables:Tilt", "analyses.limit.tilt:run", "results.solids:Tilt", "show.solids:draw_tilt", "limit/oppenheim.toml"
-    ),
-    "thrust": _analysis("limit", "Thrust", "thrust", "limit.thrust:draw", "vault/dejong-a"),
-    "sweep": _analysis("limit", "Sweep", "sweep", "limit.sweep:draw_sweep", "vault/vezelay-sweep"),
-    "survey": _analysis("limit", "Survey", "survey", "limit.sweep:draw_survey", "limit/survey"),
-    "imperfections": _analysis(
-        "limit", "Imperfections", "imperfections", "limit.sweep:draw_imperfections", "limit/church"
-    ),
-    "supports": _analysis("limit", "MovingSupports", "supports", "limit.supports:draw", "limit/oppenheim"),
-    "moving-load": _analysis("limit", "MovingLoad", "moving_load", "limit.moving_load:draw", "limit/oppenheim"),
-    "rocking": _analysis("rocking", "Rocking", "driver", "arch:draw_rocking", "arch/oppenheim"),
-    "failure-domain": _analysis(
-        "rocking", "FailureDomain", "failure_domain", "arch:draw_failure_domain", "arch/oppenheim-domain"
-    ),
-    "failure-curves": _analysis(
-        "rocking", "FailureCurves", "failure_curves", "curves:draw_failure_curves", "arch/figure-5-4"
-    ),
-    "assessment": _analysis("rocking", "Assessment", "assessment", "arch:draw_assessment", "arch/readme"),
-    "fragility": _analysis(
-        "statistics", "Fragility", "fragility", "statistics:draw_fragility", "fragility/pga-curve"
-    ),
-    "resonance": _analysis("statistics", "Resonance", "resonance", "statistics:draw_resonance", "rocking/resonance"),
-    "rocking-spectrum": _analysis(
-        "statistics", "RockingSpectrum", "rocking_spectrum", "statistics:draw_rocking_spectrum", "rocking/el-centro-block"
-    ),
-    "harmonic-map": _analysis(
-        "statistics", "HarmonicMap", "harmonic_map", "statistics:draw_harmonic_map", "rocking/el-centro-block"
-    ),
-    "code-checks": _analysis("codes", "CodeChecks", "code_checks", "statistics:draw_code_checks", "rocking/el-centro-block"),
-    "local-mechanism": _analysis(
-        "codes", "LocalMechanism", "local_mechanism", "codes:draw_local_mechanism", "codes/facade"
-    ),
-    "motion": _analysis("motion", "MotionStudy", "motion_study", "motion:draw_motion", "motion/el-centro"),
-    "shake-table": _analysis("motion", "ShakeTable", "shake_table", "motion:draw_shake_table", "motion/appendix-c"),
-    "sla": _analysis("sla", "Sla", "driver", "sla:draw_sla", "sla/beam"),
-    "pushover": _analysis("shell", "Pushover", "pushover", "shell:draw_pushover", "building/two-rooms"),
-    "dem": _analysis("dem", "Dem", "driver", "dem:draw_dem", "dem/oppenheim"),
-    "dem-domain": _analysis("dem", "DemDomain", "dem_domain", "dem:draw_domain", "dem/domain"),
-    "assess": _analysis("assess", "Assess", "driver", "assess:draw_assess", "assess/readme-arch"),
-    "dem-parameters": _analysis("dem", "DemParameters", "dem_parameters", "dem:draw_parameters", "dem/rocking-block"),
+    "tilt": _analysis("limit", "Tilt", "tilt", "solids:draw_tilt", "tilt", "limit/oppenheim", ("tilt",), results="solids:Tilt"),
+    "thrust": _analysis("limit", "Thrust", "thrust", "limit.thrust:draw", "thrust", "vault/dejong-a"),
+    "sweep": _analysis("limit", "Sweep", "sweep", "limit.sweep:draw_sweep", "sweep", "vault/vezelay-sweep"),
+    "survey": _analysis("limit", "Survey", "survey", "limit.sweep:draw_survey", "survey", "limit/survey"),
+    "imperfections": _analysis("limit", "Imperfections", "imperfections", "limit.sweep:draw_imperfections", "others", "limit/church"),
+    "supports": _analysis("limit", "MovingSupports", "supports", "limit.supports:draw", "supports", "limit/oppenheim"),
+    "moving-load": _analysis("limit", "MovingLoad", "moving_load", "limit.moving_load:draw", "moving_load", "limit/oppenheim"),
+    "rocking": _analysis("rocking", "Rocking", "driver", "arch:draw_rocking", "rocking", "arch/oppenheim", ("rocking",)),
+    "failure-domain": _analysis("rocking", "FailureDomain", "failure_domain", "arch:draw_failure_domain", "failure_domain", "arch/oppenheim-domain"),
+    "failure-curves": _analysis("rocking", "FailureCurves", "failure_curves", "curves:draw_failure_curves", "failure_curves", "arch/figure-5-4"),
+    "assessment": _analysis("rocking", "Assessment", "assessment", "arch:draw_assessment", "assessment", "arch/readme", ("assessment",)),
+    "fragility": _analysis("statistics", "Fragility", "fragility", "statistics:draw_fragility", "fragility", "fragility/pga-curve", ("probability",)),
+    "resonance": _analysis("statistics", "Resonance", "resonance", "statistics:draw_resonance", "others", "rocking/resonance"),
+    "rocking-spectrum": _analysis("statistics", "RockingSpectrum", "rocking_spectrum", "statistics:draw_rocking_spectrum", "others", "rocking/el-centro-block"),
+    "harmonic-map": _analysis("statistics", "HarmonicMap", "harmonic_map", "statistics:draw_harmonic_map", "others", "rocking/el-centro-block"),
+    "code-checks": _analysis("codes", "CodeChecks", "code_checks", "statistics:draw_code_checks", "others", "rocking/el-centro-block", ("code-checks",)),
+    "local-mechanism": _analysis("codes", "LocalMechanism", "local_mechanism", "codes:draw_local_mechanism", "local_mechanism", "codes/facade"),
+    "motion": _analysis("motion", "MotionStudy", "motion_study", "motion:draw_motion", "others", "motion/el-centro"),
+    "shake-table": _analysis("motion", "ShakeTable", "shake_table", "motion:draw_shake_table", "others", "motion/appendix-c"),
+    "sla": _analysis("sla", "Sla", "driver", "sla:draw_sla", "sla", "sla/beam", ("sla",)),
+    "pushover": _analysis("shell", "Pushover", "pushover", "shell:draw_pushover", "pushover", "building/two-rooms", ("push-x", "push-y")),
+    "dem": _analysis("dem", "Dem", "driver", "dem:draw_dem", "dem", "dem/oppenheim", ("dem",)),
+    "dem-domain": _analysis("dem", "DemDomain", "dem_domain", "dem:draw_domain", "dem_domain", "dem/domain"),
+    "assess": _analysis("assess", "Assess", "driver", "assess:draw_assess", "others", "assess/readme-arch"),
+    "dem-parameters": _analysis("dem", "DemParameters", "dem_parameters", "dem:draw_parameters", "others", "dem/rocking-block"),
 }  # fmt: skip
 
 #: Section of a deck -> its kinds, each with the place of its table
@@ -206,7 +200,7 @@ def load(place: str) -> Any:
     """What stands at "module:name" within the package; MemoryError where there is no room to load it."""
     module, name = place.split(":")
     try:
-        return getattr(importlib.import_module(f"extrados.{module}"), name)
+        return attrgetter(name)(importlib.import_module(f"extrados.{module}"))
     except Exception as error:
         if room.lacked(error):
             raise MemoryError(f"not enough memory: {type(error).__name__}: {error}") from error

@@ -9,7 +9,8 @@ from matplotlib.patches import Polygon
 
 from extrados.results.store import Stored
 from extrados.show import style
-from extrados.show.limit.section import outlines, stone
+from extrados.show.limit.section import stone
+from extrados.show.stones import outlines
 
 NAME = "building"
 #: Colour of dimensions

@@ -6,8 +6,8 @@ from typing import Any
 
 from extrados.results.explain import fact_of
 from extrados.results.fields import ResultModel
-from extrados.results.limits import LIMITS
 from extrados.results.store import STORE, SUMMARY, Stored
+from extrados.results.validity import validity_of
 from extrados.show.document import Block, Code, Document, Figure, Heading, Table, Words
 
 Figures = list[tuple[str, str]]
@@ -202,7 +202,8 @@ def _analysis(run: Stored, a: dict[str, Any], figures: Figures) -> list[Block]:
     words = next(
         (run[b["name"]].parts.get(a["name"], "") for b in run.analyses if b["kind"] == "assess" and b["results"]), ""
     )
-    assumes = LIMITS.get(a["kind"], ("", ""))[0]
+    valid = validity_of(a["kind"])
+    assumes = valid.assumes if valid else ""
     label, _, how = words.partition(": ")
     named = (
         f"{label[:1].upper()}{label[1:]}" + (f" ({a['name']})" if label != a["name"] else "") if label else a["name"]
@@ -269,8 +270,8 @@ def _own_tables(run: Stored) -> list[tuple[str, str, Table]]:
 
 
 def _limits(run: Stored) -> list[Block]:
-    seen = dict.fromkeys(a["kind"] for a in run.analyses if a["kind"] in LIMITS)
-    rows = [(kind, LIMITS[kind][1]) for kind in seen]
+    seen = dict.fromkeys(a["kind"] for a in run.analyses)
+    rows = [(kind, valid.limits) for kind in seen if (valid := validity_of(kind))]
     return [Heading("Limits of validity"), Table(("analysis", "limits of validity"), rows, (1.2, 5.0))] if rows else []
 
 

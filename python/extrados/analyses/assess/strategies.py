@@ -13,7 +13,7 @@ from extrados.analyses.context import Context
 from extrados.model.errors import NoView
 from extrados.model.structures.plan import Plan
 from extrados.motions.tables import Compatible
-from extrados.results.limits import LIMITS
+from extrados.results import validity
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 
@@ -290,17 +290,17 @@ def _too_long(seconds: float, share: float, how: str) -> str:
 
 
 ALL = tuple(
-    Strategy(name, kind, label, axis, LIMITS[kind][0], choose)
-    for name, kind, label, axis, choose in (
-        ("tilt", "tilt", "limit analysis", "acceleration", _as_it_is),
-        ("rocking", "rocking", "rocking", "displacement", _as_it_is),
-        ("assessment", "assessment", "primary impulse", "pulse", _as_it_is),
-        ("code-checks", "code-checks", "codes", "check", _codes),
-        ("probability", "fragility", "probability", "probability", _probability),
-        ("sla", "sla", "sequentially linear analysis", "acceleration", _sla),
-        ("push-x", "pushover", "push along x", "acceleration", lambda asked: _push(asked, 0.0)),
-        ("push-y", "pushover", "push along y", "acceleration", lambda asked: _push(asked, 90.0)),
-        ("dem", "dem", "discrete elements", "displacement", _dem),
+    Strategy(name, kind, label, axis, assumed.assumes, choose)
+    for name, kind, label, axis, assumed, choose in (
+        ("tilt", "tilt", "limit analysis", "acceleration", validity.Tilt, _as_it_is),
+        ("rocking", "rocking", "rocking", "displacement", validity.Rocking, _as_it_is),
+        ("assessment", "assessment", "primary impulse", "pulse", validity.Assessment, _as_it_is),
+        ("code-checks", "code-checks", "codes", "check", validity.CodeChecks, _codes),
+        ("probability", "fragility", "probability", "probability", validity.Fragility, _probability),
+        ("sla", "sla", "sequentially linear analysis", "acceleration", validity.Sla, _sla),
+        ("push-x", "pushover", "push along x", "acceleration", validity.Pushover, lambda asked: _push(asked, 0.0)),
+        ("push-y", "pushover", "push along y", "acceleration", validity.Pushover, lambda asked: _push(asked, 90.0)),
+        ("dem", "dem", "discrete elements", "displacement", validity.Dem, _dem),
     )
 )
 #: Rocking at many factors on the hazard: the margin of `rocking`, and of a set the share of its motions

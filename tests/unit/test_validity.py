@@ -6,18 +6,14 @@ import pytest
 
 import extrados
 from extrados import kinds
-from extrados.results.limits import LIMITS
+from extrados.results.validity import validity_of
 from extrados.show.report import write_report
-
-
-def test_every_kind_has_them_and_no_other() -> None:
-    assert set(LIMITS) == set(kinds.ANALYSES)
 
 
 @pytest.mark.parametrize("kind", kinds.ANALYSES)
 def test_they_are_sentences(kind) -> None:
     """Each of at most 25 words, and none of the words that LANGUAGE does away with."""
-    for text in LIMITS[kind]:
+    for text in validity_of(kind):
         assert text.endswith(".")
         for sentence in re.split(r"(?<=[.;:])\s+", text):
             assert 1 < len(sentence.split()) <= 25, sentence
@@ -46,5 +42,5 @@ def test_the_report_prints_them(tmp_path, kind) -> None:
     assert run.analyses[0]["status"] == "ok", run.analyses[0]["reason"]
     page = re.sub(r"\s+", " ", write_report(tmp_path / "out")[0].read_text())
     assert "Limits of validity" in page
-    for text in LIMITS[kind]:
+    for text in validity_of(kind):
         assert text[:60] in page
