@@ -78,9 +78,7 @@ MESH_OF_STONES, RODS = "views.mesh.stones:make_stones", "views.mesh.rods:add_rod
 NO_SECTION = Lacks("it is no plane section; `tilt` and `dem` look at its solids")
 NO_STONES = Lacks("a mesh file holds elements, no stones: describe the wall as `panel` or `blocks`")
 NO_PIERS = Lacks("only a wall, of the kinds panel and brickwork, has piers")
-NO_SHELL = Lacks(
-    "this kind of structure has no shells; they are made of the kinds building, arch, vault, dome, cross-vault and mesh"
-)
+NO_SHELL = Lacks("this kind of structure has no shells; `extrados explain pushover` lists those that have")
 
 
 def _stones(
@@ -132,6 +130,7 @@ STRUCTURES: dict[str, StructureKind] = {
     ),
     "wall": _solids("wall:Wall"),
     "dome": _solids("dome:Dome", shell="views.shell.vaults:shell_of_dome"),
+    "chimney": _solids("chimney:Chimney", shell="views.shell.chimney:shell_of_chimney"),
     "cross-vault": _solids("cross_vault:CrossVault", shell="views.shell.vaults:shell_of_cross_vault"),
 }  # fmt: skip
 MOTIONS: dict[str, str] = {

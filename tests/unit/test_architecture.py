@@ -24,7 +24,7 @@ LAYERS = {
     "motions": {"core", "schema"},
     "limit": {"core", "model", "schema"},
     "views": {"kinds", "core", "limit", "model", "schema"},
-    "tables": {"model", "views", "schema"},
+    "tables": {"kinds", "model", "views", "schema"},
     "decks": {"kinds", "tables", "model", "views", "schema"},
     "results": {"kinds", "schema"},
     "analyses": {

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
+from extrados import kinds
 from extrados.analyses.sla.tables import INTERFACES, MATERIAL, CrackOptions, Staged, without_effect
 from extrados.analyses.table import BuildingAnalysis
 from extrados.model.places import Range
@@ -118,7 +119,7 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
 
     kind: Literal["pushover"]
     view: ClassVar = "shell"
-    structures: ClassVar = ("building", "arch", "vault", "dome", "cross-vault", "mesh")
+    structures: ClassVar = tuple(kind for kind, parts in kinds.STRUCTURES.items() if isinstance(parts.shell, str))
     uses: ClassVar = (
         "material.density", "material.young", "material.poisson", "material.tensile_strength", "material.fracture_energy",
         "material.compressive_strength", "material.tensile_strength_parallel", "material.shear_strength",

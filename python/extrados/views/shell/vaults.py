@@ -25,11 +25,12 @@ SAME = 1e-6
 THICK_WALL = 0.5
 
 
-def _count(length: float, size: float, least: int = 1) -> int:
+def count_along(length: float, size: float, least: int = 1) -> int:
+    """How many elements of a size stand along a length."""
     return max(least, round(length / size))
 
 
-def _size(options: ShellOptions, arc: float, area: float) -> float:
+def element_size(options: ShellOptions, arc: float, area: float) -> float:
     """The size of the elements; BadGeometry where that makes too many."""
     size = options.size or arc / ALONG
     if area / size**2 > LARGEST_MESH:
@@ -52,9 +53,10 @@ def _outward(xyz: np.ndarray, connect: np.ndarray, out: np.ndarray) -> np.ndarra
     return np.where((np.einsum("ex,ex->e", normal, out) < 0.0)[:, None], turned, connect)
 
 
-def _part(
+def shell_part(
     name: str, xyz: np.ndarray, connect: np.ndarray, out: np.ndarray, thickness: float, material: int = 0
 ) -> ShellPart:
+    """Elements of one thickness [m], their normals to the side of `out` (elements, 3)."""
     count = len(connect)
     return ShellPart(
         name, "Q4" if connect.shape[1] == 4 else "T3", _outward(xyz, connect, out), np.full(count, thickness),
@@ -62,7 +64,7 @@ def _part(
     )  # fmt: skip
 
 
-def _mesh(
+def clamped_mesh(
     xyz: np.ndarray, parts: list[ShellPart], feet: list[Foot], building: Description, size: float, extra: list[Material]
 ) -> ShellMesh:
     """The mesh on its feet, which are held in all freedoms."""
@@ -84,8 +86,10 @@ def mesh_barrel(
     height of their soles; a stiff ledge joins the springing to a wall that does not stand right below it.
     """
     half = np.radians(0.5 * embrace)
-    size = _size(options, 2.0 * half * radius, (2.0 * half * radius + (2.0 * abs(walls[2]) if walls else 0.0)) * length)
-    along, across = _count(2.0 * half * radius, size, 4), _count(length, size)
+    size = element_size(
+        options, 2.0 * half * radius, (2.0 * half * radius + (2.0 * abs(walls[2]) if walls else 0.0)) * length
+    )
+    along, across = count_along(2.0 * half * radius, size, 4), count_along(length, size)
     angle = np.linspace(-half, half, along + 1)
     y = np.linspace(0.0, length, across + 1)
 
@@ -98,7 +102,7 @@ def mesh_barrel(
     xyz = sheet(radius * np.column_stack([np.sin(angle), np.cos(angle)]))
     connect = _grid(along, across)
     middle = xyz[connect].mean(axis=1)
-    parts = [_part("vault", xyz, connect, middle * [1.0, 0.0, 1.0], thickness)]
+    parts = [shell_part("vault", xyz, connect, middle * [1.0, 0.0, 1.0], thickness)]
     ends = {-1: np.arange(across + 1), 1: along * (across + 1) + np.arange(across + 1)}
     extra: list[Material] = []
     if walls is not None:
@@ -110,7 +114,7 @@ def mesh_barrel(
                 f"{THICK_WALL:g} of their height"
             )
         extra = [Material(density=0.0, young=building.material.young, poisson=building.material.poisson)]
-        ledge, up = abs(away - springing[0]), _count(springing[1] - sole, size, 2)
+        ledge, up = abs(away - springing[0]), count_along(springing[1] - sole, size, 2)
         for side, word in ((-1, "left"), (1, "right")):
             top = ends[side]
             if ledge > SAME * size:
@@ -119,7 +123,7 @@ def mesh_barrel(
                     len(xyz) + np.arange(across + 1),
                 )
                 strip = np.column_stack([ends[side][:-1], ends[side][1:], top[1:], top[:-1]])
-                stiff = _part(
+                stiff = shell_part(
                     f"{word} ledge",
                     xyz,
                     strip,
@@ -134,13 +138,13 @@ def mesh_barrel(
             xyz = np.concatenate([xyz, sheet(np.column_stack([np.full(up, side * away), level]))])
             below = np.column_stack([top[:-1], top[1:], first + np.arange(1, across + 1), first + np.arange(across)])
             connect = np.concatenate([below, _grid(up - 1, across, first)])
-            parts.append(_part(f"{word} wall", xyz, connect, np.tile([side, 0.0, 0.0], (len(connect), 1)), wide))
+            parts.append(shell_part(f"{word} wall", xyz, connect, np.tile([side, 0.0, 0.0], (len(connect), 1)), wide))
             ends[side] = first + (up - 1) * (across + 1) + np.arange(across + 1)
     feet = [
         Foot(word, ends[side], np.tile([float(side), 0.0, 0.0], (across + 1, 1)), y)
         for side, word in ((-1, "left"), (1, "right"))
     ]
-    return _mesh(xyz, parts, feet, building, size, extra)
+    return clamped_mesh(xyz, parts, feet, building, size, extra)
 
 
 def mesh_dome(
@@ -149,9 +153,9 @@ def mesh_dome(
     """Spherical dome on its springing; embrace and oculus in degrees. Without an oculus triangles close the crown."""
     half, top = np.radians(0.5 * embrace), np.radians(0.5 * oculus)
     area = 2.0 * np.pi * radius**2 * (np.cos(top) - np.cos(half))
-    size = _size(options, 2.0 * half * radius, area)
-    around = 4 * _count(0.5 * np.pi * radius * np.sin(half), size, 2)
-    up = _count(radius * (half - top), size, 2)
+    size = element_size(options, 2.0 * half * radius, area)
+    around = 4 * count_along(0.5 * np.pi * radius * np.sin(half), size, 2)
+    up = count_along(radius * (half - top), size, 2)
     polar = np.linspace(half, top, up + 1)
     rows = up + 1 if oculus > 0.0 else up
     turn = 2.0 * np.pi * np.arange(around) / around
@@ -166,16 +170,16 @@ def mesh_dome(
     connect = np.column_stack([i * around + k, i * around + on, (i + 1) * around + on, (i + 1) * around + k])
     if rows == up:
         xyz = np.concatenate([xyz, [[0.0, 0.0, radius]]])
-    parts = [_part("dome", xyz, connect, xyz[connect].mean(axis=1), thickness)]
+    parts = [shell_part("dome", xyz, connect, xyz[connect].mean(axis=1), thickness)]
     if rows == up:
         k = np.arange(around)
         cap = np.column_stack(
             [(up - 1) * around + k, (up - 1) * around + (k + 1) % around, np.full(around, len(xyz) - 1)]
         )
-        parts.append(_part("crown", xyz, cap, xyz[cap].mean(axis=1), thickness))
+        parts.append(shell_part("crown", xyz, cap, xyz[cap].mean(axis=1), thickness))
     out = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(around)])
     foot = Foot("springing", np.arange(around), out, radius * np.sin(half) * turn)
-    return _mesh(xyz, parts, [foot], building, size, [])
+    return clamped_mesh(xyz, parts, [foot], building, size, [])
 
 
 #: Corners of a groin vault, as its springers are called, and their quadrants
@@ -197,8 +201,8 @@ def mesh_cross_vault(
     """
     half = np.radians(0.5 * embrace)
     reach = (radius + 0.5 * thickness) * np.sin(half) + edge
-    size = _size(options, 2.0 * half * radius, 4.0 * half * radius * reach * max(oblong, 1.0))
-    rows, columns = _count(half * radius, size, 4), _count(0.6 * reach, size, 2)
+    size = element_size(options, 2.0 * half * radius, 4.0 * half * radius * reach * max(oblong, 1.0))
+    rows, columns = count_along(half * radius, size, 4), count_along(0.6 * reach, size, 2)
     angle = np.linspace(0.0, half, rows + 1)
     x, z = radius * np.sin(angle), radius * np.cos(angle)
     share = np.linspace(0.0, 1.0, columns + 1)
@@ -225,13 +229,13 @@ def mesh_cross_vault(
     )
     number = number.ravel()
     xyz, connect = every[first], number[np.concatenate(elements)]
-    parts = [_part("vault", xyz, connect, np.concatenate(out), thickness)]
+    parts = [shell_part("vault", xyz, connect, np.concatenate(out), thickness)]
     made = []
     for word, (right, ahead) in CORNERS.items():
         nodes = np.unique(number[np.concatenate(feet[word])])
         way = np.array([right, ahead * oblong, 0.0]) / np.hypot(1.0, oblong)
         made.append(Foot(word, nodes, np.tile(way, (len(nodes), 1)), np.arange(len(nodes), dtype=float)))
-    return _mesh(xyz, parts, made, building, size, [])
+    return clamped_mesh(xyz, parts, made, building, size, [])
 
 
 def shell_of_arch(building: Description, options: ShellOptions) -> ShellMesh:
