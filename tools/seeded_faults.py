@@ -113,10 +113,10 @@ OUTCOMES = {
 }  # fmt: skip
 #: Where strategies join: what makes views of a building, hands them to the core, and makes verdicts of what comes back
 JOINS = (
-    "analyses/conclude.py", "analyses/run.py", "analyses/left_out.py", "analyses/motion_source.py", "analyses/assess/asking.py",
+    "analyses/conclude.py", "analyses/sequence.py", "analyses/left_out.py", "analyses/motion_source.py", "analyses/assess/asking.py",
     "analyses/assess/words.py", "analyses/assess/reasons.py", "analyses/codes/kinematics.py", "analyses/codes/local_mechanism.py",
     "analyses/codes/mechanisms.py", "analyses/codes/ntc.py", "analyses/codes/walls.py", "analyses/dem/measures.py",
-    "analyses/dem/model.py", "analyses/dem/motion.py", "analyses/dem/runs.py", "analyses/dem/solid_model.py", "analyses/dem/standing.py", "analyses/dem/tilt.py",
+    "analyses/dem/model.py", "analyses/dem/history.py", "analyses/dem/job.py", "analyses/dem/solid_model.py", "analyses/dem/standing.py", "analyses/dem/tilt.py",
     "analyses/limit/applied.py", "analyses/limit/asked.py", "analyses/limit/common.py", "analyses/limit/moving_load.py", "analyses/limit/solids.py",
     "analyses/limit/supports.py", "analyses/limit/thrust.py", "analyses/limit/tilt.py", "analyses/rocking/block.py", "analyses/rocking/driver.py",
     "analyses/rocking/failure_domain.py", "analyses/rocking/mechanism.py", "analyses/rocking/stack.py", "analyses/statistics/fragility.py", "analyses/statistics/levels.py",

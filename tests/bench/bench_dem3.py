@@ -23,7 +23,7 @@ import numpy as np
 import solid_peers
 from peers import has
 
-from extrados.analyses.dem.runs import SOLIDS_FOR_THREADS
+from extrados.analyses.dem.job import SOLIDS_FOR_THREADS
 from extrados.core import dem3
 from extrados.core.dem_run import STILL
 from extrados.core.ground import Ground, as_motion_set

@@ -11,7 +11,7 @@ from scipy.optimize import linprog
 
 import extrados
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
 from extrados.limit import programme
 from extrados.limit.answer import assess

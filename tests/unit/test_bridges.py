@@ -12,7 +12,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.limit.moving_load import Places, _top
 from extrados.analyses.limit.tables import MovingLoad
 from extrados.analyses.limit.trains import FOR_EVER, Train, train_of
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
 from extrados.limit.fill import passive_pressure, pressed, under_load
 from extrados.limit.interior import RESIDUAL, CollapseProblem

@@ -10,7 +10,7 @@ import pytest
 import extrados
 from extrados.analyses.context import Context
 from extrados.analyses.dem.from_deck import make_model
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
 from extrados.model.structures.arch import make_arch
 from extrados.views.rockers.mechanism import MechanismModel

@@ -10,7 +10,7 @@ from interrupting import interrupted
 
 import extrados
 from extrados import _core
-from extrados.analyses.dem.runs import Runs, Task
+from extrados.analyses.dem.job import Runs, Task
 from extrados.core import dem, dem_run
 from extrados.core.ground import as_motion_set
 from extrados.decks.reader import DeckError

@@ -11,7 +11,7 @@ import pytest
 from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.context import Context
 from extrados.analyses.limit import tilt as driver
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
 from extrados.limit.certificate import certify
 from extrados.limit.programme import LimitAnalysis

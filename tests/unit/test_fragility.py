@@ -12,7 +12,7 @@ import extrados
 from extrados.analyses import batches
 from extrados.analyses.codes.code_rules import asce43, ishiyama, piers
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.analyses.statistics import summaries
 from extrados.analyses.statistics.fragility import EnsembleJob
 from extrados.analyses.statistics.resonance import (

@@ -11,7 +11,7 @@ from scipy.special import ndtr
 from scipy.stats import norm, qmc
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.analyses.statistics.annual import rates
 from extrados.analyses.statistics.cloud import fit_cloud
 from extrados.analyses.statistics.uncertain import Sample

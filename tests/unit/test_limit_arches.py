@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 from scipy.optimize import linprog
 
 from extrados.limit.answer import CannotStand, assess
+from extrados.limit.finite_motion import finite_motion, rigid_parts
 from extrados.limit.graphic import thrust_of
 from extrados.limit.loads import Loads, forces_at, tilt_loads
-from extrados.limit.motion import finite_motion, rigid_parts
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.model.geometry.builder import Builder

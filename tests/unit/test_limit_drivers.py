@@ -9,7 +9,7 @@ import pytest
 
 import extrados
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
 from extrados.explore.stored import shown
 from extrados.results.model import Result

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
 from extrados.limit.programme import LimitAnalysis
 from extrados.limit.settlement import settle

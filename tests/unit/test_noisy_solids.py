@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
 from extrados.limit.solids import Programme, SolidLimit
 from extrados.model.errors import BadGeometry

@@ -9,7 +9,7 @@ import pytest
 from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.conclude import assumptions_of
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import GROUND

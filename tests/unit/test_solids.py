@@ -10,7 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
 from extrados.model.errors import BadGeometry, NoView
 from extrados.model.geometry.solids.assembly import SolidAssembly, Stone, assemble, mass_properties

@@ -7,7 +7,7 @@ import pytest
 
 from extrados.analyses.context import Context
 from extrados.analyses.limit.common import loads_of
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
 from extrados.limit.answer import assess
 from extrados.limit.coulomb import CoulombProblem

@@ -10,7 +10,7 @@ from scipy import sparse
 from test_dilatancy import coursed
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
 from extrados.limit.answer import assess
 from extrados.limit.equilibrium import spanning_tree

@@ -12,7 +12,7 @@ from extrados.analyses.rocking.failure_domain import MODE_I, Mapper, natural_dur
 from extrados.analyses.rocking.history import answer, rest_time, run_history
 from extrados.analyses.rocking.shapes import States, shapes
 from extrados.analyses.rocking.tables import Assessment, FailureDomain, Rocking
-from extrados.analyses.run import run_one
+from extrados.analyses.sequence import run_one
 from extrados.model.geometry.assembly import Assembly
 from extrados.motions.motion import Motion
 from extrados.schema.constants import GRAVITY

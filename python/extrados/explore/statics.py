@@ -13,9 +13,9 @@ from extrados.analyses.limit.common import limit_of, tie_rows
 from extrados.analyses.limit.tables import LimitAnalysisTable
 from extrados.limit.answer import assess, cannot_stand
 from extrados.limit.errors import CannotStand
+from extrados.limit.finite_motion import finite_motion
 from extrados.limit.graphic import force_polygon, thrust_joint, thrust_of
 from extrados.limit.lines import thrust_paths
-from extrados.limit.motion import finite_motion
 from extrados.limit.places import place_of
 from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State
 from extrados.limit.states import blended

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.limit.motion import rigid_parts
+from extrados.limit.finite_motion import rigid_parts
 from extrados.limit.states import Mechanism
 from extrados.model.geometry.assembly import GROUND, Assembly
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from extrados.analyses.conclude import concluded
 from extrados.analyses.context import Context, default_threads
-from extrados.analyses.run import run_one
+from extrados.analyses.sequence import run_one
 from extrados.analyses.table import Analysis
 from extrados.decks.reader import WORDS, Deck, DeckError, make_deck
 from extrados.motions.motion import Motion

@@ -13,7 +13,7 @@ from extrados.analyses.assess.strategies import Strategy
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import MotionDemand, concluded
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.run import run_one
+from extrados.analyses.sequence import run_one
 from extrados.analyses.statistics.summaries import wilson
 from extrados.core.calls import within
 from extrados.core.errors import Cancelled

@@ -11,7 +11,7 @@ import numpy as np
 from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.batches import stacked, sweep
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_one
+from extrados.analyses.sequence import run_one
 from extrados.decks.reader import DeckError, make_deck
 from extrados.results.limit import Tilt
 from extrados.results.statistics import OverLevels

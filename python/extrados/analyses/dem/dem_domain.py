@@ -10,8 +10,8 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import measures, solid_settlement
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.from_deck import make_model
+from extrados.analyses.dem.job import Runs, SolidRuns, SolidTask, Task, answered
 from extrados.analyses.dem.model import JointValues, Model
-from extrados.analyses.dem.runs import Runs, SolidRuns, SolidTask, Task, answered
 from extrados.analyses.dem.settlement import farthest_settlement
 from extrados.analyses.dem.solid_model import SolidModel, SolidValues, make_solid_model
 from extrados.analyses.dem.standing import compared

@@ -6,8 +6,8 @@ import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import settlement, solid_settlement
+from extrados.analyses.dem.job import Runs, SolidRuns, SolidTask, Task
 from extrados.analyses.dem.model import Falls, Model, Restless, checked
-from extrados.analyses.dem.runs import Runs, SolidRuns, SolidTask, Task
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.limit.common import loads_of
 from extrados.core import dem, dem3

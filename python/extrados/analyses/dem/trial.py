@@ -6,9 +6,9 @@ import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import model as dem_model
+from extrados.analyses.dem.job import Runs, Task
 from extrados.analyses.dem.measures import Collapse
 from extrados.analyses.dem.model import JointValues, Model
-from extrados.analyses.dem.runs import Runs, Task
 from extrados.analyses.dem.settlement import farthest_settlement
 from extrados.analyses.dem.tables import Dem
 from extrados.core import dem

@@ -26,9 +26,9 @@ from extrados.analyses.limit.variation import signature, spoken
 from extrados.limit.answer import cannot_stand
 from extrados.limit.errors import CannotStand, Immovable, NoAnswer
 from extrados.limit.fill import pressed, under_load
+from extrados.limit.finite_motion import finite_motion
 from extrados.limit.lines import thrust_paths
 from extrados.limit.loads import Loads, forces_at
-from extrados.limit.motion import finite_motion
 from extrados.limit.programme import LimitAnalysis, Mechanism, State
 from extrados.model.errors import WHOLE
 from extrados.model.geometry.assembly import Assembly

@@ -22,7 +22,7 @@ from extrados.analyses.limit.variation import (
     spoken,
 )
 from extrados.limit.errors import CannotStand
-from extrados.limit.motion import finite_motion
+from extrados.limit.finite_motion import finite_motion
 from extrados.model.errors import BadGeometry
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData

@@ -23,9 +23,9 @@ from extrados.analyses.limit.common import (
 from extrados.analyses.limit.tables import Tilt
 from extrados.limit.answer import Answer
 from extrados.limit.certificate import certify
+from extrados.limit.finite_motion import finite_motion
 from extrados.limit.fracture import Fracture
 from extrados.limit.graphic import thrust_joint, thrust_of
-from extrados.limit.motion import finite_motion
 from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium
 from extrados.model.errors import NoView
 from extrados.model.geometry.assembly import GROUND, Assembly

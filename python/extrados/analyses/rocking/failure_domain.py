@@ -15,8 +15,8 @@ from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.rocking.conditions import ROWS, Counted, astray_of, of_many, told
 from extrados.analyses.rocking.doubts import DIFFER
+from extrados.analyses.rocking.job import RunsJob, runs_job
 from extrados.analyses.rocking.tables import FailureDomain
-from extrados.analyses.runs import RunsJob, runs_job
 from extrados.core.calls import interruptible
 from extrados.core.rocking import Body
 from extrados.motions import pulses

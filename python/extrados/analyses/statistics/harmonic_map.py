@@ -7,7 +7,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.rocking.conditions import Counted, astray_of, of_many, told
 from extrados.analyses.rocking.doubts import too_fast
-from extrados.analyses.runs import runs_job
+from extrados.analyses.rocking.job import runs_job
 from extrados.analyses.statistics.tables import HarmonicMap
 from extrados.motions import pulses
 from extrados.results import statistics as out

@@ -9,7 +9,7 @@ from extrados.analyses.batches import sweep
 from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.rocking.conditions import ROWS, Counted, astray_of, of_many, told
-from extrados.analyses.runs import runs_job
+from extrados.analyses.rocking.job import runs_job
 from extrados.analyses.statistics.tables import RockingSpectrum
 from extrados.model.properties import Initial
 from extrados.model.structures.block import Block

@@ -9,7 +9,7 @@ import numpy as np
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.applied import block_under
 from extrados.analyses.limit.tables import LimitAnalysisTable, Tilt
-from extrados.analyses.run import run_one
+from extrados.analyses.sequence import run_one
 from extrados.explore import bodies, statics
 from extrados.explore.desk import Desk
 from extrados.explore.frames import Reply

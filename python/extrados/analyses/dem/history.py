@@ -11,8 +11,8 @@ from extrados.analyses.dem import files as dem_files
 from extrados.analyses.dem import measures
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.friction import friction_threshold
+from extrados.analyses.dem.job import watched
 from extrados.analyses.dem.model import Model
-from extrados.analyses.dem.runs import watched
 from extrados.analyses.dem.tables import Dem
 from extrados.analyses.dem.trial import Trial
 from extrados.analyses.dem.variations import vary

@@ -8,7 +8,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.dem import measures, solid_measures
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.files import MOST_FRAMES
-from extrados.analyses.dem.runs import SolidRuns, SolidTask, watched
+from extrados.analyses.dem.job import SolidRuns, SolidTask, watched
 from extrados.analyses.dem.solid_measures import SolidsSeen
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.solid_settlement import farthest_settlement
