@@ -371,6 +371,25 @@ def test_what_cannot_stand_is_the_answer_of_an_assessment(structure: dict) -> No
     assert not [v for v in r.verdicts if v.status == "failed"], [v.reason for v in r.verdicts]
 
 
+@pytest.mark.parametrize(
+    "held",
+    [
+        {"ties": [{"start": [0.9, 2.5], "ground": [-5.0, 2.5], "yield_force": 50e3, "stiffness": 1e7}]},
+        {"supports": {"abutting_wall": "right"}},
+    ],
+)
+def test_no_proof_of_collapse_leaves_out_what_holds_the_building(held: dict) -> None:
+    """A leaning block stands by its tie, 11.8 kN at rest, or by its wall: strategies asked without them prove nothing."""
+    lean = {"kind": "blocks", "block": [{"name": "lean", "points": [[0, 0], [0.5, 0], [1.4, 3], [0.9, 3]]}]}
+    run = extrados.run({"structure": lean, "motion": PULSE, "analysis": {"kind": "assess", "budget": 5}, **held})
+    r = run["assess"]
+    assert r.overall != "cannot stand" and "cannot stand" not in run.analyses[0]["answer"]
+    open_rows = [v for v in r.verdicts if v.outcome == "open"]
+    assert not [v.strategy for v in r.verdicts if v.outcome == "cannot-stand"] and open_rows
+    told = "the restraints of the deck" if "ties" in held else "the abutting wall"
+    assert all(told in v.statement and v.margin is None for v in open_rows if v.capacity == 0.0)
+
+
 def test_a_strategy_that_fails_leaves_the_others(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever a strategy, a rule or a closer look raises, the table stays."""
 

@@ -337,6 +337,15 @@ def test_curves_of_thin_arches_state_the_band_of_the_impact_rules(
     assert set(assessed.margins_by_rule) <= set(curves) and len(assessed.margins_by_rule) > 1
 
 
+def test_no_friction_is_too_low_where_a_joint_comes_under_tension() -> None:
+    """Where no finite friction is enough the sentence does not advise to check the friction."""
+    arch = {"kind": "arch", "radius": 5.0, "thickness": 0.6, "embrace": 170.0, "voussoirs": 20}
+    keys = {"durations": [0.2, 0.5], "pulse": "step", "max_amplitude": "1.5 g", "amplitudes": 10}
+    conditions = result_of("failure-domain", arch, 0.7, **keys).results.conditions
+    assert conditions.sliding and not np.isfinite(conditions.required_friction or np.inf)
+    assert conditions.violated[0].startswith("A joint comes under tension or slides in ")
+
+
 def test_sampled_arches_that_slide_at_rest_are_no_safe_ones() -> None:
     """The joints of sampled arches are not watched; that the nominal one slides before it rocks leaves the share of collapses open."""
     arch = {"kind": "arch", "radius": 6.0, "thickness": 1.0, "embrace": 150.0, "voussoirs": 17}

@@ -69,6 +69,8 @@ def test_a_sliding_wall_has_an_interval() -> None:
         verdict = r.judged(asked(peak))
         assert (verdict.outcome, verdict.capacity) == (outcome, least) and DILATANT in verdict.statement
         assert verdict.ratio == pytest.approx(least / peak)
+        place = {"stands": "below the least state found", "open": "between both", "collapses": "above the upper bound"}
+        assert place[outcome] in verdict.statement, "no lower end of the interval is known"
 
 
 def test_the_rule_of_the_deck_does_not_change_the_verdict() -> None:

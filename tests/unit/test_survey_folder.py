@@ -47,6 +47,26 @@ def test_the_worst_comes_first(folder: Path, tmp_path: Path, monkeypatch: pytest
     assert not (tmp_path / "out.checkpoint").exists()
 
 
+def test_the_assessment_of_a_deck_is_its_own_or_the_common_one(folder: Path) -> None:
+    (folder / "w0.8.toml").write_text(COLUMN.format(0.8) + 'analysis = [{ kind = "tilt" }]\n')
+    assert 'strategies = ["tilt", "rocking"]' in survey.decks_of(folder)["w0.8"], "the common one, not a default"
+    (folder / "w0.8.toml").write_text(COLUMN.format(0.8) + 'analysis = [{ kind = "asses" }, { kind = "assess" }]\n')
+    with pytest.raises(DeckError, match="unknown kind 'asses'; did you mean 'assess'"):
+        survey.decks_of(folder)
+
+
+def test_the_order_of_the_ranking() -> None:
+    """Collapse that is proven, no answer, no verdict, the least margins, what stands by a margin that is not known."""
+    nan = float("nan")
+    worst_first = [
+        ("cannot stand", 0.0, "ok"), ("", nan, "failed"), ("open", nan, "ok"), ("open", 0.4, "ok"), ("depends", 0.9, "ok"),
+        ("stands under all", 1.4, "ok"), ("stands under all", nan, "ok"),
+    ]  # fmt: skip
+    rows = [survey.Assessed("", overall, margin, "", status, "", Path()) for overall, margin, status in worst_first]
+    orders = [row.order for row in rows]
+    assert orders == sorted(orders) and orders[0] < orders[1] and orders[5] < orders[6]
+
+
 def test_what_cannot_stand_comes_first(folder: Path, tmp_path: Path) -> None:
     """A proof of collapse under self-weight is the worst verdict, and the command is done: exit code 0."""
     leaning = '[structure]\nkind = "blocks"\n[[structure.block]]\nname = "leaning"\npoints = [[0, 0], [1, 0], [4, 4], [3, 4]]\n'

@@ -229,9 +229,11 @@ def judge_interval(least: float, most: float, demand: Demand) -> Verdict:
     if peak is None:
         return judge(f"{text}; the deck holds no single motion to compare with.", None, least, "g")
     outcome: Outcome = "stands" if peak < least else "collapses" if peak >= most else "open"
-    place = {"stands": "below", "collapses": "above", "open": "within"}[outcome]
+    place = {
+        "stands": "below the least state found", "collapses": "at or above the upper bound", "open": "between both",
+    }[outcome]  # fmt: skip
     return judge(
-        f"{text}; the peak of the motion, {peak:.3g} g, applied as a sustained load, is {place} the interval.", peak, least, "g",
+        f"{text}; the peak of the motion, {peak:.3g} g, applied as a sustained load, is {place}.", peak, least, "g",
         outcome,
     )  # fmt: skip
 

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import tomlkit
 
+from extrados import kinds
 from extrados.analyses.batches import stacked, stop_if_asked, sweep
 from extrados.analyses.context import Context
 from extrados.decks.reader import LARGEST, Deck, DeckError, make_deck
@@ -114,14 +115,9 @@ def decks_of(folder: Path) -> dict[str, str]:
     found, complaints = {}, []
     for path in (p for p in paths if p.name != COMMON):
         try:
-            data = {**common, **_read(path)}
-            given = data.get("analysis", [])
-            tables = [
-                t
-                for t in (given if isinstance(given, list) else [given])
-                if isinstance(t, dict) and t.get("kind") == "assess"
-            ]
-            data["analysis"] = tables[:1] or [{"kind": "assess"}]
+            own = _read(path)
+            data = {**common, **own}
+            data["analysis"] = _assessment(own) or _assessment(common) or [{"kind": "assess"}]
             make_deck(data, folder)
             found[path.stem] = tomlkit.dumps(data)
         except DeckError as error:
@@ -131,6 +127,15 @@ def decks_of(folder: Path) -> dict[str, str]:
     if not found:
         raise DeckError([f"{folder}: holds no decks"])
     return found
+
+
+def _assessment(data: dict[str, Any]) -> list[Any]:
+    """The first `assess` among the analyses of a deck; those of no known kind before it, for the complaint about them."""
+    given = data.get("analysis", [])
+    tables = given if isinstance(given, list) else [given]
+    named = [(t, t.get("kind") if isinstance(t, dict) else None) for t in tables]
+    wrong = [t for t, kind in named if kind not in kinds.ANALYSES]
+    return wrong or [t for t, kind in named if kind == "assess"][:1]
 
 
 def _read(path: Path) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from extrados.analyses.assess.strategies import Strategy
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import MotionDemand, concluded
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.limit.self_weight import neglecting
 from extrados.analyses.sequence import run_one
 from extrados.analyses.statistics.summaries import wilson
 from extrados.core.calls import within
@@ -109,7 +110,7 @@ class Asker:
             if time.passed and len(interrupts.asked) == signals:
                 raise OutOfTime
             raise Interrupted
-        found = concluded(result, options, one, building)
+        found = concluded(neglecting(result, whole.building, without), options, one, building)
         return replace(found, asked=options.model_dump(exclude_none=True)), tomlkit.dumps(data)
 
     def demand(self, peak_g: float) -> Demanded:
@@ -144,7 +145,7 @@ def row_of(
         if verdict.outcome == "stands":
             statement = f"The run passed no peak, what it bears in the end is not known. {statement}"
     elif strategy.axis in ("acceleration", "pulse", "check") or isinstance(r, SelfWeight):
-        margin = verdict.ratio
+        margin = None if isinstance(r, SelfWeight) and r.neglected else verdict.ratio  # of another building
     if verdict.violated and outcome in ("stands", "collapses"):
         outcome, statement = "open", f"{statement} {' '.join(verdict.violated)}"
     return StrategyVerdict(

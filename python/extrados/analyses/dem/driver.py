@@ -1,8 +1,8 @@
 """dem: rigid blocks that rock, hinge, slide and fall under a motion, or in a tilt test (thesis chapter 7)."""
 
 from extrados.analyses.context import Context
+from extrados.analyses.dem import history, solid_history, solid_tilt, tilt
 from extrados.analyses.dem import model as dem_model
-from extrados.analyses.dem import solid_tilt, tilt
 from extrados.analyses.dem.from_deck import make_model
 from extrados.analyses.dem.solid_model import make_solid_model
 from extrados.analyses.dem.standing import compared
