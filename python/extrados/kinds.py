@@ -176,7 +176,7 @@ ANALYSES: dict[str, AnalysisKind] = {
     "rocking-spectrum": _analysis("statistics", "RockingSpectrum", "rocking_spectrum", "statistics:draw_rocking_spectrum", "others", "rocking/el-centro-block"),
     "harmonic-map": _analysis("statistics", "HarmonicMap", "harmonic_map", "statistics:draw_harmonic_map", "others", "rocking/el-centro-block"),
     "code-checks": _analysis("codes", "CodeChecks", "code_checks", "statistics:draw_code_checks", "others", "rocking/el-centro-block", ("code-checks",)),
-    "local-mechanism": _analysis("codes", "LocalMechanism", "local_mechanism", "codes:draw_local_mechanism", "local_mechanism", "codes/facade"),
+    "local-mechanism": _analysis("codes", "LocalMechanism", "local_mechanism", "codes:draw_local_mechanism", "local_mechanism", "codes/facade", results="codes:LocalMechanisms"),
     "motion": _analysis("motion", "MotionStudy", "motion_study", "motion:draw_motion", "others", "motion/el-centro"),
     "shake-table": _analysis("motion", "ShakeTable", "shake_table", "motion:draw_shake_table", "others", "motion/appendix-c"),
     "sla": _analysis("sla", "Sla", "driver", "sla:draw_sla", "sla", "sla/beam", ("sla",)),

@@ -118,7 +118,7 @@ def test_the_clock_stops_what_takes_too_long(monkeypatch: pytest.MonkeyPatch) ->
     r = extrados.run(deck(assess={"strategies": ["tilt", "dem"], "options": {"dem": {"time_step": 1e-6}}}))["assess"]
     rows = {v.strategy: v for v in r.verdicts}
     assert rows["dem"].status == "left out" and "stopped" in rows["dem"].reason
-    assert any("stopped by the clock" in text for text in r.not_done)
+    assert any("stopped at the time limit" in text for text in r.not_done)
 
 
 def test_a_deadline_stops_the_core_and_leaves_no_flag() -> None:

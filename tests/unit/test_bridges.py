@@ -650,11 +650,20 @@ def test_a_bridge_without_fill_is_a_bare_ring_and_with_it_is_not() -> None:
     assert not filled.verdict.violated and not any("no model of a bridge" in w for w in filled.warnings)
 
 
-def test_forces_of_a_deck_on_a_ring_are_its_own() -> None:
-    one, axles = ring(force="10 kN"), ring(axle_loads=["10 kN", "10 kN"], axles=[0.0, 1.2])
-    assert one.verdict.outcome == axles.verdict.outcome == "stands"
-    assert not any("no fill" in w for w in one.warnings)
-    assert sum("no fill spreads them" in w for w in axles.warnings) == 1
+@pytest.mark.parametrize(
+    "load",
+    [
+        {"force": "10 kN"},
+        {"axle_loads": ["10 kN", "10 kN"], "axles": [0.0, 1.2]},
+        {"axles": [], "uniform": [{"load": "5 kN/m"}]},
+    ],
+)
+def test_any_load_on_a_bare_ring_leaves_the_verdict_open(load: dict[str, Any]) -> None:
+    found = ring(**load)
+    assert found.verdict.ratio > 1.0 and found.verdict.outcome == "open"
+    (violated,) = found.verdict.violated
+    assert "on the blocks of the arch themselves: no fill spreads it" in violated
+    assert sum(violated in w for w in found.warnings) == 1
 
 
 @pytest.mark.parametrize("factors", [{}, {"live": 1.35}, {"masonry": 0.95}, {"strength": 2.0}, {"friction": 1.1}])
@@ -669,4 +678,5 @@ def test_a_verdict_without_partial_factors_says_so(factors: dict[str, float]) ->
 
 def test_no_remark_where_there_is_no_verdict() -> None:
     found = ring()
-    assert found.verdict.outcome == "not-applicable" and "partial factors" not in found.verdict.statement + found.answer
+    assert found.verdict.outcome == "not-applicable" and found.verdict.violated
+    assert "partial factors" not in found.verdict.statement + found.answer

@@ -283,7 +283,7 @@ def test_cannot_stand_says_where_and_by_how_much() -> None:
     builder = Builder(2000.0, 1.0)
     leaning = builder.block("leaning", np.array([[0.0, 0.0], [1.0, 0.0], [3.0, 4.0], [2.0, 4.0]]))
     builder.joint("base", np.array([0.0, 0.0]), np.array([1.0, 0.0]), leaning, GROUND, 1)
-    with pytest.raises(CannotStand, match=r"only when pushed sideways by -0\.75"):
+    with pytest.raises(CannotStand, match=r"only under a horizontal load of -0\.75"):
         assess(builder.assembly())
 
 

@@ -225,7 +225,7 @@ def test_what_cannot_stand_is_an_answer_with_its_proof() -> None:
         ("% thicker", {**ARCH, "thickness": 0.9, "embrace": 180.0}, {}),
         ("friction of at least 0.", ARCH, {"joints": {"friction": 0.15}}),
         ("strength", ARCH, {"material": {"compressive_strength": 2e5}}),
-        ("only when pushed sideways", leaning, {}),
+        ("only under a horizontal load", leaning, {}),
     ):
         for kind in ("tilt", "thrust"):
             found = run(structure, kind=kind, **keys)

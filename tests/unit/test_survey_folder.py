@@ -17,6 +17,7 @@ from extrados.results.compare import changes, compare, flat
 from extrados.running import survey
 from extrados.running.run import Run, compute
 from extrados.show import comparing, html, style
+from extrados.show.telling import heading, kind_of
 
 COMMON = """motion = { kind = "sine-pulse", amplitude = "0.3 g", period = 0.6 }
 analysis = [{ kind = "assess", budget = 5, strategies = ["tilt", "rocking"] }]
@@ -41,6 +42,8 @@ def test_the_worst_comes_first(folder: Path, tmp_path: Path, monkeypatch: pytest
     assert [r.least_margin for r in rows] == pytest.approx([0.8 / 6 / 0.3, 1.2 / 6 / 0.3, 2.0 / 6 / 0.3])
     told = list(csv.DictReader((tmp_path / "out" / "ranking.csv").open()))
     assert [t["building"] for t in told] == ["w0.8", "w1.2", "w2.0"] and told[2]["overall"] == "stands under all"
+    deck = extrados.load(rows[0].folder).summary["deck"]
+    assert (deck["path"], heading(deck), kind_of(deck)) == ("w0.8.toml", "w0.8", "column")
     page = (tmp_path / "out" / "ranking.html").read_text()
     assert page.index("w0.8") < page.index("w1.2") and "limit analysis" in page
     assert extrados.load(rows[0].folder)["assess"].overall == rows[0].overall

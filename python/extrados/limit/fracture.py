@@ -130,7 +130,7 @@ def _base(assembly: Assembly, block: int) -> int:
     grounded = [j for j in assembly.joints_of(block).tolist() if GROUND in (assembly.a[j], assembly.b[j])]
     name = assembly.block_names[block]
     if len(grounded) != 1:
-        raise NoCrack(f"{name}: it stands on {len(grounded)} ground joints; the crack is sought from one")
+        raise NoCrack(f"{name}: the buttress has {len(grounded)} ground joints; the crack is sought from one")
     return grounded[0]
 
 

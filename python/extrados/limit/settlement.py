@@ -17,7 +17,7 @@ from extrados.model.geometry.assembly import GROUND
 
 SLIGHT = 1e-6  # cost of pressing beside that of the work on the supports
 SAME = 1e-8  # of the total load: states that do this little more work are as good
-CANNOT_FOLLOW = "the stones cannot follow: they are wedged, and would have to be crushed"
+CANNOT_FOLLOW = "the blocks are wedged, and would have to be crushed"
 
 
 @dataclass(frozen=True)

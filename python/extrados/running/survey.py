@@ -6,7 +6,7 @@ import io
 import os
 import tempfile
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -73,7 +73,7 @@ class SurveyJob:
         row = {"overall": "", "strategy": "", "status": "failed", "statement": "", "folder": str(Path(self.out) / name)}
         margin = np.nan
         try:
-            deck = make_deck(loads(self.texts[k]), Path(self.folder))
+            deck = replace(make_deck(loads(self.texts[k]), Path(self.folder)), path=f"{name}.toml")
             run = compute(Context(deck, threads))
             row["folder"] = str(run.write(Path(self.out) / name, figures=False))  # beside it, where others wrote there
             result = next(r for r in run.results if r.kind == "assess")

@@ -132,7 +132,7 @@ def _agreement(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
         saved = style.save(fig, folder, f"{name}-agreement")
     return (
         saved,
-        "Verdict of each strategy (diagonal), and which pairs say the same: = agree, x differ, ~ same verdict with margins far apart, ? one is open.",
+        "Verdict of each strategy (diagonal), and which pairs agree: = agree, x differ, ~ same verdict with margins far apart, ? one is open.",
     )
 
 
@@ -153,7 +153,7 @@ def _hazard(run: Stored, r: Assess, name: str, folder: Path) -> tuple[str, str]:
         for row, line in zip(rows, ("--", ":", "-."), strict=False):
             for k, side in enumerate((1.0, -1.0)):
                 ax.axhline(side * row.capacity, color=style.THRUST, linewidth=1.0, linestyle=line,
-                           label=f"borne by {row.label}" if k == 0 else None)  # fmt: skip
+                           label=f"capacity by {row.label}" if k == 0 else None)  # fmt: skip
         told = ""
         if r.hazard.pulse_amplitude_g is not None and r.hazard.pulse_period_s is not None:
             told = f" Its primary impulse has {r.hazard.pulse_amplitude_g:.3g} g over {r.hazard.pulse_period_s:.3g} s."
@@ -162,7 +162,7 @@ def _hazard(run: Stored, r: Assess, name: str, folder: Path) -> tuple[str, str]:
         ax.set_xlim(time[0], time[-1])
         ax.set_xlabel("time [s]")
         ax.set_ylabel("acceleration [g]")
-        ax.set_title("The hazard, and what bears it as a constant push")
+        ax.set_title("The hazard, and capacities under a sustained load")
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-hazard")
     return saved, f"{r.hazard.told[:1].upper()}{r.hazard.told[1:]}.{told}"
@@ -200,7 +200,7 @@ def _tornado(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
             ax.plot([], [], color=style.HINGE, linewidth=8.0, label="value above")
             if here is not None:
                 ax.axvline(here, color=style.EDGE, linewidth=0.8)
-            ax.axvline(1.0, color=style.THRUST, linewidth=1.0, linestyle="--", label="the verdict turns")
+            ax.axvline(1.0, color=style.THRUST, linewidth=1.0, linestyle="--", label="the verdict changes")
             ax.set_title(title)
             ax.set_xlabel(axis)
             ax.grid(axis="y", visible=False)
@@ -213,10 +213,10 @@ def _tornado(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
     turned = [f"{row.key} {value:.3g}{f' {row.unit}' if row.unit else ''} ({label})" for row in rows
               for label, value in (("limit analysis", row.tilt_turns), ("rocking", row.rocking_turns),
                                    ("discrete elements", row.dem_turns)) if value is not None]  # fmt: skip
-    told = f" Verdicts turn at: {'; '.join(turned)}." if turned else " No value tried turns a verdict."
+    told = f" Verdicts change at: {'; '.join(turned)}." if turned else " No value that was run changes a verdict."
     if any(row.dem_base is not None for row in rows):
-        told += " Elements tell how far their stones move, over what counts as collapse."
-    return saved, f"Margins with one value of the deck moved, all else as it is.{told}"
+        told += " Discrete elements: displacement of their blocks over that of collapse."
+    return saved, f"Margins with one value of the deck varied, all others unchanged.{told}"
 
 
 def _short(key: str) -> str:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from extrados.results.store import Stored
 from extrados.show.document import Block, Document, Figure, Heading, Table, Words
-from extrados.show.telling import OUTCOMES, cell
+from extrados.show.telling import OUTCOMES, cell, heading, kind_of
 
 
 def document(
@@ -27,7 +27,13 @@ def document(
         ),
     ]
     for (name, _, _, _, statement), (_, run) in zip(rows, runs, strict=True):
-        blocks += [Heading(name, fresh=True), Words(statement, "answer")]
+        blocks += [Heading(name, fresh=True)]
+        if run is not None:
+            deck = run.summary["deck"]
+            blocks.append(
+                Words(", ".join(w for w in dict.fromkeys((heading(deck), kind_of(deck))) if w not in ("", name)))
+            )
+        blocks.append(Words(statement, "answer"))
         if run is not None:
             blocks += _page(name, run, out, figures)
     return Document(f"Assessment of {title}", [("Buildings", str(len(rows)))], blocks, f"Assessment of {title}")

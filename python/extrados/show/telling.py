@@ -2,6 +2,7 @@
 repeat it. From stored results only."""
 
 import re
+from pathlib import Path
 from typing import Any
 
 from extrados.results.explain import fact_of
@@ -22,8 +23,9 @@ MOST_SHOWN, MOST_ROWS = 12, 4
 def told(run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | None, day: str) -> Document:
     """The whole report; drawn: figures with captions by analysis; building: its drawing; day: of the results."""
     deck, made = run.summary["deck"], run.summary["extrados"]
-    title = deck.get("title") or deck["path"] or "extrados run"
-    facts = [(label, deck[key]) for label, key in (("Project", "project"), ("Author", "author")) if deck.get(key)]
+    title = heading(deck)
+    facts = [("Building", kind)] if (kind := kind_of(deck)) else []
+    facts += [(label, deck[key]) for label, key in (("Project", "project"), ("Author", "author")) if deck.get(key)]
     facts += [
         ("Date", deck.get("date") or day),
         ("Deck", f"{deck['path'] or 'from Python'} (sha256 {deck['sha256'][:16]})"),
@@ -43,6 +45,17 @@ def told(run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | Non
     blocks += _repeat(run, deck, made)
     foot = f"{title}. extrados {made['version']} {made['commit']}, deck {deck['sha256'][:16]}"
     return Document(title, facts, blocks, foot)
+
+
+def heading(deck: dict[str, Any]) -> str:
+    """The title of a deck, else the name of its file."""
+    return str(deck.get("title") or Path(deck["path"]).stem or "extrados run")
+
+
+def kind_of(deck: dict[str, Any]) -> str:
+    """The kind of structure in words, "" of a deck without one."""
+    structure = deck["resolved"].get("structure") or {}
+    return str(structure.get("kind", "")).replace("-", " ")
 
 
 def _flowing(text: str) -> str:
@@ -115,13 +128,21 @@ def _assessed(run: Stored, name: str) -> list[Block]:
         text = "; ".join(f"{labels[a]} and {labels[b]}" for a, b in r.unexplained)
         found.append(Words(f"No rule has found a reason why these differ: {text}.", "bad"))
     if r.sensitivity:
-        found.append(Heading("What the verdicts hang on", 2))
+        found.append(Heading("Sensitivity of the verdicts", 2))
         rows = [
             (m.key, f"{cell(m.base)} {m.unit}".strip(), f"{m.low:.4g} to {m.high:.4g}", _both(m.tilt_low, m.tilt_high), cell(m.tilt_turns, ""),
              _both(m.rocking_low, m.rocking_high), cell(m.rocking_turns, ""))
             for m in r.sensitivity if m.dem_base is None
         ]  # fmt: skip
-        head = ("key", "value", "moved", "margin of limit analysis", "turns at", "margin of rocking", "turns at")
+        head = (
+            "key",
+            "value",
+            "varied",
+            "margin of limit analysis",
+            "verdict changes at",
+            "margin of rocking",
+            "verdict changes at",
+        )
         found.append(Table(head, rows, (2.2, 1.1, 1.3, 1.3, 0.9, 1.3, 0.9)))
         shaken = [
             (m.key, f"{cell(m.base)} {m.unit}", f"{m.low:.3g} to {m.high:.3g}", cell(m.dem_base), _both(m.dem_low, m.dem_high), cell(m.dem_turns, ""))
@@ -129,15 +150,19 @@ def _assessed(run: Stored, name: str) -> list[Block]:
         ]  # fmt: skip
         if shaken:
             found.append(
-                Words("What only discrete elements know, by how far their stones move over what counts as collapse:")
+                Words(
+                    "Values that only discrete elements consider: displacement of their blocks over that of collapse."
+                )
             )
-            head = ("key", "value", "moved", "as it is", "moved so", "turns at")
+            head = ("key", "value", "moved", "at the value", "varied", "turns at")
             found.append(Table(head, shaken, (2.2, 1.2, 1.6, 1.0, 1.6, 1.0)))
     if r.probes:
         found.append(Heading("Further runs", 2))
         rows = [(p.strategy, p.changed, OUTCOMES[p.outcome], cell(p.value, "")) for p in r.probes]
         found.append(
-            Table(("analysis", "other than in the deck", "verdict", "demand over capacity"), rows, (1.2, 4.0, 1.0, 1.2))
+            Table(
+                ("analysis", "difference from the deck", "verdict", "demand over capacity"), rows, (1.2, 4.0, 1.0, 1.2)
+            )
         )
     if r.not_done:
         found.append(Words("Not done, or not decided: " + "; ".join(r.not_done) + ".", "warn"))
@@ -211,7 +236,7 @@ def _analysis(run: Stored, a: dict[str, Any], figures: Figures) -> list[Block]:
     heading = "Comparison of the strategies" if a["kind"] == "assess" else named
     found: list[Block] = [Heading(heading)]
     if how:
-        found.append(Words(f"How it was asked: {how}."))
+        found.append(Words(f"Settings: {how}."))
     if assumes:
         found.append(Words(f"Assumptions: {assumes}"))
     if a["status"] != "ok":

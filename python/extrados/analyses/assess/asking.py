@@ -143,7 +143,7 @@ def row_of(
     elif isinstance(r, Sla | Pushover) and any(c.peak_load_N is None for c in (r, r.minus) if c is not None):
         low = verdict.ratio  # it bears so much at least
         if verdict.outcome == "stands":
-            statement = f"The run passed no peak, what it bears in the end is not known. {statement}"
+            statement = f"The run passed no peak: the capacity is not known. {statement}"
     elif strategy.axis in ("acceleration", "pulse", "check") or isinstance(r, SelfWeight):
         margin = None if isinstance(r, SelfWeight) and r.neglected else verdict.ratio  # of another building
     if verdict.violated and outcome in ("stands", "collapses"):
@@ -193,7 +193,7 @@ def _probability(r: Ensemble | OverLevels, acceptable: float) -> tuple:
     least, most = wilson(collapsed, count)
     outcome = "stands" if share <= acceptable else "collapses" if share > 0.5 else "open"
     text = (
-        f"{collapsed} of {count} come down: {100 * share:.3g} %, between {100 * float(least):.3g} and {100 * float(most):.3g} % by the count; "
+        f"{collapsed} of {count} collapse: {100 * share:.3g} %, between {100 * float(least):.3g} and {100 * float(most):.3g} % by the count; "
         f"{100 * acceptable:g} % are acceptable."
     )
     return share, acceptable, "probability", outcome, text, low, high

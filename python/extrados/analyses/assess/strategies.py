@@ -206,14 +206,14 @@ def _sla(asked: Asked) -> Choice:
         needed = 2.0 * STONE_SECONDS * stones
         if needed > asked.share("sla"):
             raise LeftOut(
-                f"{stones} stones take about {needed:.0f} s, its share of the budget is {asked.share('sla'):.0f} s"
+                f"{stones} blocks take about {needed:.0f} s, its share of the budget is {asked.share('sla'):.0f} s"
             )
         wall = building.supports.abutting_wall
         if wall is not None:
             return Choice(
-                {"directions": ["+" if wall == "left" else "-"]}, "stones with joints, pushed away from the wall"
+                {"directions": ["+" if wall == "left" else "-"]}, "blocks with joints, pushed away from the wall"
             )
-        return Choice({"directions": ["+", "-"]}, "stones with joints that open and slide, pushed to both sides")
+        return Choice({"directions": ["+", "-"]}, "blocks with joints that open and slide, pushed to both sides")
     if building.material.tensile_strength is None:
         raise LeftOut("the wall cracks only with [material] tensile_strength and fracture_energy, which the deck lacks")
     size = getattr(building.structure, "size", None)

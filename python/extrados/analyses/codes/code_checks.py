@@ -51,7 +51,7 @@ def run(context: Context, options: CodeChecks) -> Result:
     words = [r.overall().statement, f"In detail: {'; '.join(said)}."] if said else []
     if r.dynamic_outcome:
         ratio = r.dynamic_peak_rotation_ratio
-        spoken = {"collapse": "overturns", "recovery": f"rocks to {100 * ratio:.0f} % of its critical rotation and stays up",
+        spoken = {"collapse": "overturns", "recovery": f"rocks to {100 * ratio:.0f} % of its critical rotation and recovers",
                   "no-hinging": "does not rock"}[r.dynamic_outcome]  # fmt: skip
         words.append(f"Computed under the motion itself, the block {spoken}.")
     strengths = {x.rule: x.capacity for x in lines if x.unit == "N" and x.capacity is not None}

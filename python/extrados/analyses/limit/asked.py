@@ -140,7 +140,7 @@ def deviation_of(building: Building, options: Imperfections) -> float:
         deviation = getattr(building.structure, "contact_tolerance", None)
     if deviation is None:
         raise Refused(
-            "give the deviation of a survey; only `blocks` have a contact_tolerance that tells it", ("analysis",)
+            "give the deviation of a survey; only `blocks` have a contact_tolerance that gives it", ("analysis",)
         )
     shortest = float(assembly.length.min())
     if 4.0 * deviation > shortest:

@@ -105,13 +105,13 @@ def run(context: Context, options: Imperfections) -> Result:
         )
     }
     result.answer = (
-        f"Of {options.count} random surveys within {1e3 * deviation:.3g} mm of the one given, nine in ten bear {low:.4f} to "
-        f"{high:.4f} g (median {median:.4f} g, least {borne.min():.4f} g); the one given bears {given:.4f} g."
+        f"Of {options.count} random surveys within {1e3 * deviation:.3g} mm of the given one, nine in ten have {low:.4f} to "
+        f"{high:.4f} g (median {median:.4f} g, least {borne.min():.4f} g); the given one has {given:.4f} g."
     )
     if fallen:
         result.answer += f" {fallen} of them cannot stand."
     if r.upper_bounds:
         result.answer += f" In {r.upper_bounds} of them joints slide: {out.DILATANT}."
     if r.without_answer:
-        result.warnings.append(f"{r.without_answer} surveys are left out: their programmes gave no answer")
+        result.warnings.append(f"{r.without_answer} surveys are not counted: their programmes gave no result")
     return result

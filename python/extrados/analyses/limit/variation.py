@@ -94,7 +94,7 @@ def signature(assembly: Assembly, mechanism: Mechanism) -> Signature:
 def spoken(found: Signature) -> str:
     """A signature in words."""
     if found == LOCKED:
-        return "none: it cannot be brought down"
+        return "none: no collapse mechanism exists"
     words = {"i": "intrados", "e": "extrados", "s": "slide"}
     return "; ".join(f"{name}: {'-'.join(words[m] for m in marks.split('-'))}" for name, marks in found)
 
@@ -146,7 +146,7 @@ def _evaluate(
             raise NoEquilibrium
     except Immovable as error:
         return Outcome(
-            signature=LOCKED, reason=f"cannot be brought down: {error}", assembly=assembly, locked=True,
+            signature=LOCKED, reason=f"no collapse mechanism: {error}", assembly=assembly, locked=True,
             measures=measures_of(assembly),
         )  # fmt: skip
     except NoEquilibrium:
