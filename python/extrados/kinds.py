@@ -73,8 +73,9 @@ class AnalysisKind:
 #: Makers that several kinds share, and reasons
 BLOCKS, PIERS, RIGID = "views.blocks:make_blocks", "views.blocks:make_piers", "views.rigid:make_rigid"
 ROCKER = "views.rockers.rocker:make_rocker"
-SECTION, SPATIAL = "views.solids:solids_of_section", "views.solids:solids_of_spatial"
+SECTION, SPATIAL = "views.solids.sections:solids_of_section", "views.solids.sections:solids_of_spatial"
 MESH_OF_STONES, RODS = "views.mesh.stones:make_stones", "views.mesh.rods:add_rods"
+MESH_OPTIONS, SHELL_OPTIONS = "views.mesh.options:MeshOptions", "views.shell.options:ShellOptions"
 NO_SECTION = Lacks("it is no plane section; `tilt` and `dem` look at its solids")
 NO_STONES = Lacks("a mesh file holds elements, no stones: describe the wall as `panel` or `blocks`")
 NO_PIERS = Lacks("only a wall, of the kinds panel and brickwork, has piers")
@@ -101,7 +102,7 @@ def _solids(table: str, shell: View = NO_SHELL) -> StructureKind:
 
 STRUCTURES: dict[str, StructureKind] = {
     "arch": _stones(
-        "arch:Arch", solids="views.solids:solids_of_arch", shell="views.shell.vaults:shell_of_arch", hands="ARCH"
+        "arch:Arch", solids="views.solids.arch:solids_of_arch", shell="views.shell.vaults:shell_of_arch", hands="ARCH"
     ),
     "block": _stones("block:Block", hands="BLOCK"),
     "vault": _stones("vault:Vault", shell="views.shell.vaults:shell_of_vault", hands="VAULT"),
@@ -109,13 +110,13 @@ STRUCTURES: dict[str, StructureKind] = {
     "pointed-arch": _stones("arches:PointedArch", hands="POINTED"),
     "elliptical-arch": _stones("arches:EllipticalArch", hands="ELLIPTICAL"),
     "bridge": _stones("bridge:Bridge", hands="BRIDGE"),
-    "blocks": _stones("blocks:Blocks", solids="views.solids:solids_of_blocks", hands="BLOCKS"),
+    "blocks": _stones("blocks:Blocks", solids="views.solids.blocks:solids_of_blocks", hands="BLOCKS"),
     "panel": _stones("walls:Panel", piers=PIERS, mesh="views.mesh.panel:mesh_panel", hands="PANEL"),
     "mesh": StructureKind(
         "model.structures.walls:MeshFile", NO_STONES, NO_PIERS, SECTION, RIGID, NO_STONES, "views.mesh.file:mesh_file",
         "views.shell.file:shell_of_file", None,
     ),
-    "column": _stones("masonry:Column", solids="views.solids:solids_of_column", hands="COLUMN"),
+    "column": _stones("masonry:Column", solids="views.solids.column:solids_of_column", hands="COLUMN"),
     "brickwork": _stones("brickwork:Brickwork", piers=PIERS, hands="BRICKWORK"),
     "frame": _stones("frame:Frame", hands="FRAME"),
     "stack": _stones("stack:Stack", hands="STACK"),

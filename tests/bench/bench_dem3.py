@@ -35,7 +35,7 @@ from extrados.model.structures.brickwork import Bond
 from extrados.model.structures.dome import make_dome
 from extrados.model.structures.wall import make_wall
 from extrados.schema.constants import GRAVITY
-from extrados.views.solid_supports import supports_of
+from extrados.views.solids.supports import supports_of
 
 FRICTION = 0.7
 

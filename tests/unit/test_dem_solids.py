@@ -14,7 +14,7 @@ from extrados.model.geometry.solids.assembly import Stone, assemble
 from extrados.model.geometry.solids.columns import doweled, drums
 from extrados.model.geometry.solids.polyhedra import box
 from extrados.schema.constants import GRAVITY
-from extrados.views.solid_supports import supports_of
+from extrados.views.solids.supports import supports_of
 
 COLUMN = """
 [structure]

@@ -18,7 +18,7 @@ from extrados.model.geometry.solids.polyhedra import Polyhedron, prism
 from extrados.model.geometry.solids.sections import drawn_out
 from extrados.model.structures.arch import make_arch
 from extrados.schema.constants import GRAVITY
-from extrados.views.solid_supports import supports_of
+from extrados.views.solids.supports import supports_of
 
 RADIUS, SIDES = 0.5, 96
 COIN, DRUM = 0.1, 2.0  # heights

@@ -280,6 +280,7 @@ class Shown:
         return tone
 
     def tilt(self) -> None:
+        """The section at collapse, its mechanism, and the thrust on the way there."""
         if "solid_vertex" in self.arrays:
             self._solids()
             return
@@ -297,10 +298,12 @@ class Shown:
             self._draw("Friction needed at collapse", _axis("joint", "joint", ""), _axis("", "coefficient of friction", ""), [_series("collapse_friction", "needed", sort="points")])  # fmt: skip
 
     def thrust(self) -> None:
+        """The lines of least and greatest thrust."""
         self._stones()
         self.body = {"sort": "stones", "unit": "", "label": "", "lines": self._lines("least", "most", "central")}
 
     def rocking(self) -> None:
+        """Rotation, ground and energies over time, and the structure as it moves."""
         keep = self._over_time(len(self.arrays["time"]))
         self.send("time", "rotation", "ground", "kinetic", "potential", "ledger", keep=keep)
         self.send("impact_time")
@@ -328,6 +331,7 @@ class Shown:
             self._moving(self.arrays["snapshot_time"], self.arrays["snapshot_pose"], "s", "time", **lines)
 
     def dem(self) -> None:
+        """Displacements, rotations and energies over time, and the blocks as they move."""
         time = self.arrays["time"]
         keep = slice(None, None, max(1, -(-len(time) // MOST_PICTURES)))
         if "place" in self.arrays:
@@ -381,6 +385,7 @@ class Shown:
             )
 
     def supports(self) -> None:
+        """What opens as supports move, or the thrust on the way to collapse."""
         if "movement" in self.arrays and "force" in self.arrays:
             self.send("movement")
             self.out["force_x"], self.out["force_y"] = self.arrays["force"].T
@@ -405,6 +410,7 @@ class Shown:
             )
 
     def sla(self) -> None:
+        """The load curve, and the wall as it cracks."""
         from extrados.show.cracked import CORNERS
 
         self._curve()
@@ -466,6 +472,7 @@ class Shown:
         self._draw("Load and displacement", axis, _axis("", "load", "kN"), series, trace="state")
 
     def fragility(self) -> None:
+        """Probabilities over the intensity, or the peaks of the members."""
         a = self.arrays
         if "grid" in a:
             unit = self.run.arrays[self.name]["grid"].unit
@@ -518,6 +525,7 @@ class Shown:
             self._draw("Members", _axis("pga", "peak ground acceleration", "g"), _axis("", "rotation over critical", ""), [_series("peak_ratio", "members", sort="points")])  # fmt: skip
 
     def failure_domain(self) -> None:
+        """The lowest amplitudes that cause collapse over the lengths of pulses."""
         self.send("duration", "mode_I", "mode_II")
         rows = [_series(k, k.replace("_", " ")) for k in ("mode_I", "mode_II") if k in self.arrays]
         heat = None
@@ -528,6 +536,7 @@ class Shown:
         self._pulses("Failure domain", _axis("duration", "duration of the pulse", "s"), rows, heat=heat)
 
     def dem_domain(self) -> None:
+        """The shortest pulses that cause collapse."""
         rows = []
         for k, label in enumerate(np.asarray(self.arrays["curve"]).astype(str).tolist()):
             self.out[f"shortest_{k}"] = self.arrays["shortest"][k]
@@ -540,6 +549,7 @@ class Shown:
         self._pulses("Shortest failing pulses", _axis("shortest_0", "duration", "s"), rows)
 
     def sweep(self) -> None:
+        """The capacity over the values of the key."""
         self.send("value", "gamma", "fractured", "buttress_alone")
         words = {"gamma": "monolithic", "fractured": "leeward buttress cracked", "buttress_alone": "buttress alone"}
         rows = [_series(k, w) for k, w in words.items() if k in self.arrays]
@@ -550,6 +560,7 @@ class Shown:
         self._draw("Capacity", _axis("value", about, unit), _axis("", "collapse acceleration", "g"), rows)
 
     def moving_load(self) -> None:
+        """The live-load factor over the place of the load."""
         self.send("place", "capacity")
         self._draw("Load that brings it down", _axis("place", "place of the first axle", "m"), _axis("", "load", "kN"), [_series("capacity", "capacity", factor=1e-3)])  # fmt: skip
         if "mechanism_pose" in self.arrays and "outline" in self.arrays:
@@ -595,6 +606,7 @@ class Shown:
         self._pulses(f"Lowest failing {r.pulse} pulse", _axis("duration_0", "duration", "s"), rows)  # fmt: skip
 
     def local_mechanism(self) -> None:
+        """The capacity curve of the mechanism."""
         if "displacement" not in self.arrays:
             return
         self.send("displacement", "acceleration")

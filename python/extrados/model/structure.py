@@ -2,11 +2,13 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from extrados.model.geometry.assembly import Assembly
-from extrados.model.geometry.inspection import Inspection
 from extrados.schema.table import Table
+
+if TYPE_CHECKING:  # slow to load
+    from extrados.model.geometry.inspection import Inspection
 
 RocksAs = Literal["mechanism", "block", "piers", "frame", "stack"]
 Crossed = Literal["arch", "top"]
@@ -34,7 +36,7 @@ class Structure(Table):
         """
         raise NotImplementedError(self.kind)
 
-    def inspection(self, folder: Path) -> Inspection | None:
+    def inspection(self, folder: Path) -> "Inspection | None":
         """Gaps, overlaps and near misses of a surveyed structure; None where its geometry is exact by its making."""
         return None
 

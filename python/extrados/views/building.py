@@ -5,15 +5,15 @@ from typing import TYPE_CHECKING
 
 from extrados import kinds
 from extrados.views.blocks import Masonry, maker_of
-from extrados.views.mesh.options import MeshOptions
-from extrados.views.shell.options import ShellOptions
 
 if TYPE_CHECKING:  # a view is loaded when it is asked for
     from extrados.model.geometry.solids.assembly import SolidAssembly
     from extrados.views.mesh.mesh import Mesh
+    from extrados.views.mesh.options import MeshOptions
     from extrados.views.rigid import RigidBodies
     from extrados.views.rockers.rocker import Rocker
     from extrados.views.shell.mesh import ShellMesh
+    from extrados.views.shell.options import ShellOptions
 
 
 @dataclass(frozen=True)
@@ -51,22 +51,22 @@ class Building(Masonry):
         )
         return self.made("rocker", tables, lambda: maker_of(self.kind.rocker)(self, linear, soft_base=soft_base))
 
-    def mesh(self, options: MeshOptions | None = None, seed: int | None = None) -> "Mesh":
+    def mesh(self, options: "MeshOptions | None" = None, seed: int | None = None) -> "Mesh":
         """Finite elements: of a wall, or of the stones with a row of elements along every joint; `seed` replaces that
         of a random pattern."""
-        options = options or MeshOptions()
+        options = options or kinds.load(kinds.MESH_OPTIONS)()
         tables = (
             self.structure, self.material, *self.materials.items(), self.joints, self.supports, *self.ties, options, seed
         )  # fmt: skip
         return self.made("mesh", tables, lambda: self._meshed(options, seed))
 
-    def _meshed(self, options: MeshOptions, seed: int | None) -> "Mesh":
+    def _meshed(self, options: "MeshOptions", seed: int | None) -> "Mesh":
         mesh = maker_of(self.kind.mesh)(self, options, seed)
-        return maker_of(kinds.RODS)(self, mesh) if self.ties else mesh
+        return kinds.load(kinds.RODS)(self, mesh) if self.ties else mesh
 
-    def shell(self, options: ShellOptions | None = None) -> "ShellMesh":
+    def shell(self, options: "ShellOptions | None" = None) -> "ShellMesh":
         """Flat shells in space: walls on a plan with the floors between them."""
-        options = options or ShellOptions()
+        options = options or kinds.load(kinds.SHELL_OPTIONS)()
         tables = (self.structure, self.material, *self.materials.items(), options)
         return self.made("shell", tables, lambda: maker_of(self.kind.shell)(self, options))
 

@@ -12,7 +12,7 @@ from extrados.model.errors import Key
 from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.model.geometry.solids.contacts import GROUND
 from extrados.views.building import Building
-from extrados.views.solid_supports import Supports, supports_of
+from extrados.views.solids.supports import Supports, supports_of
 
 #: What is refused of them, in words
 RIGID = 'rigid contacts (solver = "nonsmooth", or cross_check)'

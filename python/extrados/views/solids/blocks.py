@@ -1,4 +1,4 @@
-"""Blocks in space of a building, by its kind of structure."""
+"""The blocks of a file in space."""
 
 import numpy as np
 
@@ -7,47 +7,10 @@ from extrados.model.files import LARGEST_FILE, read
 from extrados.model.geometry.compas import is_compas, read_compas
 from extrados.model.geometry.drawing import UNITS, parsed
 from extrados.model.geometry.solids.assembly import SolidAssembly, assemble
-from extrados.model.geometry.solids.columns import doweled, drums
 from extrados.model.geometry.solids.meshes import read_obj, read_solids, read_stl, stones_of
-from extrados.model.geometry.solids.sections import barrel, drawn_out
-from extrados.model.structures.arch import Arch
 from extrados.model.structures.blocks import SMALL, SOLID, Blocks
-from extrados.model.structures.masonry import Column, make_column
-from extrados.model.structures.spatial import Spatial
 from extrados.views.blocks import Masonry
-
-
-def solids_of_section(building: Masonry) -> SolidAssembly:
-    """The section of a plane structure, drawn out to its depth."""
-    return drawn_out(building.blocks())
-
-
-def solids_of_spatial(building: Masonry) -> SolidAssembly:
-    """The blocks of a kind that stands in space alone."""
-    assert isinstance(building.structure, Spatial)
-    return building.structure.solids(building.material.density)
-
-
-def solids_of_arch(building: Masonry) -> SolidAssembly:
-    """A barrel, whose courses may have several stones across and whose faces may be askew."""
-    arch = building.structure
-    assert isinstance(arch, Arch)
-    return barrel(arch.section(building.material.density), arch.stones_across, np.radians(arch.skew))
-
-
-def solids_of_column(building: Masonry) -> SolidAssembly:
-    """Drums, rectangular or round, with the dowels between them."""
-    column = building.structure
-    assert isinstance(column, Column)
-    density = building.material.density
-    if column.section == "round":
-        made = drums(column.width, column.drum_heights, column.top_width, column.sides, column.flute_depth, density)
-    else:
-        made = drawn_out(make_column(column.width, column.drum_heights, column.top_width, density, column.depth))
-    if column.dowels is None:
-        return made
-    bears = np.inf if column.dowels == "unbroken" else float(column.dowels)
-    return doweled(made, bears, column.dowel_reach or np.inf)
+from extrados.views.solids.sections import solids_of_section
 
 
 def solids_of_blocks(building: Masonry) -> SolidAssembly:
