@@ -289,7 +289,7 @@ contains
          if (run%record%blamed(1) == 0) run%record%blamed(1) = run%least_balanced()
       end if
       call run%forget_settling()
-      call forget_effort(solver)
+      if (rests) call forget_effort(solver)
       clock%t = 0.0_wp
       clock%drift = 0.0_wp
       clock%steps = 0
@@ -366,18 +366,22 @@ contains
       logical, intent(out) :: rests
       integer(c_int), intent(out) :: status
       integer, parameter :: most = 20000
+      integer, parameter :: most_open = 100         !! steps in a row without impulses that fit
       type(model_clock), pointer :: clock
       class(rigid_solver), pointer :: solver
       logical :: quasi_static
       real(wp) :: speed
+      integer :: open, before
 
       rests = .false.
+      open = 0
       status = status_ok
       clock => run%clock()
       solver => run%solver()
       quasi_static = clock%quasi_static
       clock%quasi_static = .true.
       do while (run%record%settling < min(most, run%options%settle_steps))
+         before = solver%open_steps
          call several(run, 1, status)
          if (status /= status_ok) return
          run%record%settling = run%record%settling + 1
@@ -388,6 +392,8 @@ contains
          end if
          rests = speed < run%options%settle_tolerance * clock%kick * solver%gravity
          if (rests) exit
+         open = merge(open + 1, 0, solver%open_steps > before)
+         if (open == most_open) exit
          call run%limits(run%options%settlement)
          if (run%record%reason /= stop_end) exit
          if (cancel_requested()) then

@@ -163,7 +163,10 @@ def one_block_by_every_strategy(width: float, height: float, within: float) -> N
     )
 
 
-@relation("tilt dem", SLIDERS, 2e-3, examples=(SLIDES,))
+FLAT = {"structure": {"kind": "block", "width": 0.5, "height": 0.15}, "joints": {"friction": 0.306}}
+
+
+@relation("tilt dem", SLIDERS, 2e-3, examples=(SLIDES, FLAT))
 def a_block_that_slides(deck: Deck, within: float) -> None:
     """Friction below b/h: it slides at the friction coefficient, which is no collapse."""
     mu = deck["joints"]["friction"]

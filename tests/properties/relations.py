@@ -53,11 +53,11 @@ class Relation:
 RELATIONS: dict[str, Relation] = {}
 
 
-def relation(asks: str, case: st.SearchStrategy, within: float = 1e-6, **more: Any) -> Callable:
-    """Register a function of a case and a tolerance under its name."""
+def relation(asks: str, case: st.SearchStrategy, within: float = 1e-6, of: str = "", **more: Any) -> Callable:
+    """Register a function of a case and a tolerance under its name. of: the one strategy of several it is registered for."""
 
     def registered(holds: Callable) -> Callable:
-        name = holds.__name__.replace("_", "-")
+        name = f"{holds.__name__} {of}".strip().replace("_", "-").replace(" ", "-of-")
         RELATIONS[name] = Relation(name, tuple(asks.split()), case, holds, within, **more)
         return holds
 

@@ -9,18 +9,29 @@ import numpy as np
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
-from extrados.analyses.assess import strategies
+from extrados.analyses.assess import reasons, strategies
 from extrados.analyses.assess.asking import row_of, scaled_margin
 from extrados.analyses.assess.driver import _Work
 from extrados.analyses.assess.hazard import Demanded
+from extrados.analyses.assess.reasons import Facts
 from extrados.analyses.context import Context
 from extrados.decks.reader import make_deck
 from extrados.results.assess import Assess, StrategyVerdict
 from extrados.results.codes import Check, Checked, LocalMechanism
+from extrados.results.dem import DemRun
 from extrados.results.limit import Fracture, Tilt
 from extrados.results.model import Result
-from extrados.results.rocking import Rocking, RuleOutcome
-from extrados.results.statistics import Ensemble, OverLevels
+from extrados.results.rocking import (
+    AssessedImpulse,
+    Assessment,
+    Conditions,
+    FailureDomain,
+    ModeCurve,
+    PrimaryImpulse,
+    Rocking,
+    RuleOutcome,
+)
+from extrados.results.statistics import Ensemble, OverDurations, OverLevels
 from extrados.results.verdict import KindResults, Verdict, judge
 from extrados.running.survey import Assessed, decks_of
 from trials import count_of
@@ -203,6 +214,139 @@ def test_reasons_follow_from_the_results(
         assert weaker <= told.get("crack", set()) <= differing
 
 
+def facts_of(draw: st.DrawFn) -> Facts:
+    """Rows of all strategies, with results and probes whose few numbers the rules look at."""
+    rows_ = {
+        row.strategy: row for row in draw(st.lists(rows(), min_size=4, max_size=9, unique_by=lambda row: row.strategy))
+    }
+    ends, far = st.sampled_from(["recovery", "collapse"]), st.sampled_from([0.01, 0.3, 0.8, 1.5])
+
+    def rocks() -> Rocking:
+        return Rocking.model_construct(
+            outcome=draw(ends), outcomes_by_rule=None, decided_by_last_digits=False, peak_rotation_ratio=draw(far)
+        )
+
+    def falls() -> DemRun:
+        moved, slip = draw(far), draw(st.sampled_from([0.0, 1e-3, 0.2]))
+        return DemRun.model_construct(
+            outcome=draw(ends), peak_displacement_m=moved, collapse_displacement_m=2.0, peak_slip_m=slip
+        )
+
+    def pushed() -> Tilt:
+        return Tilt.model_construct(
+            collapse_acceleration_g=draw(FACTORS), collapse_acceleration_opposite_g=draw(FACTORS), fracture=None
+        )
+
+    impulse = PrimaryImpulse.model_construct(amplitude_g=0.3, period_s=0.5, goodness_of_fit=0.8)
+    criterion = Assessment.model_construct(verdict=draw(st.sampled_from(["stands", "fails"])), primary_impulse=impulse)
+    made = {"rocking": rocks(), "dem": falls(), "tilt": pushed(), "assessment": criterion}
+    probes = {"sine": rocks(), "without-restraints": rocks(), "tilt-without": pushed(), "tilt-no-sliding": pushed(), "no-sliding": falls(),
+              "monolith": falls(), "dem-nudged": falls()}  # fmt: skip
+    kept = {name: Result(name, results=r) for name, r in probes.items() if draw(st.booleans())}
+    bare = {name: draw(st.sampled_from([("a tie",), ("a tie", "a damper")])) for name in rows_ if draw(st.booleans())}
+    return Facts(
+        CONTEXT.building, CONTEXT.motion, CONTEXT.motion.peak / 9.80665, rows_, {n: Result(n, results=r) for n, r in made.items() if n in rows_},
+        1.2, kept, lambda amplitude: draw(st.none() | st.sampled_from([0.01, 5.0])), bare,
+    )  # fmt: skip
+
+
+@QUICK
+@given(st.composite(facts_of)())
+def test_each_reason_follows_from_its_probe(facts: Facts) -> None:
+    """The rules that compare a further run: told where it shows, for the pairs that it concerns, with the numbers of both."""
+    pairs = facts.pairs()
+    of, probe = facts.of, lambda name: facts.probes[name].results if name in facts.probes else None
+
+    def told(rule, want: bool, mine: list, **numbers: float) -> None:
+        found = rule(facts, pairs)
+        assert (found is not None) == bool(want and mine), rule.__name__
+        if found is not None:
+            assert [tuple(p) for p in found.explains] == mine, rule.__name__
+            for name, value in numbers.items():
+                assert found.numbers[name] == value, rule.__name__
+            assert found.text[-1] in ".!" and found.rule in reasons.HEADLINES
+
+    def alike(a: DemRun, b: DemRun) -> bool:
+        far = sorted((a.peak_displacement_m, b.peak_displacement_m))
+        return (a.outcome == "collapse") is (b.outcome == "collapse") and far[1] - far[0] < 0.2 * far[1]
+
+    rocking, dem, tilt, criterion = of("rocking"), of("dem"), of("tilt"), of("assessment")
+    follow = {"rocking", "assessment", "probability", "dem"}
+    both = [p for p in pairs if set(p) <= follow]
+    sine = probe("sine")
+    told(
+        reasons.sine_for_record,
+        rocking is not None and criterion is not None and sine is not None
+        and (sine.outcome == "collapse") is (criterion.verdict == "fails")
+        and (rocking.peak_rotation_ratio > 1.2 * sine.peak_rotation_ratio or rocking.outcome != sine.outcome),
+        [p for p in both if "assessment" in p],
+        **({"sine_rotation_ratio": sine.peak_rotation_ratio, "motion_rotation_ratio": rocking.peak_rotation_ratio} if sine and rocking else {}),
+    )  # fmt: skip
+    every = {w for there in facts.bare.values() for w in there}
+    without = {n for n, there in facts.bare.items() if set(there) == every}
+    free = probe("without-restraints")
+    told(
+        reasons.left_out, rocking is not None and free is not None and free.peak_rotation_ratio > 1.2 * rocking.peak_rotation_ratio,
+        [p for p in pairs if "rocking" in p and set(p) & without],
+        **({"rotation_ratio_without": free.peak_rotation_ratio, "rotation_ratio": rocking.peak_rotation_ratio} if free and rocking else {}),
+    )  # fmt: skip
+    bare, sla = probe("tilt-without"), facts.rows.get("sla")
+    least = None if bare is None else min(bare.collapse_acceleration_g, bare.collapse_acceleration_opposite_g)
+    told(
+        reasons.ties_of_statics,
+        bare is not None and sla is not None and "tilt" in facts.rows and sla.capacity is not None and abs(least - sla.capacity) <= 0.1 * least,
+        [p for p in pairs if set(p) == {"tilt", "sla"} and "sla" in facts.bare],
+        **({"without_ties": least, "elements": sla.capacity} if bare and sla and sla.capacity else {}),
+    )  # fmt: skip
+    nudged = probe("dem-nudged")
+    told(reasons.elements_of_last_digits, dem is not None and nudged is not None, [p for p in pairs if "dem" in p],
+         **({"displacement_m": dem.peak_displacement_m, "displacement_nudged_m": nudged.peak_displacement_m} if dem and nudged else {}))  # fmt: skip
+    share = facts.rows["probability"].demand if "probability" in facts.rows else None
+    told(reasons.chance, share is not None and 0.05 < share < 0.95,
+         [p for p in pairs if "probability" in p and not set(p) & {"tilt", "sla", "push-x", "push-y"}])  # fmt: skip
+    stuck, shortest = probe("no-sliding"), float(CONTEXT.building.blocks().length.min())
+    told(
+        reasons.sliding,
+        dem is not None and stuck is not None and nudged is None and dem.peak_slip_m >= 0.01 * shortest and not alike(dem, stuck),
+        [p for p in pairs if "dem" in p and set(p) & {"rocking", "assessment", "probability", "tilt"}],
+        **({"slip_m": dem.peak_slip_m, "displacement_without_sliding_m": stuck.peak_displacement_m} if dem and stuck else {}),
+    )  # fmt: skip
+    one = probe("monolith")
+    told(
+        reasons.drums,
+        dem is not None and one is not None and nudged is None and rocking is not None
+        and (one.outcome == "collapse") is (rocking.outcome == "collapse") and not alike(one, dem),
+        [p for p in both if "dem" in p],
+        **({"displacement_of_one_body_m": one.peak_displacement_m, "displacement_m": dem.peak_displacement_m} if one and dem else {}),
+    )  # fmt: skip
+    held = probe("tilt-no-sliding")
+    if tilt is not None and sla is not None and sla.capacity is not None and not CONTEXT.building.meshed_by_stones:
+        weak, stiff = (
+            min(t.collapse_acceleration_g, t.collapse_acceleration_opposite_g) if t else 0.0 for t in (tilt, held)
+        )
+        told(reasons.membrane, held is not None and stiff > 1.05 * weak and abs(sla.capacity - stiff) < abs(sla.capacity - weak),
+             [p for p in pairs if "sla" in p and set(p) & {"tilt", "dem"}], **({"with_sliding": weak, "without_sliding": stiff}))  # fmt: skip
+    for found in reasons.static_peak(facts, pairs):
+        mine = [tuple(p) for p in found.explains]
+        assert mine and all(
+            p in pairs and facts.split(p)[0] in ("tilt", "sla", "push-x", "push-y") and facts.split(p)[1] in follow
+            for p in mine
+        )
+        names = {facts.split(p)[0] for p in mine}
+        weakest = min((facts.rows[n].capacity for n in names), default=0.0)
+        assert found.numbers["static_capacity"] == weakest
+        stands = any(facts.outcome(n) == "stands" and facts.rows[n].capacity == weakest for n in names)
+        if not stands:
+            assert abs(found.numbers["peak"] - facts.peak_g) < 1e-12
+        else:
+            factors = [facts.interval(facts.split(p)[1])[0] for p in mine]
+            assert (
+                abs(found.numbers["peak"] - min(factors) * facts.peak_g) < 1e-9
+                or len(names) > 1
+                or "displacement_ratio" in found.numbers
+            )
+
+
 @QUICK
 @given(
     st.none() | FACTORS,
@@ -267,6 +411,29 @@ def test_a_row_says_what_its_strategy_says(verdict: Verdict, name: str) -> None:
 
 
 @QUICK
+@given(
+    VERDICTS,
+    st.sampled_from(NAMES),
+    st.lists(st.sampled_from(["[[ties]]", "[supports] abutting_wall", "[supports] damping_ratio"]), unique=True),
+)
+def test_no_collapse_without_the_restraints_of_the_deck_decides(
+    verdict: Verdict, name: str, without: list[str]
+) -> None:
+    """Asked without a tie, a strategy looks at a weaker building: where that stands this one does, and no more follows."""
+    strategy = strategies.of(name)
+    result, demand = Result(strategy.kind, results=Judged(verdict=verdict)), Demanded(0.2, "sine", 0.4, 0.2)
+    row, whole = (
+        row_of(strategy, result, "", demand, 0.05, None, tuple(without)),
+        row_of(strategy, result, "", demand, 0.05),
+    )
+    restrained = {"[[ties]]", "[supports] abutting_wall"} & set(without)
+    if whole.outcome == "collapses" and restrained:
+        assert (row.outcome, row.margin) == ("open", None) and all(what in row.violated[-1] for what in restrained)
+    else:
+        assert row == whole
+
+
+@QUICK
 @given(VERDICTS, st.sampled_from(["left", "right", None]), FACTORS)
 def test_no_row_stands_by_an_upper_bound_or_beside_what_is_violated(
     verdict: Verdict, wall: str | None, cracked: float
@@ -306,16 +473,22 @@ def test_a_share_of_collapses_decides_by_its_bounds(count: int, collapsed: int, 
 
 
 @QUICK
-@given(st.lists(st.tuples(FACTORS, st.booleans()), min_size=1, max_size=8, unique_by=lambda pair: pair[0]))
-def test_the_margin_of_a_motion_lies_below_the_first_factor_that_collapses(pairs: list[tuple[float, bool]]) -> None:
-    pairs.sort()
+@given(st.lists(st.tuples(FACTORS, st.booleans(), st.booleans()), min_size=1, max_size=8, unique_by=lambda row: row[0]))
+def test_the_margin_of_a_motion_lies_below_the_first_factor_that_collapses(
+    rows: list[tuple[float, bool, bool]],
+) -> None:
+    """And below the first at which blocks slide: beyond it rocking does not say what brings the building down."""
+    rows.sort()
     results = OverLevels.model_construct(
-        levels=[level for level, _ in pairs], collapsed=[int(down) for _, down in pairs]
+        levels=[level for level, _, _ in rows],
+        collapsed=[int(down) for _, down, _ in rows],
+        sliding_share=[float(slides) for _, _, slides in rows],
+        hinges_elsewhere_share=[0.0] * len(rows),
     )
     low, high = scaled_margin(results)
-    down = [level for level, falls in pairs if falls]
-    below = [level for level, _ in pairs if not down or level < down[0]]
-    assert (low, high) == (max(below, default=None), min(down, default=None))
+    ends = [(level, down and not slides) for level, down, slides in rows if down or slides]
+    below = [level for level, _, _ in rows if not ends or level < ends[0][0]]
+    assert (low, high) == (max(below, default=None), ends[0][0] if ends and ends[0][1] else None)
 
 
 OVERALL = st.sampled_from(["stands under all", "collapses under all", "cannot stand", "depends", "open"])
@@ -484,3 +657,154 @@ def test_what_the_codes_explain_follows_from_their_checks(
         assert ("e* =" in told["code-factors"].text) == (abs(numbers["participating_part"] - 1.0) > 0.005)
     elif part is not None and name == "NTC linear" and found.agreement["tilt"]["code-checks"] != "agree":
         assert abs(check.capacity / multiplier - 1.0) < 0.05
+
+
+CONDITIONS = st.sampled_from([[], ["It slides."]]).map(lambda v: Conditions.model_construct(violated=v))
+DEMANDED = Demanded(0.2, "sine", 0.4, 0.2)
+
+
+def decided(verdict: Verdict, outcome: str, violated: list[str]) -> None:
+    """An outcome that no violated condition stands beside."""
+    want = "open" if violated and outcome in ("stands", "collapses") else outcome
+    assert (verdict.outcome, verdict.violated) == (want, violated) and all(
+        text in verdict.statement for text in violated
+    )
+
+
+@QUICK
+@given(
+    CONDITIONS,
+    st.sampled_from(["no-hinging", "recovery", "collapse"]),
+    st.booleans(),
+    FACTORS,
+    st.lists(st.just("Chaos."), max_size=1),
+)
+def test_a_run_ends_as_its_outcome_says(
+    conditions: Conditions, outcome: str, ends: bool, ratio: float, more: list[str]
+) -> None:
+    run = Rocking.model_construct(
+        outcome=outcome, settled=ends, peak_rotation_ratio=ratio, conditions=conditions, violated=more
+    )
+    want = "collapses" if outcome == "collapse" else "stands" if ends else "open"
+    found = run.judged(DEMANDED)
+    decided(found, want, [*conditions.violated, *more])
+    assert (found.demand, found.capacity) == (ratio, 1.0) and found.ratio == 1.0 / ratio
+    assert ("comes down" in found.statement) == (want == "collapses") and ("stays up" in found.statement) == (
+        want == "stands"
+    )
+
+
+CURVE = st.lists(st.tuples(st.integers(1, 20), st.none() | FACTORS), min_size=1, max_size=5, unique_by=lambda p: p[0])
+
+
+@QUICK
+@given(CURVE, CONDITIONS, st.integers(1, 80), st.booleans(), st.none() | FACTORS, st.none() | FACTORS)
+def test_a_motion_is_compared_with_the_curve_at_its_duration(
+    curve: list, conditions: Conditions, place: int, same: bool, slides: float | None, leaves: float | None
+) -> None:
+    durations, amplitudes = [k / 4.0 for k, _ in curve], [a for _, a in curve]
+    pulse = Demanded(0.2, "sine" if same else "step", place / 16.0, 0.6)
+    made = FailureDomain.model_construct(
+        pulse="sine", mode_I=ModeCurve.model_construct(durations_s=durations, amplitudes_g=amplitudes), conditions=conditions,
+        sliding_from_g=[slides] * len(curve), hinges_elsewhere_from_g=[leaves] * len(curve), amplitudes_by_rule=None,
+    )  # fmt: skip
+    found = made.judged(pulse)
+    order = sorted(zip(durations, amplitudes, strict=True), key=lambda p: p[0])
+    ends = [
+        max((p for p in order if p[0] <= pulse.duration_s), default=None),
+        min((p for p in order if p[0] >= pulse.duration_s), default=None),
+    ]
+    if same and None not in ends and None not in (ends[0][1], ends[1][1]):
+        want = float(
+            np.interp(pulse.duration_s, [p[0] for p in order], [np.nan if p[1] is None else p[1] for p in order])
+        )
+        if ends[0] == ends[1]:
+            want = ends[0][1]
+        assert math.isclose(found.capacity, want) and found.demand == 0.6
+        assert ("stays below" in found.statement) == (want > 0.6)
+        over = any(level is not None and level <= 0.6 for level in (slides, leaves))
+        if over or not (slides or leaves):
+            assert bool(found.violated) == over
+        decided(found, "stands" if want > 0.6 else "collapses", found.violated)
+    else:
+        known = [a for a in amplitudes if a is not None]
+        assert (found.demand, found.capacity, found.violated) == (None, min(known, default=None), conditions.violated)
+
+
+@QUICK
+@given(
+    st.lists(st.tuples(st.none() | FACTORS, FACTORS), max_size=4),
+    CONDITIONS,
+    st.sampled_from(["stands", "fails"]),
+    st.lists(st.just("Chaos."), max_size=1),
+)
+def test_the_impulse_of_the_least_margin_decides(
+    rows: list, conditions: Conditions, static: str, more: list[str]
+) -> None:
+    impulses = [
+        AssessedImpulse.model_construct(
+            margin=None if a is None else a / size, failing_amplitude_g=a, amplitude_g=-size, period_s=0.5
+        )
+        for a, size in rows
+    ]
+    found = Assessment.model_construct(
+        impulses=impulses, static_verdict=static, conditions=conditions, violated=more
+    ).judged(DEMANDED)
+    known = [(a / size, a, size) for a, size in rows if a is not None]
+    if known:
+        margin, failing, size = min(known, key=lambda row: row[0])
+        assert (found.demand, found.capacity) in [(s, a) for m, a, s in known if m == margin]
+        decided(found, "stands" if size < failing else "collapses", [*conditions.violated, *more])
+    else:
+        decided(found, "stands" if static == "stands" else "open", [*conditions.violated, *more])
+
+
+SHARES = st.sampled_from([None, 0.0, 0.25, 1.0])
+
+
+@QUICK
+@given(
+    st.lists(SHARES, min_size=1, max_size=4),
+    CONDITIONS,
+    st.none() | FACTORS,
+    st.none() | st.tuples(*[st.sampled_from([0.0, 0.5])] * 2),
+)
+def test_shares_of_collapses_decide_where_all_agree(
+    shares: list, conditions: Conditions, middle: float | None, by_rule: tuple | None
+) -> None:
+    known = [p for p in shares if p is not None]
+    agreed = "stands" if known and max(known) == 0.0 else "collapses" if known and min(known) == 1.0 else "open"
+    found = OverDurations.model_construct(
+        durations_s=[float(k + 1) for k in range(len(shares))], collapse_probability=shares, conditions=conditions
+    ).judged(DEMANDED)
+    decided(found, agreed, conditions.violated if known else [])
+    if known:
+        assert f"{100.0 * min(known):.3g} % of the motions of" in found.statement
+        assert len(known) == 1 or f" {100.0 * max(known):.3g} % of those of" in found.statement
+    share, count = shares[0], 4
+    rules = None if by_rule is None else dict(zip(("energy-safe", "inelastic"), by_rule, strict=True))
+    one = Ensemble.model_construct(
+        collapse_probability=share,
+        collapsed=round((share or 0.0) * count),
+        count=count,
+        conditions=conditions,
+        collapse_probability_by_rule=rules,
+    ).judged(DEMANDED)
+    if share is None:
+        assert one.outcome == "open"
+    else:
+        told = [*one.violated[len(conditions.violated) :]]
+        assert bool(told) == (by_rule is not None and by_rule[0] != by_rule[1])
+        decided(
+            one, "stands" if share == 0.0 else "collapses" if share == 1.0 else "open", [*conditions.violated, *told]
+        )
+        assert f"{100.0 * share:.3g} % of {count}" in one.statement and one.demand == share
+    levels = OverLevels.model_construct(
+        count=[count],
+        median=middle,
+        intensity="PGA",
+        intensity_unit="g",
+        collapse_probability=[share if share is not None else 0.5],
+        conditions=conditions,
+    ).judged(DEMANDED)
+    assert (levels.outcome, levels.capacity, levels.violated) == ("not-applicable", middle, conditions.violated)

@@ -14,6 +14,8 @@ from extrados.analyses.assess import driver, hazard, reasons, sensitivity, strat
 from extrados.analyses.assess.reasons import Facts
 from extrados.analyses.assess.words import conclusion, table_of
 from extrados.analyses.context import Context
+from extrados.analyses.dem import perturbed
+from extrados.analyses.dem.perturbed import chaos_of
 from extrados.core.calls import within
 from extrados.decks.reader import make_deck
 from extrados.motions import pulses
@@ -104,6 +106,19 @@ def test_what_a_strategy_does_not_reckon_with_is_left_out_and_told() -> None:
     rows = {v.strategy: v for v in r.verdicts}
     assert "without [[ties]]" in rows["dem"].parameters and "without" not in rows["tilt"].parameters
     assert rows["dem"].status == "ok"
+
+
+def test_a_collapse_without_the_tie_of_the_deck_decides_nothing() -> None:
+    """Elements take no tie: what they say of the column alone is no verdict on the column with its tie."""
+    strong = {**TIE, "yield_force": "60 kN"}
+    shaken = {**PULSE, "amplitude": "1 g", "period": 1.5}
+    asked = {"motion": shaken, "assess": {"strategies": ["tilt", "dem"]}}
+    bare, held = (
+        {v.strategy: v for v in extrados.run(deck(**asked, **more))["assess"].verdicts}["dem"]
+        for more in ({}, {"ties": [strong]})
+    )
+    assert bare.outcome == "collapses"
+    assert held.outcome == "open" and "neglects [[ties]]" in held.statement
 
 
 def test_a_wrong_key_of_options_refuses_the_strategy_alone() -> None:
@@ -502,23 +517,13 @@ def test_ctrl_c_keeps_what_was_asked_before(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_elements_that_a_millionth_turns_are_open(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A probe under a nudged motion that ends otherwise leaves the verdict open, with the numbers of both."""
-    probed = driver._Work._probe
-
-    def nudged(work: driver._Work, strategy: str, changed: str, *rest, **more) -> Result | None:
-        found = probed(work, strategy, changed, *rest, **more)
-        if "0.999999" in changed:
-            found = replace(
-                found, results=found.results.model_copy(update={"outcome": "collapse", "peak_displacement_m": 9.0})
-            )
-        return found
-
-    monkeypatch.setattr(driver._Work, "_probe", nudged)
+    """A run whose perturbed run ends otherwise leaves the verdict of elements open, without runs at other factors."""
+    monkeypatch.setattr(perturbed, "chaos_of", lambda outcome, other, grown: chaos_of(outcome, "collapse", 1e5))
     r = extrados.run(deck(assess={"strategies": ["tilt", "rocking", "dem"], "budget": 20}))["assess"]
     rows = {v.strategy: v for v in r.verdicts}
-    assert rows["dem"].outcome == "open" and "chaotic" in rows["dem"].statement
+    assert rows["dem"].outcome == "open" and "Chaotic" in rows["dem"].statement
     (one,) = [x for x in r.reasons if x.rule == "last-digits"]
-    assert one.numbers["displacement_nudged_m"] == 9.0
+    assert one.numbers["growth"] == 1e5 and not any("times" in probe.changed for probe in r.probes)
 
 
 @pytest.mark.parametrize(

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import extrados
+from extrados.analyses.chaos import CHAOTIC, NUDGES, growth, over_critical, perturbed, turning
 from extrados.analyses.context import Context
 from extrados.analyses.motion_source import source_of
 from extrados.analyses.rocking.block import toe_forces
-from extrados.analyses.rocking.doubts import CHAOTIC, NUDGES, growth, perturbed, turning
 from extrados.core import arch as core_arch
 from extrados.core.rocking import ensemble, history
 from extrados.decks.reader import make_deck
@@ -234,7 +234,7 @@ def test_every_mechanism_of_the_vault_is_watched_at_all_joints() -> None:
 def grown(model: BlockModel, motion, scale: float, end: float) -> tuple[float, float]:
     """Growth of a perturbation of 1e-6, and the least perturbation that turns the outcome."""
     run, *others = (history(model.body, motion.ground, end, 0.01, scale=scale * k) for k in (1.0, *perturbed()))
-    found = growth([one.rotation for one in (run, *others[:2])], tuple(model.alpha))
+    found = growth([over_critical(one.rotation, tuple(model.alpha)) for one in (run, *others[:2])])
     return found, turning(run.outcome, [one.outcome for one in others])
 
 
@@ -306,8 +306,10 @@ def test_growth_counts_until_the_balance() -> None:
     """A perturbation of 1e-6 that parts two runs by a hundredth of the critical rotation has grown by 1e4; beyond it nothing counts."""
     one = np.array([0.0, 0.1, 0.5, 1.2, 5.0])
     other = np.array([0.0, 0.1, 0.51, 1.4, 9.0])
-    assert growth([one, other], (1.0, 1.0)) == pytest.approx(1e4)
-    assert growth([-one, -other], (1.0, 2.0)) == pytest.approx(1e5) and growth([one, one], (1.0, 1.0)) == 0.0
+    assert growth([one, other]) == pytest.approx(1e4)
+    uneven = [over_critical(-run, (1.0, 2.0)) for run in (one, other)]
+    assert growth(uneven) == pytest.approx(1e5) and growth([one, one]) == 0.0
+    assert growth([np.stack([one, 0.0 * one], axis=1), np.stack([other, 0.0 * one], axis=1)]) == pytest.approx(1e4)
 
 
 @pytest.mark.parametrize(("thickness", "embrace", "least"), [(1.2, 180.0, 1.5), (1.1, 175.0, 1.5)])
@@ -433,3 +435,28 @@ def test_rules_of_one_body_are_open_where_its_drums_part() -> None:
         found = extrados.run(deck).results[0]
         assert found.verdict.outcome == outcome
         assert any("Hinges form elsewhere" in text for text in found.verdict.violated) == (drums == 12)
+
+
+def test_a_margin_holds_as_far_as_friction_suffices() -> None:
+    """Friction .32 suffices for the motion, not for 1.28 times it: rocking then needs .33, and the margin is a lower bound."""
+    deck = {
+        "structure": {"kind": "block", "width": 0.6, "height": 2.0}, "joints": {"friction": 0.32},
+        "motion": {"kind": "sine-pulse", "amplitude": "0.33 g", "period": 0.8},
+    }  # fmt: skip
+    (alone,) = extrados.run(deck | {"analysis": [{"kind": "assessment"}]}).results
+    r = alone.results
+    assert r.margin == pytest.approx(1.28, abs=0.01) and not r.conditions.violated
+    (told,) = r.margin_conditions
+    assert "1.28 times the motion" in told and "needs up to 0.33" in told
+    assert told in alone.verdict.statement and told in alone.warnings
+    scaled = deck | {
+        "motion": {**deck["motion"], "amplitude": f"{0.33 * r.margin} g"},
+        "analysis": [{"kind": "rocking"}],
+    }
+    assert extrados.run(scaled)["rocking"].conditions.violated  # by the run itself
+    whole = extrados.run(deck | {"analysis": [{"kind": "assess", "strategies": ["rocking", "assessment"]}]})["assess"]
+    rocking = next(v for v in whole.verdicts if v.strategy == "rocking")
+    assert 1.0 < rocking.margin_at_least < r.margin and rocking.margin_below is None
+    assert "slide" in rocking.parameters
+    free = deck | {"joints": {"friction": 0.7}, "analysis": [{"kind": "assessment"}]}
+    assert extrados.run(free)["assessment"].margin_conditions == []

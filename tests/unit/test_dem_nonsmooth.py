@@ -250,3 +250,19 @@ def test_a_stocky_block_loses_as_housner_says(step: float, most: float) -> None:
         f'[[analysis]]\nkind = "dem"\nsolver = "nonsmooth"\nend_time = 1.5\ntime_step = {step}\n'
     )["dem"]
     assert found["restitution_measured"] == pytest.approx(found["restitution_housner"], rel=most)
+
+
+def test_contacts_that_friction_wedges_end_with_the_reason() -> None:
+    """2 x 3 blocks in bond without sliding: no step finds impulses. It took minutes, without an answer."""
+    wall = {"kind": "brickwork", "unit_length": 0.5, "unit_height": 0.25, "units": 2, "courses": 3}
+    deck = {
+        "structure": wall,
+        "joints": {"friction": "no-sliding"},
+        "analysis": [{"kind": "dem", "solver": "nonsmooth", "test": "tilt"}],
+    }
+    (found,) = extrados.run(deck).results
+    assert (
+        found.status == "refused"
+        and "not found in 100 of these steps" in found.reason
+        and "friction of up to 1" in found.reason
+    )

@@ -167,3 +167,56 @@ def test_a_tilt_test_that_slides_says_that_it_is_one_state_of_an_interval(
     for text in (found.verdict.statement, found.answer):
         assert ("form an interval" in text) == interval
     assert found.verdict.bound is None
+
+
+@pytest.mark.parametrize("solver", SOLVERS[:2])
+def test_a_block_that_tips_over_the_end_of_its_footing_has_slid(solver: dict) -> None:
+    """It slides .357 m by Newmark, past its footing of .125 m on either side, over whose end it tips by .6 mrad for two outputs."""
+    flat = {"kind": "block", "width": 0.5, "height": 0.15}
+    found = run(flat, SINE | {"amplitude": "0.765 g"}, friction=0.306, end_time=3.0, **solver)
+    exact = np.abs(newmark(0.765 * GRAVITY, 1.0, 0.306)).max()
+    assert found["peak_slip_m"] == pytest.approx(exact, rel=5e-3)
+    assert found["outcome"] == "slid" and found["off_footing"] == ["block"] and found.verdict.outcome == "open"
+
+
+def test_a_chaotic_run_is_open_and_says_so() -> None:
+    """1 x 5 m, 2 Hz, amplitudes 1e-5 g apart: outcomes are scattered, and every run says that a millionth decides."""
+    tall = {"kind": "block", "width": 1.0, "height": 5.0}
+    runs = [
+        run(tall, {"kind": "harmonic", "amplitude": f"{1.0 + k * 1e-5!r} g", "frequency": 2.0, "duration": 10.0}, 0.9, solver="nonsmooth")
+        for k in range(5)
+    ]  # fmt: skip
+    assert len({found["outcome"] for found in runs}) > 1
+    for found in runs:
+        assert found["decided_by_last_digits"] and found["perturbation_growth"] > 1e4
+        assert found.verdict.outcome == "open" and "Chaotic" in found.verdict.statement
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+def test_a_smooth_run_is_not_chaotic_and_one_that_is_not_checked_says_so(solver: dict) -> None:
+    """The growth of free sliding is that of Newmark's block: its slip under the motion times 1 + 1e-6."""
+    motion = SINE | {"period": 0.5}
+    found = run(SQUAT, motion, friction=0.3, **solver)
+    exact = [np.abs(newmark(scale * GRAVITY, 0.5, 0.3)).max() for scale in (0.5, 0.505)]
+    growth = (exact[1] - exact[0]) / 0.01 / found["collapse_displacement_m"]
+    assert (
+        found["perturbation_growth"] < 10.0 * growth and not found["violated"] and not found["decided_by_last_digits"]
+    )
+    assert found["perturbed_outcome"] == found["outcome"] == "slid" and "not checked" not in found.verdict.statement
+    unchecked = run(SQUAT, motion, friction=0.3, perturbed=False, **solver)
+    assert unchecked["perturbation_growth"] is None and "was not checked" in unchecked.verdict.statement
+    assert unchecked.verdict.outcome == "stands"
+
+
+def test_the_verdict_goes_by_the_criterion_that_is_nearer_to_its_limit() -> None:
+    """A slip of 12 % of a joint is half of what its limit allows; where displacements are farther from theirs, it governs."""
+    found = run(SQUAT, SINE | {"period": 0.5}, friction=0.3, collapse_displacement=1.0)
+    share = found["slip_ratio"] / found["slip_limit_ratio"]
+    assert found["slip_limit_ratio"] == 0.25 and share > found["peak_displacement_m"] / 1.0
+    assert found.verdict.ratio == pytest.approx(1.0 / share) and found.verdict.unit == "of the joint"
+    assert "lever arm" in found.verdict.statement and "at the end" in found.verdict.statement
+
+
+def test_units_of_the_table_are_of_its_columns() -> None:
+    table = run(SQUAT, SINE).tables["dem"]
+    assert set(table.units) == set(table.columns)

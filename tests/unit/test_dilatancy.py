@@ -16,7 +16,7 @@ from extrados.decks.reader import make_deck
 from extrados.limit.certificate import certify
 from extrados.limit.programme import LimitAnalysis
 from extrados.model.structures.arch import make_arch
-from extrados.results.limit import DILATANT, Tilt
+from extrados.results.limit import DILATANT, Tilt, judge_interval
 from extrados.results.model import Result
 from extrados.results.verdict import SelfWeight
 
@@ -65,12 +65,26 @@ def test_a_sliding_wall_has_an_interval() -> None:
         [-r.collapse_acceleration_opposite_g, r.collapse_acceleration_g], abs=1e-9
     )
     least, most = (min(r.interval(o)[k] for o in (False, True)) for k in (0, 1))
-    for peak, outcome in ((0.99 * least, "stands"), (0.5 * (least + most), "open"), (1.01 * most, "collapses")):
+    spread = max(r.non_dilatant.spread_g, r.non_dilatant_opposite.spread_g)
+    for peak, outcome in (
+        (0.99 * (least - spread), "stands"),
+        (0.5 * (least + most), "open"),
+        (1.01 * most, "collapses"),
+    ):
         verdict = r.judged(asked(peak))
         assert (verdict.outcome, verdict.capacity) == (outcome, least) and DILATANT in verdict.statement
         assert verdict.ratio == pytest.approx(least / peak)
         place = {"stands": "below the least state found", "open": "between both", "collapses": "above the upper bound"}
         assert place[outcome] in verdict.statement, "no lower end of the interval is known"
+
+
+def test_a_demand_just_below_the_least_state_is_open() -> None:
+    """The least of several states is no lower bound: within their spread below it nothing is decided."""
+    verdicts = [judge_interval(0.342, 0.5, 0.03, asked(peak)) for peak in (0.311, 0.313, 0.341, 0.343)]
+    assert [v.outcome for v in verdicts] == ["stands", "open", "open", "open"]
+    assert "by less than the spread of the states found, 0.03 g" in verdicts[1].statement
+    assert all(v.capacity == 0.342 for v in verdicts)
+    assert judge_interval(0.342, 0.5, 0.0, asked(0.341)).outcome == "stands"
 
 
 def test_the_rule_of_the_deck_does_not_change_the_verdict() -> None:

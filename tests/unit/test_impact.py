@@ -2,14 +2,16 @@
 
 import itertools
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.optimize import linprog
 
 import extrados
 from extrados.core import mechanism as core_mechanism
 from extrados.core import rocking
-from extrados.decks.reader import make_deck
+from extrados.decks.reader import make_deck, read_deck
 from extrados.model.structures.arch import ArchAssembly, make_arch
 from extrados.motions.pulses import step_pulse
 from extrados.schema.constants import GRAVITY
@@ -96,10 +98,18 @@ def test_the_best_single_mechanism_keeps_hardly_less(ratio: float, embrace: floa
     assert kept == pytest.approx(model.impacts.inelastic, rel=0.01)
 
 
-@pytest.mark.parametrize("voussoirs", [17, 500])
-def test_the_blow_is_the_nearest_admissible_velocity(voussoirs: int) -> None:
-    """Optimality of the projection: impulses press, joints part, and never both (complementarity); no joint slides."""
-    m = MechanismModel(make_arch(1.0, 0.12, 170.0, voussoirs))
+CHURCH = Path(__file__).resolve().parents[2] / "cases" / "limit" / "church.toml"
+
+
+@pytest.mark.parametrize("section", [17, 500, "church"])
+def test_the_blow_is_the_nearest_admissible_velocity(section: int | str) -> None:
+    """Optimality of the projection: impulses press, joints part, and never both (complementarity); no joint slides.
+
+    The church's 148 joints of a nave, aisles and piers ask for grown weights, whose rounding is beyond what is sought."""
+    if isinstance(section, int):
+        m = MechanismModel(make_arch(1.0, 0.12, 170.0, section))
+    else:
+        m = MechanismModel(read_deck(CHURCH).buildings[0].blocks())
     a = m.assembly
     before = -m.fields[0]
     after = inelastic_impact(a, before)
@@ -124,6 +134,25 @@ def test_the_blow_is_the_nearest_admissible_velocity(voussoirs: int) -> None:
     for _ in range(20):  # no admissible mixture of the two mechanisms is nearer
         mixed = sum(w * f for w, f in zip(rng.random(2), m.fields, strict=True))
         assert (change * mixed).sum() > -1e-8 * abs((change * before).sum())
+    # By another method: impulses of a linear programme that press, shear at will and make this change of momentum
+    rows = []
+    for direction in (a.normal, a.tangent):
+        for j, end in itertools.product(range(len(a.a)), (a.p, a.q)):
+            row = np.zeros((len(a.mass), 3))
+            for b, sign in ((a.a[j], 1.0), (a.b[j], -1.0)):
+                if b >= 0:
+                    arm, d = end[j] - a.centroid[b], direction[j]
+                    row[b] = sign * np.array([*d, arm[0] * d[1] - arm[1] * d[0]])
+            rows.append(row.ravel())
+    count = len(rows) // 2
+    root = np.sqrt(np.stack([a.mass, a.mass, a.inertia], axis=1)).ravel()
+    matrix, wanted = (np.array(rows) / root).T, change.ravel() / root
+    one = np.ones((len(wanted), 1))
+    found = linprog(
+        np.append(np.zeros(2 * count), 1.0), np.block([[matrix, -one], [-matrix, -one]]), np.append(wanted, -wanted),
+        bounds=[(0.0, None)] * count + [(None, None)] * count + [(0.0, None)],
+    )  # fmt: skip
+    assert found.status == 0 and found.fun < 1e-6 * np.linalg.norm(wanted)
 
 
 def test_indices_are_checked() -> None:

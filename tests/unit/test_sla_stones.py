@@ -6,6 +6,7 @@ import random
 import numpy as np
 import pytest
 
+import extrados
 from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.conclude import assumptions_of
 from extrados.analyses.context import Context
@@ -278,13 +279,22 @@ def test_a_semicircle_above_the_least_thickness_bears_what_limit_analysis_says(t
 
 
 def test_without_a_certificate_what_is_not_carried_is_refused(monkeypatch) -> None:
-    """Limit analysis finds equilibrium, or is not asked since the loads are others: elements have no answer."""
+    """Limit analysis finds equilibrium: elements have no answer."""
     monkeypatch.setattr("extrados.analyses.sla.driver.LimitAnalysis.stands", lambda self: True)
     found = sla({**SEMICIRCLE, "thickness": 1.05})
     assert found.status == "refused" and "not carried" in found.reason and "a tenth" in found.reason
-    monkeypatch.undo()
-    found = sla({**SEMICIRCLE, "thickness": 1.05}, constant=[{"kind": "gravity"}])
-    assert found.status == "refused" and "not carried" in found.reason
+
+
+def test_own_constant_loads_are_certified_as_limit_analysis_certifies_them() -> None:
+    """A load on the crown of a sound semicircle proves collapse in tilt and in sla alike; a lesser one in neither."""
+    arch = {**SEMICIRCLE, "thickness": 1.5, "voussoirs": 20}
+    assert sla({**SEMICIRCLE, "thickness": 1.05}, constant=[{"kind": "gravity"}])["collapse_acceleration_g"] == 0.0
+    for force, falls in ((4e5, True), (4e3, False)):
+        crown = [{"kind": "gravity"}, {"kind": "point", "x": 0.0, "y": 10.75, "fy": -force}]
+        found = sla(arch, constant=crown, reference=[{"kind": "gravity", "ax": "1 g", "ay": "0 g"}], events=3)
+        deck = {"structure": arch, "analysis": [{"kind": "tilt", "load": [{"x": 0.0, "force": force}]}]}
+        (by_limit,) = extrados.run(deck).results
+        assert isinstance(found.results, SelfWeight) is isinstance(by_limit.results, SelfWeight) is falls
 
 
 def test_only_rows_assume_that_nothing_slides() -> None:

@@ -65,6 +65,8 @@ def concluded(result: Result, options: Analysis, context: Context, building: Bui
     if verdict is None:
         return replace(result, assumptions=assumptions)
     answer = f"{result.answer} {spoken(assumptions)}".strip()
+    if verdict.outcome == "open" and verdict.violated:
+        answer = f"Outcome open: {verdict.violated[0]} As modelled: {answer}"
     # Half a motion, half a curve: neither stands for the whole
     if result.status == "interrupted" and not result.results.whole_in_parts:
         verdict = judge("It was interrupted before its end: no verdict.")

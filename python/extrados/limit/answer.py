@@ -19,11 +19,12 @@ from extrados.model.geometry.chains import inner_stones
 
 Found = TypeVar("Found")
 TOUCH = 1e-6  # of a joint's length: the thrust line touches its end
-CENTRAL = 1e-6  # of the joints' length: a line this near to all middles runs through them
+CENTRAL = 0.01  # of the joints' length: a line this near to all middles runs through them, within what is built
 
 
 def safety_factor(part: float) -> float:
-    """One over the least part of the joints that holds a thrust line; infinite where all their middles do."""
+    """One over the least part of the joints that holds a thrust line; infinite where their middles do, within `CENTRAL`: the loads
+    make no horizontal demand, and a factor beyond 100 says nothing of the safety."""
     return np.inf if part < CENTRAL else 1.0 / part
 
 
@@ -67,7 +68,7 @@ class Answer:
     def safety(self) -> float:
         """Geometric safety factor upright: one over the least part of the joints that holds a thrust line.
 
-        Infinite where the line can run through the middles of all joints.
+        Infinite where the line can run through the middles of all joints, within `CENTRAL` of their length.
         """
         return safety_factor(self.part)
 

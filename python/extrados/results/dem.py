@@ -13,7 +13,8 @@ HINGED_FIRST, CLOSED, HINGED_SECOND, APART = -1, 0, 1, 2
 DemOutcome = Literal["at-rest", "slid", "rocked", "collapse"]
 #: By what a block that moved farther than the collapse displacement has collapsed, rather than slid
 CollapseCriterion = Literal["rotation", "loss of height", "loss of support", "separation"]
-#: Of the length of a joint: it may slide so far without a doubt on the support that is left
+#: Slip over the length of a joint up to which the support that is left is not in doubt: half of the lever arm to the end of
+#: the joint, and so half of the resistance to overturning, is left then
 SLIP_LIMIT = 0.25
 INTERVAL = "whether blocks slide, on the way to collapse, on statically indeterminate joints: the accelerations are then one state of an interval"
 #: What a contact of solids does, in the stored array `state`: CLOSED, open at some corners, APART
@@ -74,8 +75,21 @@ class DemRun(KindResults):
     peak_slip_m: float = fact("greatest slip of joints that still touch", "m")
     residual_slip_m: float = fact("greatest slip of joints at the end", "m")
     slip_ratio: float = fact("greatest slip over the length of its joint")
+    slip_limit_ratio: float = fact(
+        "limit of that ratio (0.25): beyond it more than half of the lever arm to the end of the joint is lost, and the verdict is open"
+    )
     slipped_joint: str | None = fact("joint of that ratio; null where none slides by 1 %")
     off_footing: list[str] = fact("blocks that slid farther than their footings reach, where no floor is named")
+    decided_by_last_digits: bool = fact(
+        "whether last digits decide: under the motion times 1 + 1e-6 the displacements part by more than a hundredth of the one that counts "
+        "as collapse, or the run ends in collapse where the other does not; false where this was not checked"
+    )
+    perturbation_growth: float | None = fact(
+        "greatest separation of the displacements of a block, over the one that counts as collapse, under the motion times 1 + 1e-6, over "
+        "that perturbation, until collapse; null where this was not checked"
+    )
+    perturbed_outcome: str | None = fact("outcome under the motion times 1 + 1e-6; null where this was not checked")
+    violated: list[str] = fact("assumptions that were checked and do not hold: no chaos, a sentence each")
     peak_kinetic_energy_J: float = fact("greatest kinetic energy", "J")
     friction_loss_J: float = fact("energy lost in friction", "J")
     damping_loss_J: float = fact("energy lost in damping", "J")
@@ -187,8 +201,21 @@ class SolidDemRun(KindResults):
     peak_slip_m: float = fact("greatest slip of contacts that still touch", "m")
     residual_slip_m: float = fact("greatest slip of contacts at the end", "m")
     slip_ratio: float = fact("greatest slip over the least width of its contact")
+    slip_limit_ratio: float = fact(
+        "limit of that ratio (0.25): beyond it more than half of the lever arm to the end of the joint is lost, and the verdict is open"
+    )
     slipped_joint: str | None = fact("joint of that ratio; null where none slides by 1 %")
     off_footing: list[str] = fact("blocks that slid farther than their footings reach, where no floor is named")
+    decided_by_last_digits: bool = fact(
+        "whether last digits decide: under the motion times 1 + 1e-6 the displacements part by more than a hundredth of the one that counts "
+        "as collapse, or the run ends in collapse where the other does not; false where this was not checked"
+    )
+    perturbation_growth: float | None = fact(
+        "greatest separation of the displacements of a block, over the one that counts as collapse, under the motion times 1 + 1e-6, over "
+        "that perturbation, until collapse; null where this was not checked"
+    )
+    perturbed_outcome: str | None = fact("outcome under the motion times 1 + 1e-6; null where this was not checked")
+    violated: list[str] = fact("assumptions that were checked and do not hold: no chaos, a sentence each")
     peak_kinetic_energy_J: float = fact("greatest kinetic energy", "J")
     friction_loss_J: float = fact("energy lost in friction", "J")
     damping_loss_J: float = fact("energy lost in damping", "J")
@@ -249,25 +276,32 @@ class SolidDemTilt(KindResults):
 
 
 def _judged_run(run: DemRun | SolidDemRun) -> Verdict:
-    """The greatest displacement against the one that counts as collapse [m], or where joints slide beyond `SLIP_LIMIT` the
-    slip against that. Open where blocks still move, slid too far, or slid off a footing."""
-    most, limit, slip = run.peak_displacement_m, run.collapse_displacement_m, 1e3 * run.peak_slip_m
-    violated = [f"The footing under {name} ends where {name} slides on." for name in run.off_footing]
+    """The greatest displacement against the one that counts as collapse [m], or the slip against `SLIP_LIMIT` of its joint, whichever
+    is nearer to its limit. Open where blocks still move, slid too far, slid off a footing, or where the response is chaotic."""
+    most, limit, share = run.peak_displacement_m, run.collapse_displacement_m, run.slip_ratio
+    violated = [f"The footing under {name} ends where {name} slides on." for name in run.off_footing] + run.violated
+    unchecked = (
+        "" if run.perturbation_growth is not None else " Sensitivity to perturbations of the motion was not checked."
+    )
     if run.outcome == "collapse":
         how = f"{run.governing_block} collapses by {run.collapse_criterion}"
-        text = f"{how}, and moves farther than the {1e3 * limit:.3g} mm that count as collapse."
+        text = f"{how}, and moves farther than the {1e3 * limit:.3g} mm that count as collapse.{unchecked}"
         return judge(text, max(most, limit), limit, "m", "collapses", violated=violated)
     if run.still_moving:
         return judge("The run ended while blocks still moved.", most, limit, "m", "open", violated=violated)
-    if run.slip_ratio > SLIP_LIMIT:
-        text = (
-            f"Blocks slide by up to {slip:.3g} mm, {100 * run.slip_ratio:.3g} % of the joint {run.slipped_joint} (limit "
-            f"{100 * SLIP_LIMIT:g} %): whether the support that is left suffices is not decided."
-        )
-        return judge(text, run.slip_ratio, SLIP_LIMIT, "of the joint", "open", violated=violated)
+    slip = (
+        f"Blocks slide by up to {1e3 * run.peak_slip_m:.3g} mm, {100 * share:.3g} % of the joint {run.slipped_joint} (limit "
+        f"{100 * SLIP_LIMIT:g} %, where half of the lever arm to its end is lost), and by {1e3 * run.residual_slip_m:.3g} mm at the end"
+    )
+    if share > SLIP_LIMIT:
+        text = f"{slip}: whether the support that is left suffices is not decided.{unchecked}"
+        return judge(text, share, SLIP_LIMIT, "of the joint", "open", violated=violated)
     text = f"No block moves farther than {1e3 * most:.3g} mm; {1e3 * limit:.3g} mm count as collapse."
     if run.slipped_joint is not None:
-        text += f" Blocks slide by up to {slip:.3g} mm, {100 * run.slip_ratio:.3g} % of the joint {run.slipped_joint} (limit {100 * SLIP_LIMIT:g} %)."
+        text += f" {slip}."
+    text += unchecked
+    if share / SLIP_LIMIT > most / limit:
+        return judge(text, share, SLIP_LIMIT, "of the joint", violated=violated)
     return judge(text, most, limit, "m", "stands" if most < limit else "open", violated=violated)
 
 

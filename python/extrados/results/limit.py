@@ -149,7 +149,8 @@ class Tilt(KindResults):
     required_friction: float | None = fact("greatest coefficient of friction that the thrust line at collapse needs")
     required_friction_joint: int = fact("the joint that needs it")
     geometric_safety_factor: float | None = fact(
-        "upright: one over the least part of the joints that holds a thrust line; null where that was not sought"
+        "upright: one over the least part of the joints, about their middles, that holds a thrust line, at most 100; null where the line "
+        "runs through all middles within 1 % of the joints (no horizontal demand), or where it was not sought"
     )
     weight_N: float = fact("weight of the structure with its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
@@ -200,8 +201,9 @@ class Tilt(KindResults):
         """The verdict by pushes to +x (False) or to -x (True), or the lesser of both.
 
         Where pressed joints slide the collapse acceleration lies in an interval: from its upper end on the structure
-        collapses, within it collapse is possible and the outcome open. The capacity is the lower end. Where that is not
-        known the upper end is a bound by which nothing stands.
+        collapses, within it collapse is possible and the outcome open. The capacity is the least state found, which is no
+        lower bound: within the spread of the states found below it the outcome is open too. Without such a state the
+        upper end is a bound, and no outcome but collapse follows from it.
         """
         intervals = [self.interval(one) for one in opposite]
         high = min(most for _, most in intervals)
@@ -211,7 +213,8 @@ class Tilt(KindResults):
         least = min(least for least, _ in intervals if least is not None)
         if least >= high - SAME * max(1.0, high):
             return judge_acceleration(least, demand)
-        return judge_interval(least, high, demand)
+        found = [self.non_dilatant_opposite if one else self.non_dilatant for one in opposite]
+        return judge_interval(least, high, max((one.spread_g for one in found if one is not None), default=0.0), demand)
 
 
 def judge_dilatant(capacity: float, demand: Demand, reason: str | None = None) -> Verdict:
@@ -221,21 +224,28 @@ def judge_dilatant(capacity: float, demand: Demand, reason: str | None = None) -
     return found.model_copy(update={"statement": f"{found.statement} Joints slide: {DILATANT}.{why}"})
 
 
-def judge_interval(least: float, most: float, demand: Demand) -> Verdict:
-    """A collapse acceleration between the least state found without dilatancy and the upper bound [g]."""
+def judge_interval(least: float, most: float, spread: float, demand: Demand) -> Verdict:
+    """A collapse acceleration between the least state found without dilatancy, one of several with a `spread`, and the
+    upper bound [g]."""
     peak = demand.peak_g
     upper = f"the {DILATANT} is {most:.3g} g" if most < inf else "with dilatant friction no collapse mechanism exists"
     text = f"Collapse acceleration (horizontal, constant) in an interval: joints slide; least state found {least:.3g} g, {upper}"
     if peak is None:
         return judge(f"{text}; the deck holds no single motion to compare with.", None, least, "g")
-    outcome: Outcome = "stands" if peak < least else "collapses" if peak >= most else "open"
-    place = {
-        "stands": "below the least state found", "collapses": "at or above the upper bound", "open": "between both",
-    }[outcome]  # fmt: skip
-    return judge(
-        f"{text}; the peak of the motion, {peak:.3g} g, applied as a sustained load, is {place}.", peak, least, "g",
-        outcome,
-    )  # fmt: skip
+    outcome: Outcome
+    if peak >= most:
+        outcome, place = "collapses", "at or above the upper bound"
+    elif peak >= least:
+        outcome, place = "open", "between both"
+    elif peak >= least - spread:
+        outcome, place = (
+            "open",
+            f"below the least state found by less than the spread of the states found, {spread:.3g} g",
+        )
+    else:
+        outcome, place = "stands", "below the least state found"
+    text = f"{text}; the peak of the motion, {peak:.3g} g, applied as a sustained load, is {place}."
+    return judge(text, peak, least, "g", outcome)
 
 
 class ThrustLine(ResultModel):
@@ -267,7 +277,8 @@ class Thrust(KindResults):
     chain: str | None = fact("arch or stack to which least and greatest thrust belong; null without one")
     admissible_interval_g: list[float] = fact("accelerations between which a thrust line is admissible", "g")
     geometric_safety_factor: float | None = fact(
-        "one over the least part of the joints that holds a thrust line; null where one runs through all middles"
+        "one over the least part of the joints, about their middles, that holds a thrust line, at most 100; null where the line runs "
+        "through all middles within 1 % of the joints (no horizontal demand), or where it was not sought"
     )
     least_part_of_joints: float = maybe("the part of the joints, about their middles, that the most central line needs")
     weight_N: float = fact("weight of the structure with its fill", "N")
@@ -286,6 +297,9 @@ class Thrust(KindResults):
         part = self.least_part_of_joints
         if part is None:
             return judge("The most central thrust line was not found.", None, None)
+        if self.geometric_safety_factor is None:
+            text = "a thrust line runs through the middles of all joints, within 1 % of their length: no horizontal demand."
+            return judge(f"At {self.gamma_g:g} g {text}", 0.0, 1.0)
         return judge(
             f"At {self.gamma_g:g} g a thrust line stays within the middle {100.0 * part:.3g} % of the joints.", part, 1.0
         )  # fmt: skip

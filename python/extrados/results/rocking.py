@@ -428,6 +428,9 @@ class Assessment(KindResults):
     margins_by_rule: dict[str, float | None] = maybe(
         "margin by each impact rule, from a curve fitted by it, where their c_v differ by more than 1.3; null: no impulse can do harm"
     )
+    margin_conditions: list[str] = fact(
+        "assumptions that hold under the motion and not under the motion times the margin, a sentence each: the margin is conditional on them"
+    )
     violated: list[str] = fact("further assumptions that were checked and do not hold, a sentence each")
     primary_impulse: PrimaryImpulse | None = fact("the strongest impulse; null where the motion has none")
 
@@ -448,7 +451,8 @@ class Assessment(KindResults):
         _, failing, worst = min(harmful, key=lambda row: row[0])
         size = abs(worst.amplitude_g)
         word = "below" if size < failing else "at or above"
+        conditional = "".join(f" {one}" for one in self.margin_conditions)
         return judge(
             f"The motion's impulse of {size:.3g} g over {worst.period_s:.3g} s is {word} the failing amplitude of "
-            f"{failing:.3g} g.", size, failing, "g", violated=[*self.conditions.violated, *self.violated],
+            f"{failing:.3g} g.{conditional}", size, failing, "g", violated=[*self.conditions.violated, *self.violated],
         )  # fmt: skip

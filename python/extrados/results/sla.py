@@ -83,9 +83,15 @@ class SlaCurve(ResultModel):
     )
     stored_energy_J: float | None = fact("elastic energy at that event", "J")
     dissipated_energy_J: float | None = fact(
-        "energy dissipated up to that event, from state to state; never negative, never decreasing", "J"
+        "energy dissipated up to that event; never negative, never decreasing. Basis: the work of the loads less what is stored, from one "
+        "state in equilibrium to the next, friction included; through events without equilibrium the area of their teeth",
+        "J",
     )
-    crack_energy_J: float = fact("area of all teeth passed, in the planes of elements", "J")
+    crack_energy_J: float = fact(
+        "area of the teeth passed across cracks and along joints, in all events. Basis: the material laws (what the fracture energy "
+        "counts), without friction and without what is lost between states: it need not equal dissipated_energy_J",
+        "J",
+    )
     residual_ratio: float | None = fact("greatest residual of the equations that was measured; null where none was")
     guard_checks: int = fact("times that the residual was measured on the way")
     guard_resolutions: int = fact("times that the equations were solved again for it")

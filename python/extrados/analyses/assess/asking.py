@@ -119,11 +119,16 @@ class Asker:
         return Demanded(peak_g, asked.pulse, asked.duration_s, asked.amplitude_g)
 
 
+#: What of a deck restrains its structure, as decks call it
+RESTRAINTS = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
+
+
 def row_of(
-    strategy: Strategy, result: Result, words: str, demand: Demanded, acceptable: float, wall: str | None = None
-) -> StrategyVerdict:
+    strategy: Strategy, result: Result, words: str, demand: Demanded, acceptable: float, wall: str | None = None,
+    without: tuple[str, ...] = (),
+) -> StrategyVerdict:  # fmt: skip
     """The row of a strategy that has been asked; wall: the side of a wall that stands against it, towards which statics does
-    not push."""
+    not push. without: what of the deck the strategy neglects, whose collapse without a restraint decides nothing."""
     if result.status != "ok":
         status = "refused" if result.status == "refused" else "failed"
         return no_row(strategy, status, result.reason, words)
@@ -146,11 +151,15 @@ def row_of(
             statement = f"The run passed no peak: the capacity is not known. {statement}"
     elif strategy.axis in ("acceleration", "pulse", "check") or isinstance(r, SelfWeight):
         margin = None if isinstance(r, SelfWeight) and r.neglected else verdict.ratio  # of another building
-    if verdict.violated and outcome in ("stands", "collapses"):
-        outcome, statement = "open", f"{statement} {' '.join(verdict.violated)}"
+    outcome, violated = outcome or verdict.outcome, list(verdict.violated)
+    if violated and outcome in ("stands", "collapses"):
+        outcome, statement = "open", f"{statement} {' '.join(violated)}"
+    if outcome == "collapses" and (held := [what for what in without if what in RESTRAINTS]):
+        violated.append(f"The strategy neglects {' and '.join(held)}, which may prevent the collapse.")
+        outcome, margin, statement = "open", None, f"{statement} {violated[-1]}"  # of another building
     return StrategyVerdict(
         strategy=strategy.name, label=strategy.label, part=None, status="ok", reason="", axis=strategy.axis, demand=wanted,
-        capacity=borne, unit=unit, outcome=outcome or verdict.outcome, bound=verdict.bound, violated=verdict.violated,
+        capacity=borne, unit=unit, outcome=outcome, bound=verdict.bound, violated=violated,
         margin=margin, margin_at_least=low, margin_below=high, parameters=words, assumes=strategy.assumes, statement=statement,
     )  # fmt: skip
 
@@ -200,9 +209,13 @@ def _probability(r: Ensemble | OverLevels, acceptable: float) -> tuple:
 
 
 def scaled_margin(r: OverLevels) -> tuple[float | None, float | None]:
-    """Greatest factor below the first at which a single motion brings it down, and that first factor."""
-    down = [bool(c) for c in r.collapsed]
-    first = next((i for i, d in enumerate(down) if d), None)
+    """Greatest factor below the first at which a single motion brings it down, and that first factor. Where blocks slide or hinges
+    form elsewhere before, rocking does not follow the motion: the margin is at least the factor below, and no factor is known to
+    bring it down."""
+    shares = zip(r.collapsed, r.sliding_share, r.hinges_elsewhere_share, strict=True)
+    seen = [(bool(down), bool(slides) or bool(strays)) for down, slides, strays in shares]
+    first = next((i for i, one in enumerate(seen) if any(one)), None)
     if first is None:
         return r.levels[-1], None
-    return (r.levels[first - 1] if first else None), r.levels[first]
+    down, leaves = seen[first]
+    return (r.levels[first - 1] if first else None), (r.levels[first] if down and not leaves else None)

@@ -334,15 +334,17 @@ def last_digits(facts: Facts, pairs: list[Pair]) -> Reason | None:
 
 def elements_of_last_digits(facts: Facts, pairs: list[Pair]) -> Reason | None:
     """The discrete-element response is chaotic."""
-    dem, nudged = facts.of("dem"), facts.probes.get("dem-nudged")
+    dem = facts.of("dem")
     mine = [p for p in pairs if "dem" in p]
-    if not mine or not isinstance(dem, DemRun) or nudged is None or not isinstance(nudged.results, DemRun):
+    if not mine or not isinstance(dem, DemRun) or not dem.decided_by_last_digits:
         return None
-    here, there = dem.peak_displacement_m, nudged.results.peak_displacement_m
     return reason(
         "last-digits", mine,
-        f"The discrete-element response is chaotic here: blocks move by {here:.3g} m, and by {there:.3g} m with a change of 1e-6 in the "
-        "motion. Treat one run as one sample.", displacement_m=here, displacement_nudged_m=there,
+        f"The discrete-element response is chaotic here: with a change of 1e-6 in the motion the outcome is {dem.perturbed_outcome} instead of "
+        f"{dem.outcome}. Treat one run as one sample." if dem.perturbed_outcome != dem.outcome else
+        "The discrete-element response is chaotic here: a change of 1e-6 in the motion grows "
+        f"{dem.perturbation_growth:.2g} times. Treat one run as one sample.",
+        growth=dem.perturbation_growth,
     )  # fmt: skip
 
 
@@ -382,7 +384,7 @@ def sliding(facts: Facts, pairs: list[Pair]) -> Reason | None:
     dem, without = facts.of("dem"), facts.probes.get("no-sliding")
     others = {"rocking", "assessment", "probability", "tilt", *(("sla",) if facts.building.meshed_by_stones else ())}
     mine = [p for p in pairs if "dem" in p and others & set(p)]
-    if not mine or not isinstance(dem, DemRun) or "dem-nudged" in facts.probes:
+    if not mine or not isinstance(dem, DemRun) or dem.decided_by_last_digits:
         return None  # of one draw of many nothing can be compared
     shortest = float(facts.building.blocks().length.min())
     if dem.peak_slip_m < SLID * shortest:
@@ -408,7 +410,7 @@ def sliding_as_collapse(facts: Facts, pairs: list[Pair]) -> Reason | None:
     dem, tilt = facts.of("dem"), facts.of("tilt")
     static = ("tilt", "sla") if facts.building.meshed_by_stones else ("tilt",)
     mine = [p for p in pairs if "dem" in p and facts.split(p)[0] in static]
-    if not mine or not isinstance(dem, DemRun) or not isinstance(tilt, Tilt) or "dem-nudged" in facts.probes:
+    if not mine or not isinstance(dem, DemRun) or not isinstance(tilt, Tilt) or dem.decided_by_last_digits:
         return None
     least = _unstopped(facts, tilt)
     forth, back = (
@@ -456,9 +458,9 @@ def drums(facts: Facts, pairs: list[Pair]) -> Reason | None:
     """Rocking takes a stack of stones as one body; as one body the elements do as it says."""
     mine = dynamic(pairs, "dem")
     one, dem, whole = facts.probes.get("monolith"), facts.of("dem"), facts.of("rocking")
-    if "dem-nudged" in facts.probes:
-        return None
     if not mine or one is None or not isinstance(one.results, DemRun) or not isinstance(dem, DemRun):
+        return None
+    if dem.decided_by_last_digits:
         return None
     if not isinstance(whole, Rocking) or (one.results.outcome == "collapse") != (whole.outcome == "collapse"):
         return None

@@ -1,6 +1,5 @@
 """dem under a motion: from rest under the own weight to the end, to rest or to collapse."""
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,8 @@ from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.friction import friction_threshold
 from extrados.analyses.dem.job import watched
 from extrados.analyses.dem.model import Model
+from extrados.analyses.dem.perturbed import FACTOR, probe_chaos
+from extrados.analyses.dem.seen import Seen
 from extrados.analyses.dem.tables import Dem
 from extrados.analyses.dem.trial import Trial
 from extrados.analyses.dem.variations import vary
@@ -25,29 +26,6 @@ from extrados.results.model import Array, Result, TableData
 from extrados.views.rockers.block import BlockModel
 
 
-@dataclass(frozen=True)
-class Seen:
-    """What is read off a run: openings and slip of the joints (time, joint) [m] and what these do (results.dem), rotations
-    of the blocks (time, block) [rad] and those followed, displacements and losses of height [m] and rotations [rad] of the
-    bodies (time, body), how far joints that touch slide, blocks off their footings, and the ground's acceleration (time) [m/s^2]."""
-
-    gap_p: np.ndarray
-    gap_q: np.ndarray
-    slip: np.ndarray
-    state: np.ndarray
-    rotation: np.ndarray
-    tracked: list[int]
-    moved: tuple[np.ndarray, np.ndarray, np.ndarray]
-    sliding: measures.Slip
-    off_footing: list[int]
-    ground: np.ndarray
-
-    @property
-    def farthest(self) -> float:
-        """Greatest displacement of any block at any time [m]."""
-        return float(self.moved[0].max(initial=0.0))
-
-
 def run(context: Context, options: Dem, model: Model) -> Result:
     """The run, and with it what else the deck asks: variations, the least friction."""
     trial = Trial(context, options, model)
@@ -56,13 +34,19 @@ def run(context: Context, options: Dem, model: Model) -> Result:
     job = trial.job([model.values], output_step=step)
     found = dem_model.checked(watched(context, "dem-motion", job, "discrete elements"), model)
     ground = context.motion.sample(found.time) if context.deck.motion else np.zeros(len(found.time))
-    seen = _look(options, model, found, ground)
+    seen = Seen.of(model, found, options.floor is not None)
     result = Result("dem", status="interrupted" if found.interrupted else "ok")
     again = "; --resume goes on from here" if context.checkpoint is not None and len(found.time) else ""
     result.reason = f"interrupted at {found.stop_time:.3f} s{again}" if found.interrupted else ""
-    numbers = _numbers(options, trial, found, seen) | {"animation": options.animation}
-    _store(options, model, found, seen, result)
-    if seen.sliding.ratio > measures.SLIDES:
+    shadow = trial.job([model.values], FACTOR, output_step=step) if options.perturbed else None
+
+    def outcome_of(one: dem.Run) -> str:
+        return Seen.of(model, one, options.floor is not None).fate(trial.collapse).outcome
+
+    chaos = probe_chaos(context, shadow, trial.idle, found, model.rigid.count, trial.collapse, outcome_of, result)
+    numbers = _numbers(options, trial, seen, ground) | chaos | {"animation": options.animation}
+    _store(options, seen, ground, result)
+    if seen.slides:
         result.warnings.append(f"joints slide by up to {1e3 * seen.sliding.peak:.3g} mm")
     if who := numbers["off_footing"]:
         result.warnings.append(
@@ -72,12 +56,12 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         result.warnings.append(
             f"the energy ledger is off by {100 * found.residual:.2g} % of the energy that went round"
         )
-    result.warnings += dem_model.unconverged(found.effort)
+    result.warnings += dem_model.unconverged(found.effort) + chaos["violated"]
     if numbers["still_moving"]:
         result.warnings.append("it still moves at the end of the run: a longer end_time may show another outcome")
     if trial.idle:
         result.warnings.append("nothing moves it: add [motion], [[initial.movements]] or [initial] rotation_ratio")
-    if not found.interrupted:
+    if result.status == "ok":
         _further(context, options, trial, result, numbers)
     result.results = out.DemRun(**numbers)
     result.files |= dem_files.files(model, found, options)
@@ -85,28 +69,12 @@ def run(context: Context, options: Dem, model: Model) -> Result:
     return result
 
 
-def _look(options: Dem, model: Model, found: dem.Run, ground: np.ndarray) -> Seen:
-    gap_p, gap_q, slip = measures.openings(model, found)
-    state = measures.hinges(model, gap_p, gap_q, slip)
-    body = model.rigid.body_of_block
-    off = [] if options.floor is not None else measures.off_their_footings(model, state, slip)
-    return Seen(
-        gap_p, gap_q, slip, state, -(found.place[:, body, 2] - found.settled[body, 2]),
-        measures.tracked(model, options, found), measures.movements(model, found),
-        measures.Slip.of(state, slip, model.assembly.length), off, ground,
-    )  # fmt: skip
-
-
-def _numbers(options: Dem, trial: Trial, found: dem.Run, seen: Seen) -> dict[str, Any]:
-    """The results of the run itself."""
-    model, names = trial.model, trial.model.assembly.block_names
+def _numbers(options: Dem, trial: Trial, seen: Seen, ground: np.ndarray) -> dict[str, Any]:
+    """The results of the run itself; ground: its acceleration (time) [m/s^2]."""
+    model, found, names = seen.model, seen.run, seen.model.assembly.block_names
     peak = np.abs(seen.rotation).argmax(axis=0)
     mobile = slice(0, model.rigid.count)
-    unsupported = {int(model.rigid.body_of_block[i]) for i in seen.off_footing}
-    slides = seen.sliding.ratio > measures.SLIDES
-    fate = measures.fate(
-        found, trial.collapse, *seen.moved, unsupported, bool((seen.state != out.CLOSED).any()), slides
-    )
+    fate = seen.fate(trial.collapse)
     return {
         "outcome": fate.outcome,
         "collapse_criterion": fate.criterion,
@@ -116,21 +84,22 @@ def _numbers(options: Dem, trial: Trial, found: dem.Run, seen: Seen) -> dict[str
         "stopped_by": [model.rigid.names[k] for k in found.blamed],
         "stop_time_s": found.stop_time,
         "still_moving": found.reason == "end" and measures.moving(found, model),
-        "peak_rotation_rad": {names[i]: float(seen.rotation[peak[i], i]) for i in seen.tracked},
+        "peak_rotation_rad": {
+            names[i]: float(seen.rotation[peak[i], i]) for i in measures.tracked(model, options, found)
+        },
         "collapse_displacement_m": trial.collapse.displacement,
         "peak_displacement_m": measures.peak_displacement(found, seen.farthest, trial.collapse.displacement),
         "peak_slip_m": seen.sliding.peak,
         "residual_slip_m": seen.sliding.residual,
         "slip_ratio": seen.sliding.ratio,
-        "slipped_joint": model.assembly.joint_names[seen.sliding.joint] if slides else None,
+        "slip_limit_ratio": out.SLIP_LIMIT,
+        "slipped_joint": model.assembly.joint_names[seen.sliding.joint] if seen.slides else None,
         "off_footing": [names[i] for i in seen.off_footing],
         "peak_kinetic_energy_J": float(found.energy["kinetic"].max(initial=0.0)),
         "friction_loss_J": float(found.energy["friction"][-1]) if len(found.time) else 0.0,
         "damping_loss_J": float(found.energy["damping"][-1]) if len(found.time) else 0.0,
         "energy_residual_ratio": found.residual,
-        "restitution_measured": measures.restitution(found, seen.state, seen.ground)
-        if model.rigid.count == 1
-        else None,
+        "restitution_measured": measures.restitution(found, seen.state, ground) if model.rigid.count == 1 else None,
         "restitution_housner": float(BlockModel(model.assembly).housner[0])
         if isinstance(model.assembly, BlockAssembly)
         else None,
@@ -146,19 +115,20 @@ def _numbers(options: Dem, trial: Trial, found: dem.Run, seen: Seen) -> dict[str
     }
 
 
-def _store(options: Dem, model: Model, found: dem.Run, seen: Seen, result: Result) -> None:
+def _store(options: Dem, seen: Seen, ground: np.ndarray, result: Result) -> None:
     """Arrays and tables of the run into `result`."""
-    names = model.assembly.block_names
+    model, found, names = seen.model, seen.run, seen.model.assembly.block_names
+    tracked = measures.tracked(model, options, found)
     result.tables["dem"] = TableData(
         {
             "time": found.time,
-            **{f"rotation of {names[i]}": seen.rotation[:, i] for i in seen.tracked},
+            **{f"rotation of {names[i]}": seen.rotation[:, i] for i in tracked},
             **{f"{name}_energy": values for name, values in found.energy.items() if name != "leapfrog"},
         },
         {
             "time": "s",
-            **{f"rotation of {names[i]}": "rad" for i in seen.tracked},
-            **{f"{name}_energy": "J" for name in found.energy},
+            **{f"rotation of {names[i]}": "rad" for i in tracked},
+            **{f"{name}_energy": "J" for name in found.energy if name != "leapfrog"},
         },
     )
     result.tables["dem_hinges"] = measures.hinge_table(model, found.time, seen.state)
@@ -173,7 +143,7 @@ def _store(options: Dem, model: Model, found: dem.Run, seen: Seen, result: Resul
         ),
         "rate": Array(measures.block_rates(model, found), ("time", "block", "component"), "m/s, m/s, rad/s"),
         "rotation": Array(seen.rotation, ("time", "block"), "rad", "from the settled state, positive to +x"),
-        "tracked": Array(np.array(seen.tracked), ("tracked",), "", "blocks whose rotation is reported"),
+        "tracked": Array(np.array(tracked), ("tracked",), "", "blocks whose rotation is reported"),
         "hinge": Array(
             seen.state, ("time", "joint"), "", "0 closed, -1 hinged at the first end, 1 at the second, 2 open"
         ),
@@ -185,7 +155,7 @@ def _store(options: Dem, model: Model, found: dem.Run, seen: Seen, result: Resul
             for name, values in found.energy.items()
             if name != "leapfrog"
         },
-        "ground": Array(seen.ground, ("time",), "m/s^2"),
+        "ground": Array(ground, ("time",), "m/s^2"),
         "snapshot_time": Array(measures.snapshot_times(options, found), ("snapshot",), "s"),
         **measures.support_arrays(model),
     }

@@ -115,12 +115,24 @@ def springs(options: Dem, values: JointValues | SolidValues, found: dem_run.Foun
     return dict.fromkeys(told) if options.rigid else told
 
 
-def off_their_footings(model: Model, state: np.ndarray, slip: np.ndarray) -> list[int]:
-    """Numbers of the blocks that slide farther on the ground than their footings reach, by the states and slips (time, joint) [m]."""
-    a = model.assembly
-    far = np.where(state == APART, 0.0, np.abs(np.nan_to_num(slip))).max(axis=0, initial=0.0) > FOOTING * a.length
-    ground = (a.a == GROUND) | (a.b == GROUND)
-    return sorted({int(max(a.a[j], a.b[j])) for j in np.flatnonzero(far & ground)})
+def off_footing(a: np.ndarray, b: np.ndarray, state: np.ndarray, slip: np.ndarray, length: np.ndarray) -> np.ndarray:
+    """At which joints a block has slid farther on the ground than its footing reaches, from then on (time, joint).
+
+    a, b (joint): blocks on both sides; states and slips (time, joint) [m]; lengths of the joints [m].
+    """
+    far = (state != APART) & (np.abs(np.nan_to_num(slip)) > FOOTING * length) & ((a == GROUND) | (b == GROUND))
+    return np.logical_or.accumulate(far, axis=0)
+
+
+def blocks_off(a: np.ndarray, b: np.ndarray, off: np.ndarray) -> list[int]:
+    """Numbers of the blocks that slid off their footings, see `off_footing`."""
+    return sorted({int(max(a[j], b[j])) for j in np.flatnonzero(off.any(axis=0))})
+
+
+def shares(run: dem.Run | dem3.Run, count: int, limit: float) -> np.ndarray:
+    """Displacements (time, body, axis) of the first `count` bodies as shares of the one that counts as collapse [m]."""
+    axes = slice(0, 2 if isinstance(run, dem.Run) else 3)
+    return (run.place[:, :count, axes] - run.settled[:count, axes]) / limit
 
 
 def ground_level(model: Model) -> float:

@@ -113,13 +113,19 @@ def checked(
         return run
     names = [model.body_names[k] for k in run.blamed]
     first = names[0] if names else "a block"
+    wedged = (
+        f"; the impulses of its rigid contacts were not found in {run.effort.open_steps} of these steps: very high friction wedges blocks "
+        'that touch on several sides. Give a friction of up to 1, or use solver = "compliant"'
+        if run.effort.open_steps
+        else ""
+    )
     raise {"unsettled": Falls, "restless": Restless}.get(run.reason, Refused)(
         {
             "step": f"the time step is above the critical one, {run.critical_step:.3g} s",
             "overlap": f"{' and '.join(names)} overlap at the start",
             "unsettled": f"the structure does not stand under its own weight: {first} falls",
             "restless": f"the structure does not come to rest under its own weight in {run.settling_steps} steps, {first} least of "
-            "all: elements do not show whether it stands",
+            f"all: elements do not show whether it stands{wedged}",
             "blow-up": f"the energy ledger does not close: stopped at step {run.steps} ({run.stop_time:.4g} s), fastest block "
             f"{first}; a smaller step may help",
         }.get(run.reason, f"stopped: {run.reason} ({first})")

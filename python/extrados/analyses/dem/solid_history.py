@@ -9,6 +9,7 @@ from extrados.analyses.dem import measures, solid_measures
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.files import MOST_FRAMES
 from extrados.analyses.dem.job import SolidRuns, SolidTask, watched
+from extrados.analyses.dem.perturbed import FACTOR, probe_chaos
 from extrados.analyses.dem.solid_measures import SolidsSeen
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.solid_settlement import farthest_settlement
@@ -52,16 +53,26 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
     """The run of a deck on blocks in space."""
     moved = context.motion.ground if context.deck.motion else None
     across = context.motion.across if context.deck.motion else None
-    job = SolidRuns(model.bodies(), [SolidTask(core_options(context, options, model), moved, across)])
+
+    def job_of(factor: float) -> SolidRuns:
+        return SolidRuns(model.bodies(), [SolidTask(core_options(context, options, model), moved, across, factor)])
+
+    collapse, job = collapse_of(options, model), job_of(1.0)
     found = dem_model.checked(watched(context, "dem-solids", job, "discrete elements"), model)
     ground = context.motion.sample(found.time) if moved is not None else np.zeros(len(found.time))
-    seen = solid_measures.look(model, found, options.track, ground)
+    seen = solid_measures.look(model, found, options.floor is not None)
     result = Result("dem", status="interrupted" if found.interrupted else "ok")
     again = "; --resume goes on from here" if context.checkpoint is not None and len(found.time) else ""
     result.reason = f"interrupted at {found.stop_time:.3f} s{again}" if found.interrupted else ""
-    numbers = _numbers(options, model, found, seen)
+
+    def outcome_of(one: dem3.Run) -> str:
+        return solid_measures.look(model, one, options.floor is not None).fate(collapse).outcome
+
+    shadow = job_of(FACTOR) if options.perturbed else None
+    chaos = probe_chaos(context, shadow, moved is None, found, model.count, collapse, outcome_of, result)
+    numbers = _numbers(options, seen) | chaos
     result.results = r = out.SolidDemRun(**numbers, horizontal_components=1 if across is None else 2)
-    _store(options, model, found, seen, result)
+    _store(options, seen, ground, result)
     if across is not None:
         result.arrays["ground_across"] = Array(
             Motion("", across).sample(found.time),
@@ -69,13 +80,13 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
             "m/s^2",
             "acceleration of the ground a quarter turn from the direction",
         )
-    if seen.sliding.ratio > measures.SLIDES:
+    if seen.slides:
         result.warnings.append(f"contacts slide by up to {1e3 * seen.sliding.peak:.3g} mm")
     if found.residual > 0.01:
         result.warnings.append(
             f"the energy ledger is off by {100 * found.residual:.2g} % of the energy that went round"
         )
-    result.warnings += dem_model.unconverged(found.effort)
+    result.warnings += dem_model.unconverged(found.effort) + chaos["violated"]
     if r.still_moving:
         result.warnings.append("it still moves at the end of the run: a longer end_time may show another outcome")
     if moved is None:
@@ -84,13 +95,10 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
     return result
 
 
-def _numbers(options: Dem, model: SolidModel, found: dem3.Run, seen: SolidsSeen) -> dict[str, Any]:
-    names, collapse = model.assembly.block_names, collapse_of(options, model)
-    limit, slides = collapse.displacement, seen.sliding.ratio > measures.SLIDES
-    off = [] if options.floor is not None else solid_measures.off_their_footings(model, seen)
-    fate = measures.fate(
-        found, collapse, seen.away, seen.angle, seen.drop, set(off), bool((seen.state != out.CLOSED).any()), slides
-    )
+def _numbers(options: Dem, seen: SolidsSeen) -> dict[str, Any]:
+    model, found, names = seen.model, seen.run, seen.model.assembly.block_names
+    collapse = collapse_of(options, model)
+    fate = seen.fate(collapse)
     mobile = slice(0, model.count)
     kinetic = found.energy["kinetic"]
     noise = 1e-6 * float(model.assembly.mass.sum()) * GRAVITY * model.size
@@ -112,16 +120,19 @@ def _numbers(options: Dem, model: SolidModel, found: dem3.Run, seen: SolidsSeen)
         "dowels": len(found.dowel_slip),
         "dowel_slip_m": float(found.dowel_slip.max(initial=0.0)),
         "dowels_out": int(found.dowel_out.sum()),
-        "peak_rotation_rad": {names[i]: float(angle[i]) for i in seen.tracked},
-        "collapse_displacement_m": limit,
-        "peak_displacement_m": measures.peak_displacement(found, float(seen.away.max(initial=0.0)), limit),
+        "peak_rotation_rad": {names[i]: float(angle[i]) for i in solid_measures.followed(seen, options.track)},
+        "collapse_displacement_m": collapse.displacement,
+        "peak_displacement_m": measures.peak_displacement(
+            found, float(seen.away.max(initial=0.0)), collapse.displacement
+        ),
         "final_displacement_m": float(apart[-1].max(initial=0.0)) if len(found.time) else 0.0,
         "peak_opening_m": float(np.where(seen.state == out.APART, 0.0, seen.opening).max(initial=0.0)),
         "peak_slip_m": seen.sliding.peak,
         "residual_slip_m": seen.sliding.residual,
         "slip_ratio": seen.sliding.ratio,
-        "slipped_joint": model.assembly.joint_names[seen.sliding.joint] if slides else None,
-        "off_footing": [names[i] for i in off],
+        "slip_limit_ratio": out.SLIP_LIMIT,
+        "slipped_joint": model.assembly.joint_names[seen.sliding.joint] if seen.slides else None,
+        "off_footing": [names[i] for i in seen.off_footing],
         "peak_kinetic_energy_J": float(kinetic.max(initial=0.0)),
         "friction_loss_J": float(found.energy["friction"][-1]) if len(found.time) else 0.0,
         "damping_loss_J": float(found.energy["damping"][-1]) if len(found.time) else 0.0,
@@ -155,15 +166,16 @@ def run_arrays(model: SolidModel, run: dem3.Run, shown: np.ndarray) -> dict[str,
     }  # fmt: skip
 
 
-def _store(options: Dem, model: SolidModel, found: dem3.Run, seen: SolidsSeen, result: Result) -> None:
-    """Arrays, tables and files of the run into `result`."""
-    names = model.assembly.block_names
+def _store(options: Dem, seen: SolidsSeen, ground: np.ndarray, result: Result) -> None:
+    """Arrays, tables and files of the run into `result`; ground: its acceleration along the direction (time) [m/s^2]."""
+    model, found, names = seen.model, seen.run, seen.model.assembly.block_names
+    tracked = solid_measures.followed(seen, options.track)
     energies = {
         f"{name}_energy": values for name, values in found.energy.items() if name not in ("leapfrog", "mass_damping")
     }
     shift = found.place[:, : model.count] - found.settled[: model.count]
     columns = {"time": found.time}
-    for i in seen.tracked:
+    for i in tracked:
         columns |= {f"{axis} of {names[i]}": shift[:, i, k] for k, axis in enumerate("xyz")}
         columns[f"rotation of {names[i]}"] = seen.angle[:, i]
     units = {key: "rad" if key.startswith("rotation") else "m" for key in columns} | {"time": "s"}
@@ -172,12 +184,12 @@ def _store(options: Dem, model: SolidModel, found: dem3.Run, seen: SolidsSeen, r
         **run_arrays(model, found, measures.snapshot_times(options, found)),
         "shift": Array(shift, ("time", "block", "axis3"), "m", "of the centroids, from the settled state"),
         "turn": Array(seen.turn, ("time", "block", "axis3"), "rad", "rotation vectors from the settled state"),
-        "tracked": Array(np.array(seen.tracked), ("tracked",), "", "blocks whose rotation is reported"),
+        "tracked": Array(np.array(tracked), ("tracked",), "", "blocks whose rotation is reported"),
         "state": Array(seen.state.astype(np.int8), ("time", "contact"), "", "0 closed, 1 open at some corners, 2 apart"),
         "opening": Array(seen.opening, ("time", "contact"), "m", "gap at the corner of each contact that gapes most"),
         "slip": Array(seen.slip, ("time", "contact"), "m", "slip at its most closed corner"),
         **{name: Array(values, ("time",), "J") for name, values in energies.items()},
-        "ground": Array(seen.ground, ("time",), "m/s^2", "acceleration of the ground along the direction"),
+        "ground": Array(ground, ("time",), "m/s^2", "acceleration of the ground along the direction"),
     }  # fmt: skip
     if len(found.time):
         every = np.arange(0, len(found.time), max(1, int(np.ceil(len(found.time) / MOST_FRAMES))))

@@ -5,12 +5,21 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from extrados.analyses.dem.measures import MOST_TRACKED, OPEN, Slip
+from extrados.analyses.dem.measures import (
+    MOST_TRACKED,
+    OPEN,
+    SLIDES,
+    Collapse,
+    Fate,
+    Slip,
+    blocks_off,
+    fate,
+    off_footing,
+)
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.core import dem3
 from extrados.model.geometry.solids.contacts import GROUND
 from extrados.results.dem import APART, CLOSED, ROCKS
-from extrados.views.rigid import FOOTING
 
 
 @dataclass(frozen=True)
@@ -19,19 +28,35 @@ class SolidsSeen:
 
     turn (time, block, 3): rotation vectors from the settled attitude [rad]; opening (time, contact): of the corner that
     gapes most [m]; slip (time, contact): along the contact at its most closed corner [m]; state (time, contact): CLOSED,
-    ROCKS where some corner is open, APART where all are; drop (time, block): losses of height [m]; away: displacements [m]; ground
-    (time): its acceleration along the direction [m/s^2].
+    ROCKS where some corner is open, APART where all are; off (time, contact): the block has slid off its footing; drop (time,
+    block): losses of height [m]; away: displacements [m].
     """
 
+    model: SolidModel
+    run: dem3.Run
     turn: np.ndarray
     opening: np.ndarray
     slip: np.ndarray
     state: np.ndarray
+    off: np.ndarray
     away: np.ndarray
     drop: np.ndarray
     sliding: Slip
-    tracked: list[int]
-    ground: np.ndarray
+
+    @property
+    def slides(self) -> bool:
+        """Whether some contact slid."""
+        return self.sliding.ratio > SLIDES
+
+    @property
+    def off_footing(self) -> list[int]:
+        """Numbers of the blocks that slid off their footings."""
+        return blocks_off(self.model.assembly.a, self.model.assembly.b, self.off)
+
+    def fate(self, collapse: Collapse) -> Fate:
+        """How the run ends. A block that tips over the end of its footing has slid, and does not rock on its contact."""
+        rocks = bool(((self.state != CLOSED) & ~self.off).any())
+        return fate(self.run, collapse, self.away, self.angle, self.drop, set(self.off_footing), rocks, self.slides)
 
     @property
     def angle(self) -> np.ndarray:
@@ -39,17 +64,21 @@ class SolidsSeen:
         return np.linalg.norm(self.turn, axis=2)
 
 
-def look(model: SolidModel, run: dem3.Run, names: list[str], ground: np.ndarray) -> SolidsSeen:
-    """Everything that is read off a run; `names` of the blocks to be followed, none: those that turn most."""
+def look(model: SolidModel, run: dem3.Run, floor: bool) -> SolidsSeen:
+    """Everything that is read off a run; floor: blocks slide on a level floor, not off their footings."""
     turn = turns(model, run)
     opening, slip, state = contacts(model, run)
-    angle = np.linalg.norm(turn, axis=2).max(axis=0, initial=0.0)
-    index = {name: k for k, name in enumerate(model.assembly.block_names)}
-    most = np.argsort(-angle, kind="stable")[:MOST_TRACKED]
-    tracked = [index[name] for name in names] if names else sorted(most.tolist())
     away, drop = displacements(model, run), run.settled[: model.count, 2] - run.place[:, : model.count, 2]
-    sliding = Slip.of(state, slip, widths(model))
-    return SolidsSeen(turn, opening, slip, state, away, drop, sliding, tracked, ground)
+    one, width = model.assembly, widths(model)
+    off = np.zeros(state.shape, dtype=bool) if floor else off_footing(one.a, one.b, state, slip, width)
+    return SolidsSeen(model, run, turn, opening, slip, state, off, away, drop, Slip.of(state, slip, width))
+
+
+def followed(seen: SolidsSeen, names: list[str]) -> list[int]:
+    """Numbers of the blocks of these names; without names, of those that turn most."""
+    index = {name: k for k, name in enumerate(seen.model.assembly.block_names)}
+    most = np.argsort(-seen.angle.max(axis=0, initial=0.0), kind="stable")[:MOST_TRACKED]
+    return [index[name] for name in names] if names else sorted(most.tolist())
 
 
 def widths(model: SolidModel) -> np.ndarray:
@@ -104,14 +133,6 @@ def _carried(run: dem3.Run, body: int, points: np.ndarray, normal: np.ndarray) -
     turn = run.turn[:, body] @ run.settled_turn[body].T
     arm = points - run.settled[body]
     return run.place[:, None, body] + np.einsum("txy,ky->tkx", turn, arm), turn @ normal
-
-
-def off_their_footings(model: SolidModel, seen: SolidsSeen) -> list[int]:
-    """Numbers of the blocks that slide farther on the ground than their supports reach."""
-    one = model.assembly
-    far = np.where(seen.state == APART, 0.0, seen.slip).max(axis=0, initial=0.0) > FOOTING * widths(model)
-    ground = (one.a == GROUND) | (one.b == GROUND)
-    return sorted({int(max(one.a[j], one.b[j])) for j in np.flatnonzero(far & ground)})
 
 
 def poses(model: SolidModel, run: dem3.Run) -> np.ndarray:

@@ -31,7 +31,7 @@ GOES, TAKES_PART = 0.005, 0.1
 #: Keys of the deck that a tilt test does not look at.
 NOT_IN_TILT = (
     "end_time", "output_step", "stop_at_collapse", "snapshot_times", "animation", "animation_speed", "vtk",
-    "vary_damping", "vary_stiffness", "vary_friction", "find_friction", "slip",
+    "vary_damping", "vary_stiffness", "vary_friction", "find_friction", "slip", "perturbed",
 )  # fmt: skip
 
 

@@ -110,13 +110,15 @@ class Trial:
         """Does nothing move it?"""
         return self.ground is None and not self.moves and self.shift is None
 
-    def job(self, values: list[JointValues], **change: object) -> Runs:
-        """A run with each of these joint values; `change` replaces options of the core."""
+    def job(self, values: list[JointValues], factor: float = 1.0, **change: object) -> Runs:
+        """A run with each of these joint values; what moves the building times a factor; `change` replaces options of the core."""
         options = replace(self.options, **change)
+        shift = None if self.shift is None else factor * self.shift
+        moves = tuple(replace(m, dx=factor * m.dx, dy=factor * m.dy, turn=factor * m.turn) for m in self.moves)
         tasks = [
             Task(
                 k, replace(options, settlement=farthest_settlement(self.model, v, options.rigid), settle_damping=v.settle_damping),
-                self.ground, shift=self.shift, moves=self.moves,
+                self.ground, factor, shift, moves,
             )
             for k, v in enumerate(values)
         ]  # fmt: skip

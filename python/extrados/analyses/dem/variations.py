@@ -3,12 +3,11 @@
 import numpy as np
 
 from extrados.analyses.context import Context
-from extrados.analyses.dem import measures
 from extrados.analyses.dem.job import answered
+from extrados.analyses.dem.seen import Seen
 from extrados.analyses.dem.tables import Dem
 from extrados.analyses.dem.trial import Trial
 from extrados.results import dem as out
-from extrados.results.dem import CLOSED
 from extrados.results.model import Array, Result, TableData
 
 
@@ -26,30 +25,19 @@ def vary(context: Context, options: Dem, trial: Trial, result: Result) -> dict[s
     runs = answered(context, "dem-variations", trial.job([v for _, _, v in cases]), "sensitivity")
     rows = []
     for (what, factor, v), run in zip(cases, runs, strict=True):
-        gap_p, gap_q, slip = measures.openings(trial.model, run)
-        state = measures.hinges(trial.model, gap_p, gap_q, slip)
-        slid = measures.Slip.of(state, slip, trial.model.assembly.length)
-        fate = measures.fate(
-            run,
-            trial.collapse,
-            *measures.movements(trial.model, run),
-            set(),
-            bool((state != CLOSED).any()),
-            slid.ratio > measures.SLIDES,
-        )
+        seen = Seen.of(trial.model, run, options.floor is not None)
+        fate = seen.fate(trial.collapse)
         ratio = v.ratios()
-        body = trial.model.rigid.body_of_block
-        turn = run.place[:, body, 2] - run.settled[body, 2]
         rows.append(
             out.Variation(
                 varied=what, value=factor, beta_s=v.beta, stiffness_Pa_per_m=float(v.stiffness.max()),
                 friction=float(v.friction.max()), damping_ratio_rotation=ratio["rotation"],
                 damping_ratio_edge=ratio["edge"],
                 outcome=fate.outcome if run.reason in ("end", "rest", "collapse", "left") else run.reason,
-                peak_rotation_rad=float(np.abs(turn).max(initial=0.0)),
+                peak_rotation_rad=float(np.abs(seen.rotation).max(initial=0.0)),
                 bounces=int(run.bounces[: trial.model.rigid.count].sum()),
                 airborne_time_s=float(run.airborne[: trial.model.rigid.count].max(initial=0.0)),
-                peak_slip_m=slid.peak,
+                peak_slip_m=seen.sliding.peak,
                 energy_residual_ratio=run.residual,
             )
         )  # fmt: skip

@@ -114,7 +114,7 @@ def _words(r: out.Thrust, assembly: Assembly) -> str:
     needs = ""
     if central is not None:
         keeps = (
-            "can run through the middles of all joints"
+            "can run through the middles of all joints, within 1 % of their length: no horizontal demand,"
             if safety is None
             else f"keeps to the middle {100 * part:.1f} % of the joints (geometric safety factor {safety:.2f})"
         )

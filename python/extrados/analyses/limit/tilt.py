@@ -22,7 +22,7 @@ from extrados.analyses.limit.common import (
     tie_rows,
 )  # fmt: skip
 from extrados.analyses.limit.tables import Tilt
-from extrados.limit.answer import Answer
+from extrados.limit.answer import CENTRAL, Answer
 from extrados.limit.certificate import certify
 from extrados.limit.finite_motion import finite_motion
 from extrados.limit.fracture import Fracture
@@ -344,8 +344,10 @@ def _words(what: str, assembly: Assembly, answer: Answer, found: out.Tilt) -> st
     text += _told(found)
     needed = np.inf if found.required_friction is None else found.required_friction
     text += f"Friction of {needed:.2f} is needed" + (
-        f"; upright the geometric safety factor is {answer.safety:.2f}." if np.isfinite(answer.safety) else "."
-    )
+        f"; upright the geometric safety factor is {answer.safety:.2f}." if np.isfinite(answer.safety)
+        else "; upright the thrust line runs through the middles of the joints, within 1 % of their length: self-weight makes no horizontal demand."
+        if answer.part < CENTRAL else "."
+    )  # fmt: skip
     text += spoken_ties(found.ties)
     fracture = found.fracture
     if fracture and fracture.cracks:

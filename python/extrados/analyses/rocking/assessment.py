@@ -54,6 +54,9 @@ def run(context: Context, options: Assessment) -> Result:
     run_outcome, conditions = _run_through(context, rocker)
     by_rule = _by_rule(context, rocker, impulses)
     worst = min(rows, key=lambda r: np.inf if r.margin is None else r.margin, default=None)
+    at_margin = (
+        [] if conditions["conditions"].violated else _at_margin(context, rocker, worst.margin if worst else None)
+    )
     r = out.Assessment(
         uplift_acceleration_g=gamma,
         peak_ground_acceleration_g=context.motion.peak / GRAVITY,
@@ -69,12 +72,13 @@ def run(context: Context, options: Assessment) -> Result:
         **conditions,
         **({"margins_by_rule": by_rule} if by_rule else {}),
         violated=_undecided(by_rule),
+        margin_conditions=at_margin,
         primary_impulse=out.PrimaryImpulse(**{k: rows[0][k] for k in out.PrimaryImpulse.model_fields})
         if rows
         else None,
     )
     result.results = r
-    result.warnings += [*told(r.conditions), *_undecided(by_rule)]
+    result.warnings += [*told(r.conditions), *at_margin, *_undecided(by_rule)]
     beyond = [row for row in rows if row.verdict == "stands" and abs(row.amplitude_g) > CAP * gamma]
     if beyond:
         result.warnings.append(
@@ -123,14 +127,28 @@ def run(context: Context, options: Assessment) -> Result:
     return result
 
 
-def _run_through(context: Context, rocker: Rocker) -> tuple[str | None, dict[str, Any]]:
-    """Outcome of the whole motion by the equation of motion, None where the run gave none; the conditions under it."""
+def _run_through(context: Context, rocker: Rocker, factor: float = 1.0) -> tuple[str | None, dict[str, Any]]:
+    """Outcome of the whole motion times a factor by the equation of motion, None where the run gave none; the conditions under it."""
     end = context.motion.end + SETTLE * rocker.time_unit
-    found = ensemble([rocker.body], [context.motion.ground], [0], [0], 1.0, end, start_rotation=rocker.start_rotation)
+    found = ensemble(
+        [rocker.body], [context.motion.ground], [0], [0], factor, end, start_rotation=rocker.start_rotation
+    )
     place = int(found.outcome[0])
     rows = {"outcome": found.outcome, **rows_of(found.joints, found.half_cycles, astray_of(rocker))}
     conditions = of_many(rocker, Counted.of([rows]), "motions")
     return None if found.interrupted or place == FAILED else OUTCOMES[place], conditions
+
+
+def _at_margin(context: Context, rocker: Rocker, margin: float | None) -> list[str]:
+    """Conditions that do not hold under the motion times the margin, where that is beyond the motion itself: what holds at the
+    motion need not hold at the margin."""
+    if margin is None or margin <= 1.0:
+        return []
+    _, found = _run_through(context, rocker, margin)
+    return [
+        f"The margin is conditional: at {margin:.3g} times the motion an assumption of rocking does not hold. {text}"
+        for text in found["conditions"].violated
+    ]
 
 
 def _by_rule(context: Context, rocker: Rocker, impulses: list[Impulse]) -> dict[str, float | None]:

@@ -1,11 +1,11 @@
 """How sure the outcome of a rocking run is: under the other impact rules, where the blow at all joints is known to lose too
 much, and under perturbations of the motion from a millionth to a ten thousandth."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from extrados.analyses.chaos import CHAOTIC, NUDGE, chaos_told, growth, over_critical, perturbed, turning
 from extrados.analyses.context import Context
 from extrados.analyses.rocking.tables import Rocking
 from extrados.core.rocking import FAILED, OUTCOMES, Body, Response, arch_body, ensemble, history
@@ -15,14 +15,6 @@ from extrados.views.rockers.rocker import Rocker
 
 #: Impact rules whose c_v differ by more than this factor give both outcomes.
 DIFFER = 1.3
-#: A motion scaled by 1 plus and minus this is the same motion to every instrument.
-NUDGE = 1e-6
-#: Growth of a perturbation beyond which a run is chaotic: one of a millionth parts histories by a hundredth of the critical
-#: rotation. In 192 runs of six blocks under five records and three sines 16 grow so much (tests/unit/test_conditions.py)
-CHAOTIC = 1e4
-#: No instrument tells motions apart that differ by so little: half a decade after the other, for windows of outcomes among
-#: others are as narrow as that
-NUDGES = (NUDGE, 3.2e-6, 1e-5, 3.2e-5, 1e-4)
 #: A motion repeats itself where it is this much like itself a period later, over so many periods
 ALIKE, OFTEN = 0.5, 4.0
 
@@ -37,47 +29,6 @@ class Doubts:
     chaotic: bool
     warnings: list[str]
     violated: list[str]
-
-
-def growth(runs: Sequence[np.ndarray], critical: tuple[float, float]) -> float:
-    """Greatest separation of perturbed runs from the first one at equal times, over the perturbation.
-
-    runs: rotations at equal times (times) [rad], first as the motion is, then under the motion times 1 plus or minus NUDGE. Rotation
-    and perturbation are shares, of the critical rotation to that side and of the motion. Only the time until the first of them
-    passes the critical rotation counts: beyond it every difference grows. A smooth response is about 1 to 1e3, a chaotic one grows
-    exponentially with its impacts up to 1e6, where histories have nothing in common.
-    """
-    length = min(len(run) for run in runs)
-    share = np.stack([run[:length] / np.where(run[:length] >= 0.0, *critical) for run in runs])
-    beyond = (np.abs(share) > 1.0).any(axis=0)
-    if beyond.any():
-        share = share[:, : int(beyond.argmax())]
-    return float(np.abs(share[1:] - share[0]).max(initial=0.0)) / NUDGE
-
-
-def perturbed() -> list[float]:
-    """Factors on the motion: 1 plus and minus each of NUDGES, those of NUDGE first."""
-    return [1.0 + sign * nudge for nudge in NUDGES for sign in (-1.0, 1.0)]
-
-
-def turning(outcome: str, others: Sequence[str]) -> float:
-    """Least of NUDGES under which collapse turns into recovery or back, of the outcomes under `perturbed` motions; 0 where none does."""
-    return next(
-        (NUDGES[i // 2] for i, other in enumerate(others) if (other == "collapse") != (outcome == "collapse")), 0.0
-    )
-
-
-def chaos_told(found: float, turns: float) -> str:
-    """The violated condition of a chaotic run, from the growth of a perturbation and the least one that turns its outcome."""
-    if found <= CHAOTIC and turns > NUDGE:
-        return (
-            f"Sensitive to perturbations of {turns:.1g}: scaled by 1 plus or minus that, the motion ends in another outcome. One run is "
-            "one sample: use fragility."
-        )
-    return (
-        f"Chaotic: sensitive to perturbations of 1e-6. Scaled by 1 plus or minus {NUDGE:g}, the motion ends in another outcome, or the "
-        f"rotation differs by up to {100.0 * min(1.0, found * NUDGE):.2g} % of the critical one. One run is one sample: use fragility."
-    )
 
 
 def beat(context: Context, response: Response) -> float:
@@ -134,7 +85,7 @@ def doubts(context: Context, options: Rocking, rocker: Rocker, response: Respons
     ]  # fmt: skip
     if any(probe.interrupted for probe in probes):
         return nothing
-    grown = growth([response.rotation, *(probe.rotation for probe in probes)], rocker.critical)
+    grown = growth([over_critical(one.rotation, rocker.critical) for one in (response, *probes)])
     factors = perturbed()[len(probes) :]
     nudged = ensemble(
         [rocker.body], [context.motion.ground], np.zeros(len(factors), dtype=int), np.zeros(len(factors), dtype=int), factors,

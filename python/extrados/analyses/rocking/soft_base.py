@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from extrados.analyses.chaos import CHAOTIC, chaos_told, growth, over_critical, perturbed, turning
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import geometry_arrays
-from extrados.analyses.rocking.doubts import CHAOTIC, chaos_told, growth, perturbed, turning
 from extrados.analyses.rocking.history import LARGEST, ROOM, count, drawn_times
 from extrados.analyses.rocking.shapes import film, pictures
 from extrados.analyses.rocking.tables import Rocking
@@ -55,7 +55,8 @@ def run(context: Context, options: Rocking) -> Result:
     grown, turns = 0.0, 0.0
     if not r.interrupted:
         probes = [rock(factor) for factor in perturbed()]
-        grown = growth([one.rotation for one in (r, *probes[:2])], (model.critical(1), -model.critical(-1)))
+        critical = (model.critical(1), -model.critical(-1))
+        grown = growth([over_critical(one.rotation, critical) for one in (r, *probes[:2])])
         turns = turning(r.outcome, [one.outcome for one in probes])
     rigid: tuple[str, float] | None = None
     if not r.interrupted:

@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from extrados.analyses.chaos import CHAOTIC, chaos_told, growth, perturbed, turning
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import geometry_arrays
-from extrados.analyses.rocking.doubts import CHAOTIC, chaos_told, growth, perturbed, turning
 from extrados.analyses.rocking.history import LARGEST, count, drawn_times
 from extrados.analyses.rocking.shapes import film, pictures
 from extrados.analyses.rocking.tables import Rocking
@@ -44,9 +44,9 @@ def run(context: Context, options: Rocking) -> Result:
     if r.interrupted:
         return _result(context, options, model, r, 0.0, 0.0)
     probes = [rock(factor) for factor in perturbed()]
-    lower = [one.rotation[:, 0] for one in (r, *probes[:2])]
-    upper = [one.rotation[:, 1] - one.rotation[:, 0] for one in (r, *probes[:2])]
-    grown = max(growth(lower, (model.whole[0], model.whole[0])), growth(upper, (model.alone[0], model.alone[0])))
+    lower = [one.rotation[:, 0] / model.whole[0] for one in (r, *probes[:2])]
+    upper = [(one.rotation[:, 1] - one.rotation[:, 0]) / model.alone[0] for one in (r, *probes[:2])]
+    grown = max(growth(lower), growth(upper))
     return _result(context, options, model, r, grown, turning(r.outcome, [one.outcome for one in probes]))
 
 

@@ -61,16 +61,16 @@ def _run(context: Context, options: Sla) -> Result:
         return Chain(context, "sla", [options, of, damage, model.freedoms, *mesh_of])
 
     stones = context.building.meshed_by_stones
-    if options.constant is None and stones and _dry(context.building):
-        certify(context.building)
+    if stones and _dry(context.building):
+        certify(context.building, model)
     try:
         if options.stages:
             curves = run_stages(model, options, context.threads, context.progress, chain)
         else:
             curves = run_curves(model, options, context.threads, context.progress, damage, chain)
     except NotCarried:
-        if options.constant is None and stones:
-            certify(context.building)
+        if stones:
+            certify(context.building, model)
         raise
     if options.stages:
         main = curves[min(options.main, len(curves) - 1)]
@@ -100,15 +100,28 @@ def _dry(building: Building) -> bool:
     return not any(strengths) and len(building.blocks().a) <= MOST_JOINTS
 
 
-def certify(building: Building) -> None:
-    """CannotStand where limit analysis of the same blocks holds a certificate that they collapse under their weight."""
+def certify(building: Building, model: SlaModel) -> None:
+    """CannotStand where limit analysis of the same blocks holds a certificate that they collapse under the constant loads."""
+    if not np.any(model.constant):
+        return
     assembly = building.blocks()
     try:
-        limit = LimitAnalysis(assembly, building.friction(), loads=loads_of(assembly, None, building))
+        loads = replace(loads_of(assembly, None, building), dead=resultants(model, len(assembly.mass)))
+        limit = LimitAnalysis(assembly, building.friction(), loads=loads)
         if not limit.stands():
             raise cannot_stand(limit)
     except (NoAnswer, Disconnected):
         return
+
+
+def resultants(model: SlaModel, stones: int) -> np.ndarray:
+    """Resultants of the constant loads on each stone (stones, 3): force x, force y [N] and moment about the origin [N m]."""
+    of, (x, y), (fx, fy) = model.mesh.stone, model.mesh.xy.T, model.constant[:, :2].T
+    assert of is not None
+    found = np.zeros((stones, 3))
+    on = of >= 0
+    np.add.at(found, of[on], np.column_stack([fx, fy, x * fy - y * fx])[on])
+    return found
 
 
 def _stages(result: Result, model: SlaModel, options: Sla, curves: list[Curve], main: Curve) -> list[dict[str, Any]]:

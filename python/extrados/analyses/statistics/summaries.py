@@ -38,7 +38,7 @@ def median(pieces: Pieces) -> float | None:
     """
     low, high, below, n = -np.inf, np.inf, 0, None
     while True:
-        kept, count, least, most, under = [], 0, np.inf, -np.inf, 0
+        kept, count, least, most = [], 0, np.inf, -np.inf
         for piece in pieces():
             x = piece[(piece >= low) & (piece <= high)]
             if not len(x):
@@ -62,8 +62,13 @@ def median(pieces: Pieces) -> float | None:
             bins += np.bincount(np.clip(np.searchsorted(edges, x, side="right") - 1, 0, BINS - 1), minlength=BINS)
         upto = np.cumsum(bins)
         first, last = (int(np.searchsorted(upto, k, side="right")) for k in wanted)
-        under = int(upto[first] - bins[first])
-        below += under
+        if first < last:  # neighbours in rank: the greatest up to the one bin and the least from the other on
+            ends = [
+                (float(x[x < edges[first + 1]].max(initial=-np.inf)), float(x[x >= edges[last]].min(initial=np.inf)))
+                for x in pieces()
+            ]
+            return 0.5 * (max(end for end, _ in ends) + min(end for _, end in ends))
+        below += int(upto[first] - bins[first])
         low = edges[first]
         high = most if last == BINS - 1 else float(np.nextafter(edges[last + 1], -np.inf))
 

@@ -55,7 +55,7 @@ class ElementGroup:
 class Mesh:
     """xy (nodes, 2) [m]; size: typical element size [m]; held, ties and bars by the places where they act;
     named: further materials by name, for bars. Of stones: mass (nodes) [kg] that stands for the density of the
-    elements, ground: nodes on the ground, held unless `held` says what is, joint_names of the rows of elements. rods: the [[ties]]
+    elements, stone (nodes): the stone of each node, -1 where it is free of them, ground: nodes on the ground, held unless `held` says what is, joint_names of the rows of elements. rods: the [[ties]]
     of the building, each with its Rod (mesh/rods.py)."""
 
     xy: np.ndarray
@@ -69,6 +69,7 @@ class Mesh:
     selective: bool = False
     warnings: list[str] = field(default_factory=list)
     mass: np.ndarray | None = None
+    stone: np.ndarray | None = None
     ground: np.ndarray | None = None
     joint_names: list[str] = field(default_factory=list)
     rods: list[tuple[Any, Any]] = field(default_factory=list)

@@ -116,11 +116,12 @@ def make_stones(building: Masonry, options: MeshOptions, seed: int | None = None
         materials, group = _interfaces(building, assembly, thickness, nodes, row, joint)
     groups.append(group)
     mass = np.concatenate([*(_masses(s, assembly, i) for i, s in enumerate(stones)), np.zeros(free - first[-1])])
+    stone_of = np.repeat([*range(len(stones)), -1], [*(len(s.xy) for s in stones), free - first[-1]])
     structure = building.structure
     return Mesh(
         nodes, groups, [building.material, *materials], size, building.supports.held, getattr(structure, "ties", []),
         getattr(structure, "bars", []), building.materials, options.selective,
-        mass=mass, ground=None if building.supports.held else np.concatenate(ground), joint_names=assembly.joint_names,
+        mass=mass, stone=stone_of, ground=None if building.supports.held else np.concatenate(ground), joint_names=assembly.joint_names,
         warnings=passive_left_out(assembly.earth),
     )  # fmt: skip
 

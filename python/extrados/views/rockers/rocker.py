@@ -122,9 +122,9 @@ def make_rocker(
             float(block.restitution[0]), float(1.0 / block.frequency[0]), float(block.block.radius[0]),
             ratio * float(alpha[0 if ratio >= 0.0 else 1]), tuple(block.warnings),
         )  # fmt: skip
-        if stones is None:
-            stones = building.blocks() if piers is None else piers
-        return _restrained(made, building) or _watched(made, building, stones, block_linkages(block, stones))
+        resting = stones or _resting(building, piers)
+        stones = stones or (resting if piers is None else piers)
+        return _restrained(made, building) or _watched(made, building, stones, block_linkages(block, stones), resting)
     given, stones = stones is not None, stones or (building.blocks() if piers is None else piers)
     if not given and isinstance(stones, ArchAssembly) and not _is_restrained(building):
         arch = ArchModel(stones, building.joints.restitution)
@@ -148,15 +148,33 @@ def make_rocker(
     return _restrained(made, building) or _watched(made, building, stones, model.linkages)
 
 
+def _resting(building: Masonry, piers: Assembly | None) -> Assembly:
+    """The stones of the building at rest; its piers where it has no stones of their own."""
+    try:
+        return building.blocks()
+    except NoView:
+        if piers is None:
+            raise
+        return piers
+
+
 def _watched(
-    free: Rocker, building: Masonry, stones: Assembly, linkages: tuple[Linkage, Linkage]
+    free: Rocker, building: Masonry, stones: Assembly, linkages: tuple[Linkage, Linkage], resting: Assembly | None = None
 ) -> Rocker:  # fmt: skip
-    """The rocker with its joints watched; CannotStand where the friction of the joints does not carry its weight."""
+    """The rocker with its joints watched; CannotStand where the friction of the joints does not carry its weight.
+
+    resting: the stones of which `stones` are piers; at rest these slide one by one."""
+    resting = stones if resting is None else resting
     given = building.friction()
-    friction = np.full(len(stones.a), np.inf)
-    if given is not None and np.size(given) in (1, len(stones.a)):
-        friction = np.broadcast_to(np.asarray(given, dtype=float), len(stones.a))
-        friction = np.where(friction < NO_SLIDING_COEFFICIENT, friction, np.inf)
+
+    def of(assembly: Assembly) -> np.ndarray:
+        """Friction of its joints, infinite where they do not slide."""
+        if given is None or np.size(given) not in (1, len(assembly.a)):
+            return np.full(len(assembly.a), np.inf)
+        found = np.broadcast_to(np.asarray(given, dtype=float), len(assembly.a))
+        return np.where(found < NO_SLIDING_COEFFICIENT, found, np.inf)
+
+    friction = of(stones)
     model = free.model
     needed: tuple[np.ndarray, ...] | None = None
     if isinstance(model, ArchModel):
@@ -166,8 +184,8 @@ def _watched(
     rocking = model.uplift if isinstance(model, MechanismModel) else (free.uplift, free.uplift)
     if isinstance(model, BlockModel):
         rocking = float(np.tan(model.alpha[0])), float(np.tan(model.alpha[1]))
-    loads = replace(tilt_loads(stones), resistance=None)
-    capacity = sliding_capacity(stones, friction, rocking, needed, loads)
+    loads = replace(tilt_loads(resting), resistance=None)
+    capacity = sliding_capacity(resting, of(resting), rocking, needed, loads)
     watch = Watch(stones, linkages, free.critical, friction, capacity, not isinstance(model, BlockModel))
     return replace(free, body=watch.watched(free.body), watch=watch)
 
