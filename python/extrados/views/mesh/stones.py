@@ -16,6 +16,7 @@ from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.model.geometry.earth import passive_left_out
 from extrados.model.geometry.polygons import following, signed_area
 from extrados.model.properties import NO_SLIDING_COEFFICIENT, Material
+from extrados.model.structures.walls import MeshedWall
 from extrados.schema.constants import GRAVITY
 from extrados.views.blocks import Masonry
 from extrados.views.mesh.mesh import ElementGroup, JointLaw, Mesh, element_areas
@@ -76,7 +77,7 @@ def make_stones(building: Masonry, options: MeshOptions, seed: int | None = None
             f"joint_thickness {thickness:g} m is too large for joint elements {shortest:g} m long; at most "
             f"{0.5 * shortest:g} m"
         )
-    snap = max(1e-7 * assembly.size, 10.0 * getattr(building.structure, "contact_tolerance", 0.0))
+    snap = max(1e-7 * assembly.size, 10.0 * assembly.tolerance)
     triangles_only = options.element == "T3"
     gap = thickness if rows_of_elements else 0.0
     stones = [_stone(assembly, i, lines, sizes[i], gap, snap, triangles_only) for i in range(len(assembly.mass))]
@@ -117,10 +118,10 @@ def make_stones(building: Masonry, options: MeshOptions, seed: int | None = None
     groups.append(group)
     mass = np.concatenate([*(_masses(s, assembly, i) for i, s in enumerate(stones)), np.zeros(free - first[-1])])
     stone_of = np.repeat([*range(len(stones)), -1], [*(len(s.xy) for s in stones), free - first[-1]])
-    structure = building.structure
+    walled = building.structure if isinstance(building.structure, MeshedWall) else None
     return Mesh(
-        nodes, groups, [building.material, *materials], size, building.supports.held, getattr(structure, "ties", []),
-        getattr(structure, "bars", []), building.materials, options.selective,
+        nodes, groups, [building.material, *materials], size, building.supports.held, walled.ties if walled else [],
+        walled.bars if walled else [], building.materials, options.selective,
         mass=mass, stone=stone_of, ground=None if building.supports.held else np.concatenate(ground), joint_names=assembly.joint_names,
         warnings=passive_left_out(assembly.earth),
     )  # fmt: skip
