@@ -1,10 +1,10 @@
-# `make run` and `make test` set up whatever is missing first; both are quick the second time.
+# `make run` and `make test` first install missing packages and build; both are quick the second time.
 DECK ?= cases/arch/readme.toml
 PYTHON := .venv/bin/python
-# An import after a pull may build anew, and meson then looks for numpy-config and ninja on the path.
+# An import after a pull may build anew; meson then requires numpy-config and ninja on the path.
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
-.PHONY: browser run test verify bench oldest lint format wheel setup table-5-3 impact-map docs references coverage release clean
+.PHONY: browser pictures run test verify bench oldest lint format wheel setup table-5-3 impact-map docs references coverage release clean
 
 run: setup
 	@.venv/bin/extrados run $(DECK)
@@ -13,7 +13,7 @@ test: setup
 	@$(PYTHON) -m pytest -q -n auto --maxprocesses 8 --dist worksteal
 	@$(PYTHON) tools/native_tests.py
 
-browser: setup  ## chromium and Playwright, where they can be had, for the tests of the interactive page
+browser: setup  ## chromium and Playwright, if available, for the tests of the interactive page
 	@sh tools/browser.sh
 
 verify: setup  ## long validation and whole trials; writes docs/verification.md
@@ -21,7 +21,7 @@ verify: setup  ## long validation and whole trials; writes docs/verification.md
 	@$(PYTHON) tools/seeded_faults.py
 	@$(PYTHON) tools/verification_book.py
 
-bench: setup  ## against peers, which it installs; BENCH="arch dem" names some
+bench: setup  ## comparison with other programs, which it installs; BENCH="arch dem" selects some
 	@$(PYTHON) tests/bench $(BENCH)
 
 oldest: setup  ## build and test with the oldest pip and libraries supported
@@ -37,22 +37,25 @@ format: setup
 	@.venv/bin/ruff check --fix python tests tools
 	@.venv/bin/ruff format python tests tools
 
-coverage: setup  ## of Python, Fortran and C by the quick suite, which it builds anew for; TESTS="tests/unit/test_sla_events.py" names some
+coverage: setup  ## share of lines of Python, Fortran and C that the quick suite runs, in a build of its own; TESTS="tests/unit/test_sla_events.py" selects tests
 	@$(PYTHON) tools/coverage.py $(TESTS)
 
-release: setup  ## VERSION=0.2.0: sets it everywhere, dates the changelog, commits, tags, packs the sources
+release: setup  ## VERSION=0.2.0: sets the version in all files, dates the changelog, commits, tags, packs the sources
 	@$(PYTHON) tools/release.py $(VERSION)
 
-references: setup  ## of decks and results, and what `explain` tells, from their models
+references: setup  ## references of decks and results, and the facts of `explain`, from their models
 	@$(PYTHON) tools/references.py
 
-docs: references  ## the site, in build/site, with its search offline; installs its own needs
+docs: references  ## the documentation site in build/site, with offline search; installs its requirements
 	@$(PYTHON) tools/site.py
 
-table-5-3: setup  ## refit the assessment criterion (thesis Table 5.3); RULE=inelastic prints it by another impact rule
+pictures: setup  ## pictures of README and docs (docs/pictures) from decks of cases/; NAME="arch page" selects some
+	@$(PYTHON) tools/pictures.py $(NAME)
+
+table-5-3: setup  ## refit the assessment criterion (thesis Table 5.3); RULE=inelastic prints the fit by another impact rule
 	@$(PYTHON) -m extrados.analyses.rocking.criterion $(RULE)
 
-impact-map: setup  ## c_v of arches by each impact rule beside discrete elements: results/impact-map
+impact-map: setup  ## c_v of arches by each impact rule and by discrete elements: results/impact-map
 	@$(PYTHON) tools/impact_map.py
 
 wheel: setup

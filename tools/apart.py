@@ -7,14 +7,14 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-#: What belongs to the program and its tests
+#: Files of the program and its tests
 PARTS = ("c", "fortran", "python", "tests", "cases", "docs", "tools", "meson.build", "meson.options", "pyproject.toml",
          "Makefile", "Containerfile", ".github", ".ci", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "CITATION.cff", "LICENSE")  # fmt: skip
 
 
 def copy(place: Path) -> None:
-    """Copy the sources to a folder, and take away what they no longer hold; files that have not changed keep their times,
-    and a build there stays good."""
+    """Copy the sources to a folder, and remove files that no longer exist; unchanged files keep their times, so that
+    a build there stays valid."""
     for part in PARTS:
         source = ROOT / part
         files = [source] if source.is_file() else [p for p in source.rglob("*") if p.is_file()]
@@ -36,7 +36,7 @@ def _made(path: Path) -> bool:
 
 
 def build(place: Path, *options: str) -> None:
-    """Build the sources in a folder, new or again, and put the compiled module where they find it."""
+    """Build the sources in a folder, new or again, and put the compiled module among them."""
     meson = Path(sys.executable).with_name("meson")
     environment = {**os.environ, "PATH": f"{meson.parent}{os.pathsep}{os.environ['PATH']}"}
     folder = place / "build"

@@ -13,7 +13,7 @@ fi
 mirror=$(apt-get indextargets --format '$(REPO_URI)' 'Origin: Debian' 'Label: Debian' 2>/dev/null | sort -u | head -1)
 mirror=${mirror:-http://deb.debian.org/debian}
 
-# What the host says of proxies, certificates and indices
+# Proxies, certificates and indices of the host
 mapfile -t settings < <(env | grep -E '^(PIP_[A-Z_]+|SSL_CERT_(FILE|DIR)|REQUESTS_CA_BUNDLE|CURL_CA_BUNDLE|GIT_SSL_CAINFO|[A-Za-z]+_(proxy|PROXY))=' || true)
 
 base() {  # RELEASE: the bare system, made once
@@ -35,7 +35,7 @@ base() {  # RELEASE: the bare system, made once
   fi
 }
 
-enter() {  # ROOM USER COMMAND...: run it there; with net=no, only the loopback is up
+enter() {  # PLACE USER COMMAND...: run it there; with net=no, only the loopback is up
   local room=$1 user=$2 home=/root
   shift 2
   [ "$user" = root ] || home=/home/$user

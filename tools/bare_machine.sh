@@ -6,9 +6,9 @@
 # Each machine is a folder made by debootstrap, entered by chroot, with a clone of the present commit. By default both
 # releases, and each as root, as an ordinary user for whom root installs the packages that set-up names, and as one
 # who may use sudo. Each command runs twice, the second time without a network. --quick leaves `make test` out.
-# Prints seconds and outcome of each; exit code 1 where one is not as it should be.
+# Prints seconds and outcome of each; exit code 1 if one is wrong.
 #
-# What is downloaded stays in the folder that tools/bare.sh names: the seconds of a later go hold no download by pip.
+# Downloads stay in the folder that tools/bare.sh names: the seconds of a later run include no download by pip.
 # Remove the folder for figures with it.
 set -euo pipefail
 
@@ -27,7 +27,7 @@ done
 [ ${#releases[@]} != 0 ] || releases=(bookworm trixie)
 [ ${#people[@]} != 0 ] || people=(root user sudo)
 commit=$(git -C "$source" rev-parse HEAD)
-[ -z "$(git -C "$source" status --porcelain)" ] || echo "note: what is not committed is not tried"
+[ -z "$(git -C "$source" status --porcelain)" ] || echo "note: uncommitted changes are not tried"
 . "$source/tools/bare.sh"
 
 bad=0
@@ -53,7 +53,7 @@ try() {  # RELEASE WHO COMMAND NETWORK WANTED(0: done, 1: refused): run it, note
   echo "${rows[-1]}"
 }
 
-line() { grep -oE 'apt-get install .*' "$1"; }  # LOG: what set-up asks root to type
+line() { grep -oE 'apt-get install .*' "$1"; }  # LOG: the command for root that set-up prints
 
 for release in "${releases[@]}"; do
   for who in "${people[@]}"; do

@@ -1,6 +1,6 @@
 #!/bin/sh
-# A browser for the tests of the interactive page: chromium by apt where that may be, Playwright into .venv, and what makes
-# the page a widget of notebooks. Without them
+# A browser for the tests of the interactive page: chromium by apt if possible, Playwright into .venv, and the package for
+# the page as a widget of notebooks. Without them
 # these tests are skipped and say so; nothing else needs them.
 set -u
 

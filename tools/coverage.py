@@ -1,10 +1,10 @@
-"""Which lines of Python, Fortran and C the quick suite runs: three shares, and what is least covered.
+"""Lines of Python, Fortran and C that the quick suite runs: three shares, and the least covered files.
 
     python tools/coverage.py [TESTS ...]
 
 The program is built anew in build/coverage with gcov's counters; pytest-cov (the extra `coverage`) is installed
-first where it is missing. Python line by line: build/coverage/html. The wanted shares are told beside those found; exit code 1 below them, unless tests
-are named. A whole run writes what it found into CONTRIBUTING.md.
+first if it is missing. Python line by line: build/coverage/html. The wanted shares are printed beside those found; exit code 1 below them, unless tests
+are named. A whole run writes its shares into CONTRIBUTING.md.
 """
 
 import datetime
@@ -21,7 +21,7 @@ ROOM = apart.ROOT / "build" / "coverage"
 HTML = ROOM / "html"
 WANTED = {"Python": 90.0, "Fortran": 85.0, "C": 85.0}
 INTERRUPTED = 2  # of pytest's exit codes: it then keeps no counts
-LEAST = 8  # files of each language that are told
+LEAST = 8  # files of each language that are printed
 #: The words of CONTRIBUTING.md that a whole run writes anew
 NOTE = re.compile(r"At the last whole run \([\d-]+\) they were [\d., and]+ %")
 
@@ -81,7 +81,7 @@ def tell(language: str, files: dict[str, tuple[int, int]]) -> float:
 
 
 def noted(page: str, shares: dict[str, float], date: str) -> str:
-    """The text of CONTRIBUTING.md with the shares of today; SystemExit where it has no place for them."""
+    """The text of CONTRIBUTING.md with the shares of today; SystemExit if it has no place for them."""
     python, fortran, c = (f"{shares[language]:.1f}" for language in WANTED)
     made, count = NOTE.subn(f"At the last whole run ({date}) they were {python}, {fortran} and {c} %", page)
     if count != 1:

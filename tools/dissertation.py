@@ -10,7 +10,7 @@ _ROW = re.compile(r"^\| [\dA-C]+-\d+ \|")
 
 
 def rows() -> list[list[str]]:
-    """The cells of each figure's row: number, what it shows, what redraws it, printed, here, what differs."""
+    """The cells of each figure's row: number, content, deck that redraws it, printed, here, difference."""
     lines = [line for page in PAGES for line in page.read_text(encoding="utf-8").splitlines() if _ROW.match(line)]
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
 

@@ -56,7 +56,7 @@ def courses(
 
 
 def supports(rng: np.random.Generator, side: int) -> tuple[list[Outline], list[Outline], dict[str, np.ndarray]]:
-    """Pier and buttress on one side, drawn to the right and mirrored for the left; what they leave to the arches."""
+    """Pier and buttress on one side, drawn to the right and mirrored for the left; the rest belongs to the arches."""
     half = np.radians(AISLE["half_angle"])
     face = NAVE["face"] + PIER
     seat = AISLE["thickness"] * np.array([np.sin(half), np.cos(half)])  # from the intrados to the extrados

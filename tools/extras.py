@@ -10,7 +10,7 @@ PROJECT = Path(__file__).resolve().parents[1] / "pyproject.toml"
 
 
 def install(extra: str) -> None:
-    """Install an extra into this environment where one of its packages is missing; offline otherwise."""
+    """Install an extra into this environment if any of its packages is missing; offline otherwise."""
     asked = tomllib.loads(PROJECT.read_text(encoding="utf-8"))["project"]["optional-dependencies"][extra]
     try:
         for line in asked:

@@ -4,7 +4,7 @@
 #   sudo tools/first_change.sh [bookworm|trixie]
 #
 # The machine is a folder made by debootstrap, entered by chroot, with a clone of the present commit. Prints the seconds of
-# each step and of all; exit code 1 where a step does not do what the page says. What pip downloads is kept (tools/bare.sh).
+# each step and of all; exit code 1 if a step differs from the page. Downloads of pip are kept (tools/bare.sh).
 set -euo pipefail
 
 source=$(cd "$(dirname "$0")/.." && pwd)

@@ -1,7 +1,7 @@
 """Draw results/impact-map: c_v of arches by each impact rule over thickness and embrace, beside discrete elements.
 
 `make impact-map`; some minutes. The arches are released from a tenth of their critical rotation as in
-tests/verification/test_impact_map.py, whose docstring says how `blow` and `swing` are measured.
+tests/verification/test_impact_map.py, whose docstring defines both measurements.
 """
 
 import csv

@@ -1,6 +1,6 @@
 """Set up with the oldest pip and the oldest libraries that pyproject.toml allows, in a copy of the sources, and test there.
 
-The copy lies in build/oldest. It is set up by tools/setup.sh, as a user's is; only what pip may choose is bounded, by
+The copy lies in build/oldest. It is set up by tools/setup.sh, as a user's is; only the choice of pip is bounded, by
 constraints made from pyproject.toml at each run, so that the two cannot differ.
 """
 
@@ -16,14 +16,14 @@ ROOT = Path(__file__).resolve().parents[1]
 ROOM = ROOT / "build" / "oldest"
 #: Debian 12, the oldest system supported, has this one.
 PIP = "23.0.1"
-#: What a run of the suite touches of every library, in two minutes rather than all.
+#: Tests that use every library, in two minutes rather than the whole suite.
 TESTS = ["tests/unit"]
 
 
 def lower_bounds(project: dict) -> list[str]:
-    """Each requirement `name>=version` of the project as `name==version`; those without a bound are left out.
+    """Each requirement `name>=version` of the project as `name==version`; those without a bound are skipped.
 
-    Raises SystemExit when a library of the program itself has no lower bound: nobody could then say what is supported.
+    Raises SystemExit when a library of the program itself has no lower bound: the supported versions would then be undefined.
     """
     own = project["project"]["dependencies"]
     extra = project["project"]["optional-dependencies"]
@@ -42,7 +42,7 @@ def lower_bounds(project: dict) -> list[str]:
 
 
 def others(python: Path, pins: list[str]) -> list[str]:
-    """What that environment holds in another version than it should; what it lacks altogether is not told."""
+    """Packages of that environment in another version than required; missing packages are not listed."""
     code = "import importlib.metadata as m; [print(d.name + '==' + d.version) for d in m.distributions()]"
     listed = subprocess.run([python, "-c", code], check=True, capture_output=True, text=True).stdout.split()
 
@@ -55,7 +55,7 @@ def others(python: Path, pins: list[str]) -> list[str]:
 
 
 def copy_sources() -> None:
-    """The sources as they stand, also what is not committed; environment and build of an earlier run stay."""
+    """The sources in their present state, also uncommitted changes; environment and build of an earlier run stay."""
     listed = subprocess.run(
         ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
         cwd=ROOT, check=True, capture_output=True, text=True,

@@ -1,4 +1,4 @@
-"""Writes what is told of decks and results anew from their models: the facts that `extrados explain` reads, and both references."""
+"""Write the references of decks and results, and the facts that `extrados explain` reads, from their models."""
 
 from pathlib import Path
 

@@ -1,8 +1,8 @@
 """Release a version: `make release VERSION=0.2.0`.
 
-Sets the version wherever it stands, dates its heading in the changelog and opens the next one, commits, tags, and packs the sources into
-dist/. Wheels are made by `sudo tools/wheels.sh` from the tag. Nothing is pushed; the last line says how. Refused where the work tree holds
-changes, the version is no larger than the last one, or the changelog has nothing to tell.
+Sets the version in all files, dates its heading in the changelog and opens the next one, commits, tags, and packs the sources into
+dist/. Wheels are made by `sudo tools/wheels.sh` from the tag. Nothing is pushed; the last line says how. Refused if the work tree holds
+changes, the version is no larger than the last one, or the changelog has no news.
 """
 
 import datetime
@@ -12,14 +12,14 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-#: File -> what stands before the version and after it
+#: File -> text before the version and after it
 PLACES = {
     "meson.build": (r"version: '", "'"),
     "pyproject.toml": (r'^version = "', '"'),
     "CITATION.cff": (r"^version: ", "$"),
     "tools/conda/recipe.yaml": (r'^  version: "', '"'),
 }
-UNRELEASED = re.compile(r"^## (\S+) \(unreleased\)\n+(?P<told>.*?)(?=^## |\Z)", re.S | re.M)
+UNRELEASED = re.compile(r"^## (\S+) \(unreleased\)\n+(?P<news>.*?)(?=^## |\Z)", re.S | re.M)
 
 
 class Refused(Exception):
@@ -47,18 +47,18 @@ def prepare(root: Path, version: str, date: str, released: bool = True) -> list[
         raise Refused(f"{version} is not larger than {before}")
     log = (root / "CHANGELOG.md").read_text(encoding="utf-8")
     found = UNRELEASED.search(log)
-    if found is None or not found["told"].strip():
-        raise Refused("CHANGELOG.md tells nothing under a heading '## VERSION (unreleased)'")
+    if found is None or not found["news"].strip():
+        raise Refused("CHANGELOG.md has no news under a heading '## VERSION (unreleased)'")
     major, minor, _ = numbers(version)
     heading = f"## {major}.{minor + 1}.0 (unreleased)\n\n## {version} ({date})\n\n"
-    (root / "CHANGELOG.md").write_text(log.replace(found[0], heading + found["told"], 1), encoding="utf-8")
+    (root / "CHANGELOG.md").write_text(log.replace(found[0], heading + found["news"], 1), encoding="utf-8")
     for name, (left, right) in PLACES.items():
         text = (root / name).read_text(encoding="utf-8")
         made, count = re.subn(
             rf"({left}){re.escape(before)}({right})", rf"\g<1>{version}\g<2>", text, count=1, flags=re.M
         )
         if count != 1:
-            raise Refused(f"{name} does not say {before} where it should")
+            raise Refused(f"{name} lacks {before}")
         (root / name).write_text(made, encoding="utf-8")
     return ["CHANGELOG.md", *PLACES]
 

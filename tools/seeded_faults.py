@@ -1,15 +1,15 @@
-"""How many faults the tests see: faults are planted one at a time in a copy, built and tested.
+"""Number of faults that the tests detect: faults are planted one at a time in a copy, built and tested.
 
-    python tools/seeded_faults.py [--count 80] [--seed 1] [--place build/faults] [--again] [--room ROOM] [--only FILE:LINE]
+    python tools/seeded_faults.py [--count 80] [--seed 1] [--place build/faults] [--again] [--package NAME] [--only FILE:LINE]
     python tools/seeded_faults.py --suite properties [--python] [--count 30]
 
 In Fortran and C a fault is a changed sign or operator, constant, comparison or bound of a loop; in Python (`--python`), at
 the joins of strategies alone, a changed sign, a dropped key or filter, another set of blocks, a unit factor or an outcome. Its place
-is drawn from the seed; every room gets its share. A fault counts as caught where the build, a quick test of its room or a case
-fails; with `--suite properties` where the build or the property suite alone fails (tests/properties), of the kernels at faults
-of the joins, and of Python by the relations that run through the changed function, the quickest first. What fails
-without a fault is found first, and left out. What becomes of each fault is kept in the place, and a run that was broken off
-goes on from there; `--again` tries those anew that were not caught, after tests were written. Those that are not caught
+is drawn from the seed; every package gets its share. A fault counts as caught if the build, a quick test of its package or a case
+fails; with `--suite properties` if the build or the property suite alone fails (tests/properties), of the kernels at faults
+of the joins, and of Python by the relations that run through the changed function, the quickest first. Tests that fail
+without a fault are found first, and skipped. The fate of each fault is kept in the place, and an interrupted run
+continues from there; `--again` tries those anew that were not caught, after tests were written. Those that are not caught
 are printed with their place, and all are noted for the verification book.
 """
 
@@ -35,7 +35,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 import apart
 
-#: room -> tests of its own in Fortran and C, then those in Python, the quickest first, then its cases
+#: package -> tests of its own in Fortran and C, then those in Python, the quickest first, then its cases
 ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
     "fortran/common": (
         ("test_dopri5", "test_motion_set", "test_motion", "test_rocking"),
@@ -88,7 +88,7 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
     "c/common": (("test_handles", "test_threads", "test_blas"), ("unit/test_border.py", "unit/test_cli.py"), "limit/oppenheim"),
 }  # fmt: skip
 
-#: kind -> (pattern of the part that is changed, what stands in its place)
+#: kind -> (pattern of the changed part, its replacements)
 FAULTS = {
     "sign": [(r"(?<=[\w)]) \+ (?=[\w(])", " - "), (r"(?<=[\w)]) - (?=[\w(])", " + ")],
     "operator": [(r"(?<=[\w)]) \* (?=[\w(])", " / ")],
@@ -106,12 +106,12 @@ IN_PYTHON = {
             (r"\.a\b(?! ?=)", ".b"), (r"\.b\b(?! ?=)", ".a")],
     "unit": [(r" / GRAVITY", ""), (r" \* GRAVITY", ""), (r"\b1e3\b", "1e6"), (r"\.depth\b(?! ?=)", ".depth * 2.0"), (r"radians\(", "degrees("), (r"degrees\(", "radians(")],
 }  # fmt: skip
-#: Outcomes and what they are taken for; these are texts
+#: Outcomes and their replacements; these are texts
 OUTCOMES = {
     '"stands"': '"collapses"', '"collapses"': '"stands"', '"cannot-stand"': '"open"', '"open"': '"stands"', '"collapse"': '"recovery"',
     '"recovery"': '"no-hinging"', '"upper"': '"lower"', '"holds"': '"fails"', '"fails"': '"holds"', '"no-sliding"': '"sliding"', '"left"': '"right"',
 }  # fmt: skip
-#: Where strategies join: what makes views of a building, hands them to the core, and makes verdicts of what comes back
+#: Joins of strategies: makers of models of a building, calls of the core, makers of verdicts from its results
 JOINS = (
     "analyses/conclude.py", "analyses/sequence.py", "analyses/left_out.py", "analyses/motion_source.py", "analyses/assess/asking.py",
     "analyses/assess/words.py", "analyses/assess/reasons.py", "analyses/codes/kinematics.py", "analyses/codes/local_mechanism.py",
@@ -158,7 +158,7 @@ class Fault:
 
     @property
     def room(self) -> str:
-        """The room that the file belongs to."""
+        """The package of the file."""
         return "/".join(self.file.split("/")[:2])
 
     @property
@@ -201,7 +201,7 @@ def faults_of(path: Path) -> list[Fault]:
 
 
 def python_faults_of(path: Path) -> list[Fault]:
-    """Every fault that could be planted in a file of Python: in functions, outside of texts, comments and what only warns."""
+    """Every fault that could be planted in a file of Python: in functions, outside of texts, comments and warnings."""
     text, name = path.read_text(encoding="utf-8"), path.relative_to(apart.ROOT).as_posix()
     lines = text.split("\n")
     bare, outcomes = list(lines), []
@@ -245,7 +245,7 @@ def _is_python(lines: list[str]) -> bool:
 
 
 def draw(count: int, seed: int, rooms: Iterable[str] = ROOMS, python: bool = False, joins: bool = False) -> list[Fault]:
-    """Faults of rooms, of all kinds: each room by the root of what it holds, its kinds in turn; joins: at the joins alone."""
+    """Faults of packages, of all kinds: each package in proportion to the root of its size, its kinds in turn; joins: at the joins alone."""
     by_room: dict[str, list[Fault]] = {}
     if python:
         for join in JOINS:
@@ -262,12 +262,12 @@ def draw(count: int, seed: int, rooms: Iterable[str] = ROOMS, python: bool = Fal
     weight = {room: len(there) ** 0.5 for room, there in by_room.items()}
     chosen = []
     for room, there in by_room.items():
-        rng = random.Random(f"{seed} {room}")  # of its own: what changes in a room draws nothing else in the others
+        rng = random.Random(f"{seed} {room}")  # of its own: a change in one package draws nothing else in the others
         share = max(1 if joins else 2, round(count * weight[room] / sum(weight.values())))
         kinds = {kind: [f for f in there if f.kind == kind] for kind in sorted({f.kind for f in there})}
         for options in kinds.values():
             rng.shuffle(options)
-        if joins:  # few of a room: its kinds in no order
+        if joins:  # few of a package: its kinds in no order
             kinds = dict(rng.sample(sorted(kinds.items(), key=lambda item: item[0]), len(kinds)))
         while share and any(kinds.values()):
             for options in kinds.values():
@@ -286,7 +286,7 @@ def plant(place: Path, fault: Fault, back: bool = False) -> None:
 
 
 def commands(place: Path, room: str) -> list[tuple[list[str], str]]:
-    """What is run for a room, in order, and what each is called where it names no test of its own."""
+    """Commands for a package, in order, each with its name if it names no test of its own."""
     native, python, cases = ROOMS[room]
     pytest = [apart.python(place), "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider"]
     meson = [
@@ -308,7 +308,7 @@ def commands(place: Path, room: str) -> list[tuple[list[str], str]]:
 @cache  # found before the first fault is planted
 def touched(place: Path) -> list[tuple[str, float, set[tuple[str, int]]]]:
     """Tests of the property suite, their seconds, and the functions that they run through: file and first line. Found once,
-    by few cases, without a fault; tests that fail without one, with the cases that a fault is tried with, are left out, and named."""
+    by few cases, without a fault; tests that fail without one, with the cases that a fault is tried with, are skipped, and named."""
     whole = hashlib.sha256()
     for path in sorted([*(place / "tests" / "properties").glob("*.py"), *(place / PACKAGE).rglob("*.py")]):
         if path.name != "_build_info.py":  # the same of two builds
@@ -324,7 +324,7 @@ def touched(place: Path) -> list[tuple[str, float, set[tuple[str, int]]]]:
             run = subprocess.run(words, cwd=place, env=environment, capture_output=True, text=True, errors="replace")
             broken |= set(re.findall(r"^(?:FAILED|ERROR) (\S+)", run.stdout, re.M))
         rows = [r for r in half.read_text(encoding="utf-8").splitlines() if json.loads(r)["test"] not in broken]
-        print("left out, since they fail without a fault:", *sorted(broken or {"none"}), flush=True)
+        print("skipped, since they fail without a fault:", *sorted(broken or {"none"}), flush=True)
         half.write_text("\n".join(rows) + "\n", encoding="utf-8")
         half.rename(kept)
     rows = map(json.loads, kept.read_text(encoding="utf-8").splitlines())
@@ -354,7 +354,7 @@ def relations_of(place: Path, fault: Fault) -> list[str]:
 
 
 def failing_relation(place: Path, fault: Fault, patience: int) -> str:
-    """The first test of the property suite that fails with a fault planted, "" where none does."""
+    """The first test of the property suite that fails with a fault planted, or ""."""
     chosen = relations_of(place, fault)
     if not chosen:
         return ""
@@ -391,7 +391,7 @@ def failing_relation(place: Path, fault: Fault, patience: int) -> str:
 
 
 def failing(place: Path, room: str, patience: int) -> str:
-    """The first test of a room that fails, "" where none does."""
+    """The first failing test of a package, or ""."""
     environment = {**os.environ, "OMP_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
     for command, name in commands(place, room):
         run = subprocess.run(
@@ -407,7 +407,7 @@ def failing(place: Path, room: str, patience: int) -> str:
 
 
 def caught_by(place: Path, fault: Fault, patience: int, properties: bool = False) -> str:
-    """The test that fails with a fault planted, "" where none does; properties: of the property suite alone."""
+    """The test that fails with a fault planted, or ""; properties: of the property suite alone."""
     plant(place, fault)
     try:
         if not fault.in_python:
@@ -426,11 +426,14 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=80)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument(
-        "--patience", type=int, default=300, help="seconds that a room's tests, or one relation, may take"
+        "--patience",
+        type=int,
+        default=300,
+        help="seconds of a processor that the tests of a package, or one relation, may take",
     )
     parser.add_argument("--place", type=Path, default=apart.ROOT / "build" / "faults")
     parser.add_argument("--again", action="store_true", help="the faults anew that were not caught")
-    parser.add_argument("--room", choices=list(ROOMS), help="faults of one room alone")
+    parser.add_argument("--package", choices=list(ROOMS), help="faults of one package of the core alone")
     parser.add_argument("--only", help="FILE:LINE, the faults of one line")
     parser.add_argument("--suite", choices=["quick", "properties"], default="quick", help="which tests are to see them")
     parser.add_argument(
@@ -444,7 +447,9 @@ def main() -> int:
     place.mkdir(parents=True, exist_ok=True)
     apart.copy(place)
     apart.build(place, "-Dbuildtype=plain", "-Doptimization=1")
-    chosen = draw(options.count, options.seed, [options.room] if options.room else ROOMS, options.python, properties)
+    chosen = draw(
+        options.count, options.seed, [options.package] if options.package else ROOMS, options.python, properties
+    )
     if options.only:
         file, line = options.only.split(":")
         every = python_faults_of if file.endswith(".py") else faults_of
@@ -453,16 +458,16 @@ def main() -> int:
     kept = place / name
     fates: dict[str, str] = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
     todo = [f for f in chosen if options.only or str(f) not in fates or (options.again and not fates[str(f)])]
-    todo.sort(key=lambda fault: fault.room)  # the tests of a room pass without a fault before its first is planted
+    todo.sort(key=lambda fault: fault.room)  # the tests of a package pass without a fault before its first is planted
     if properties and todo:
         touched(place)  # which passes without a fault
     for k, fault in enumerate(todo, start=1):
-        if not properties and f"{fault.room} as it is" not in fates:
+        if not properties and f"{fault.room} without a fault" not in fates:
             apart.build(place)  # without the last fault
             if by := failing(place, fault.room, 10 * options.patience):
                 sys.exit(f"{fault.room}: {by} fails without a fault")
             print(f"{fault.room}: its tests pass", flush=True)
-            fates[f"{fault.room} as it is"] = "nothing"
+            fates[f"{fault.room} without a fault"] = "nothing"
         begin = time.monotonic()
         by = fates[str(fault)] = caught_by(place, fault, options.patience, properties)
         seconds = time.monotonic() - begin
@@ -470,7 +475,7 @@ def main() -> int:
         kept.write_text(json.dumps(fates, indent=1), encoding="utf-8")
     missed = [str(fault) for fault in chosen if not fates[str(fault)]]
     print(f"{len(chosen) - len(missed)} of {len(chosen)} caught", *missed, sep="\n")
-    if not (options.only or options.room):
+    if not (options.only or options.package):
         notes = apart.ROOT / "build" / "trials"
         notes.mkdir(parents=True, exist_ok=True)
         where, file = "in Fortran and C that no quick test sees", "seeded-faults.json"

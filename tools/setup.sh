@@ -1,5 +1,5 @@
 #!/bin/sh
-# Install what is missing: compilers and libraries by apt (elsewhere the line to type is named), then .venv.
+# Install missing packages: compilers and libraries by apt (elsewhere the line to type is named), then .venv.
 set -eu
 
 packages="gcc libc6-dev gfortran pkg-config libgsl-dev libsuitesparse-dev libopenblas-dev python3 python3-dev python3-venv"

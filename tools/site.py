@@ -1,7 +1,7 @@
 """Build the documentation site into build/site: the references, a gallery of cases run now, the dissertation's figures redrawn,
 Sphinx, and FORD for the Fortran.
 
-What it needs is the extra `docs` of pyproject.toml, installed first where it is missing. A warning is an error, and so is a link
+It requires the extra `docs` of pyproject.toml, installed first if it is missing. A warning is an error, and so is a link
 that leads nowhere; nothing is loaded from the network, so that the site and its search work without one.
 """
 
@@ -41,7 +41,7 @@ search: false
 preprocess: false
 parallel: 0
 """
-#: Of the pages of FORD: what they load from the network, and what then rests on it
+#: Parts of the pages of FORD that load from the network, and parts that depend on them
 FROM_AFAR = re.compile(
     r"<!-- Bootstrap -->.*?(?=<!-- Font Awesome)|<!-- MathJax -->.*?(?=<!-- Other scripts)|<script>\s*// Enable Bootstrap.*?</script>",
     re.S,
@@ -77,7 +77,7 @@ def gallery() -> None:
 
 
 def redrawn() -> None:
-    """docs/dissertation/redrawn.md: the pictures that its pages name, by running their decks; slow cases are left out."""
+    """docs/dissertation/redrawn.md: the pictures that its pages name, by running their decks; slow cases are skipped."""
     import extrados
 
     runs: dict = {}
@@ -110,7 +110,7 @@ def redrawn() -> None:
                 lines += ["", f"`cases/{case}.toml`:", "", f"![Fig. {figure}](../_gallery/{picture.name})"]
     if slow:
         left = ", ".join(f"`cases/{case}.toml`" for case in sorted(slow))
-        lines += ["", "## Left out", "", f"Decks that take minutes: {left}."]
+        lines += ["", "## Not drawn", "", f"Decks that take minutes: {left}."]
     REDRAWN.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
@@ -124,7 +124,7 @@ def fortran() -> None:
 
 
 def broken(site: Path) -> list[str]:
-    """Links of a site's pages that lead nowhere, and what they would load from the network: each as "page: link"."""
+    """Broken links of a site's pages, and items that they would load from the network: each as "page: link"."""
     wrong: list[str] = []
     places: dict[Path, set[str]] = {}
     pages = {page: page.read_text(encoding="utf-8") for page in sorted(site.resolve().rglob("*.html"))}
@@ -146,13 +146,13 @@ def broken(site: Path) -> list[str]:
 
 
 def main() -> None:
-    """The site; `--quick` leaves out what takes long, the gallery and the Fortran reference."""
+    """The site; `--quick` skips the slow parts, the gallery and the Fortran reference."""
     extras.install("docs")
     (ROOT / "build").mkdir(exist_ok=True)
     quick = "--quick" in sys.argv
     if quick:
-        PAGE.write_text("# Gallery\n\nLeft out of this quick build.\n", encoding="utf-8")
-        REDRAWN.write_text("# Redrawn now\n\nLeft out of this quick build.\n", encoding="utf-8")
+        PAGE.write_text("# Gallery\n\nNot part of this quick build.\n", encoding="utf-8")
+        REDRAWN.write_text("# Redrawn now\n\nNot part of this quick build.\n", encoding="utf-8")
     else:
         gallery()
         redrawn()

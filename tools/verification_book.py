@@ -1,11 +1,11 @@
-"""Write docs/verification.md: what every quantity was compared with, how well it fits, and every row of every case.
+"""Write docs/verification.md: the comparisons of every quantity, their agreement, and every row of every case.
 
     python tools/verification_book.py [--pages | --trials]
 
-Runs what the cases of cases/ name, keeps what was found in build/verification.json, so that a run that was broken off
-goes on, and writes the book with a plot for each quantity. `--pages` writes the book from what was kept: values found
-before the program's last change are marked, those of another deck, of other data or of other rows are left out, and both are
-told. `--trials` writes the section of trials alone anew.
+Runs the cases of cases/, keeps the results in build/verification.json, so that an interrupted run
+continues, and writes the book with a plot for each quantity. `--pages` writes the book from the kept results: values found
+before the program's last change are marked, those of another deck, of other data or of other rows are skipped, and both are
+reported. `--trials` writes the section of trials alone anew.
 """
 
 import argparse
@@ -38,20 +38,20 @@ TITLES = {
     "peer": "Verification: independent programs, and unlike methods of this one",
     "thesis": "Reproduction of the dissertation",
     "experiment": "Validation: experiments",
-    "calibration": "Calibrations: fitted to come out, no proof",
+    "calibration": "Calibrations: fitted, no verification",
     "regression": "Regression: unchanged numbers",
 }
-#: What proves something, the strongest first; a regression compares the program with itself, a calibration was fitted
+#: Kinds of comparison, the strongest first; a regression compares the program with itself, a calibration was fitted
 PROOFS = ("exact", "peer", "thesis", "experiment")
 COLOURS = {"exact": "#0072B2", "peer": "#009E73", "thesis": "#E69F00", "experiment": "#D55E00"}
 MARKS = {"exact": "o", "peer": "s", "thesis": "^", "experiment": "D"}
 #: Relative tolerance from which on a row is listed apart
 LOOSE = 0.15
-#: Measured numbers of one folder from which on bias and scatter are told
+#: Least number of measured rows of one folder for bias and scatter
 ENOUGH = 5
-#: Mark of what was found before the program's last change
+#: Mark of results found before the program's last change
 OLDER = "*"
-#: What a row of a measured curve compares
+#: Quantity compared by a row of a measured curve
 COMPARED = {
     "peak_ratio": "peak", "tail_ratios[0]": "tail at 75 % of the peak", "tail_ratios[1]": "tail at 50 %",
     "tail_ratios[2]": "tail at 25 %",
@@ -60,7 +60,7 @@ COMPARED = {
 
 @dataclass(frozen=True)
 class Found:
-    """A row of a case and what the program gave for it; `older`: before the program's last change."""
+    """A row of a case and the value of the program; `older`: before the program's last change."""
 
     case: str
     row: Row
@@ -114,8 +114,8 @@ def table(rows: Iterable[Found]) -> list[str]:
 
 
 def told(rows: list[Found], proof: str) -> str:
-    """How rows of one quantity and proof fit: number, and bias and scatter of found over expected or, where the
-    answer is exact, the greatest deviation."""
+    """Agreement of the rows of one quantity and kind of comparison: number, and bias and scatter of found over expected or, for
+    exact solutions, the greatest deviation."""
     if not rows:
         return ""
     ratios = [found.ratio for found in rows if found.ratio is not None]
@@ -129,7 +129,7 @@ def told(rows: list[Found], proof: str) -> str:
 
 
 def by_quantity(rows: list[Found]) -> list[str]:
-    """What every quantity was compared with, and how well it fits."""
+    """The comparisons of every quantity, and their agreement."""
     lines = []
     for quantity in QUANTITIES:
         of = [found for found in rows if found.quantity == quantity]
@@ -139,7 +139,7 @@ def by_quantity(rows: list[Found]) -> list[str]:
         lines.append(f"| {picture} | {' | '.join([*cells, *others])} |")
     return [
         "## Quantity by quantity", "",
-        "Rows of each quantity, by what they were compared with. Exact answers and other programs: the greatest deviation;",
+        "Rows of each quantity, by the kind of comparison. Exact solutions and other programs: the greatest deviation;",
         "the dissertation and experiments: bias (mean of found over expected, less one) and scatter (standard deviation).",
         "Zeros and words have no ratio: they are in the tables below. Calibrated rows were fitted to come out and regressions",
         "compare the program with itself: neither proves anything. Crack paths are compared by eye (docs/sla.md): no number of",
@@ -189,7 +189,7 @@ def draw(rows: list[Found]) -> None:
         low, high = axes.get_ylim()
         axes.set(
             xlim=(0.0, first), ylim=(min(low, 1.0 - 1.5 * LOOSE), max(high, 1.0 + 1.5 * LOOSE)), title=quantity,
-            xlabel="row, by what it was compared with", ylabel="found over expected",
+            xlabel="row, by its kind of comparison", ylabel="found over expected",
         )  # fmt: skip
         axes.xaxis.get_major_locator().set_params(integer=True)
         figure.legend(frameon=False, fontsize=8, loc="outside lower center", ncols=3)
@@ -198,7 +198,7 @@ def draw(rows: list[Found]) -> None:
 
 
 def of_loads(rows: list[Found]) -> list[str]:
-    """Bias and scatter of measured over computed, by folder of cases, where there are enough rows."""
+    """Bias and scatter of measured over computed, by folder of cases with enough rows."""
     ratios: dict[str, list[float]] = {}
     for found in rows:
         if found.row.kind == "experiment" and ".measured." not in found.row.quantity and (found.ratio or 0.0) > 0.0:
@@ -216,7 +216,7 @@ def of_loads(rows: list[Found]) -> list[str]:
 
 
 def of_curves(rows: list[Found]) -> list[str]:
-    """Bias and scatter of the curves that were compared with measured ones, by what of them was compared."""
+    """Bias and scatter of the curves that were compared with measured ones, by the compared quantity."""
     groups: dict[str, list[tuple[str, float]]] = {}
     for found in rows:
         place, _, name = found.row.quantity.partition(".measured.")
@@ -237,8 +237,8 @@ def of_curves(rows: list[Found]) -> list[str]:
 
 
 def trials(book: str) -> list[str]:
-    """What was tried and did not hold, as the trials of tests/trials and tools/seeded_faults.py noted it; what the book
-    tells of a trial stays where that trial has not been run since."""
+    """Failures found by the trials of tests/trials and tools/seeded_faults.py; the entry of a trial that has not run
+    since stays in the book."""
     section = book.partition(f"{TRIALS}\n")[2]
     lines = {
         row.split(" | ")[0]: row for row in section.split("\n") if row.startswith("| ") and "looked for" not in row
@@ -249,12 +249,12 @@ def trials(book: str) -> list[str]:
         lines[row.split(" | ")[0]] = row
     if not lines:
         return []
-    return [TRIALS, "", "From fixed seeds; a failure is one of what the first column says.", "",
+    return [TRIALS, "", "From fixed seeds; the first column defines a failure.", "",
             "| looked for | tried | found | |\n|---|---|---|---|", *sorted(lines.values()), ""]  # fmt: skip
 
 
 def relations() -> list[str]:
-    """The relations of the property suite: each with the analyses that it asks, and its exception."""
+    """The relations of the property suite: each with the analyses that it runs, and its exception."""
     sys.path[:0] = [
         str(ROOT / "tests" / name) for name in ("properties", "trials") if str(ROOT / "tests" / name) not in sys.path
     ]
@@ -281,7 +281,7 @@ def with_trials_alone(book: str) -> str:
 
 
 def pages(rows: list[Found], book: str) -> str:
-    """The whole book; `book`: what stood there before."""
+    """The whole book; `book`: its former text."""
     parts = ["# Verification book", "", "Written by `make verify` from `cases/`; do not edit.", "", *by_quantity(rows)]
     if older := sum(found.older for found in rows):
         parts += [f"{older} values, marked {OLDER}, were found before the program's last change.", ""]
@@ -317,14 +317,14 @@ def program() -> str:
 
 @cache
 def data_beside(folder: Path) -> str:
-    """A checksum of what decks of a folder may read: its files that are no decks, and what is shipped."""
+    """A checksum of the data that decks of a folder may read: its files that are no decks, and shipped data."""
     shipped = [ROOT / "python" / "extrados" / file for file in SHIPPED.values()]
     shipped += [path for path in (ROOT / "python/extrados/motions/spectra").iterdir() if path.is_file()]
     return checksum([*shipped, *(path for path in folder.rglob("*") if path.is_file() and path.suffix != ".toml")])
 
 
 def asked_of(case: Case) -> dict[str, Any]:
-    """What the kept values of a case must agree in to be values of its rows: what it reads, and the rows' quantities."""
+    """Identity of the kept values of a case: its input, and the quantities of its rows."""
     return {
         "read": checksum([case.deck]) + data_beside(case.deck.parent),
         "rows": [repr((row.quantity, row.change)) for row in case.rows],
@@ -332,9 +332,9 @@ def asked_of(case: Case) -> dict[str, Any]:
 
 
 def from_kept(case: Case, kept: dict[str, Any], computed_by: str) -> list[Found] | None:
-    """The rows of a case with the values that were kept; None where none were, or of another deck, data or rows.
+    """The rows of a case with the kept values; None without kept values, or for those of another deck, data or rows.
 
-    Values, tolerances and words of the expectations may have changed since: they do not enter what is computed.
+    Values, tolerances and words of the expectations may have changed since: they do not enter the computation.
     """
     was = kept.get(case.name, {})
     if any(was.get(key) != value for key, value in asked_of(case).items()):
@@ -344,7 +344,7 @@ def from_kept(case: Case, kept: dict[str, Any], computed_by: str) -> list[Found]
 
 
 def find(case: Case, kept: dict[str, Any], computed_by: str) -> list[Found]:
-    """What the program gives for the rows of a case; taken from what was kept where neither what computes nor what is read
+    """Values of the program for the rows of a case; kept values are used if neither the program nor the input
     has changed since."""
     found = from_kept(case, kept, computed_by)
     if found is not None and not any(row.older for row in found):
@@ -363,7 +363,7 @@ def find(case: Case, kept: dict[str, Any], computed_by: str) -> list[Found]:
 def main() -> int:
     """Run all cases; the number of rows that differ."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--pages", action="store_true", help="from what was kept, computing nothing")
+    parser.add_argument("--pages", action="store_true", help="from the kept results, without computation")
     parser.add_argument("--trials", action="store_true", help="the section of trials alone")
     options = parser.parse_args()
     before = BOOK.read_text(encoding="utf-8") if BOOK.exists() else ""
@@ -378,7 +378,7 @@ def main() -> int:
             found = from_kept(case, kept, computed_by)
             if found is None:
                 why = "kept values are of another state" if case.name in kept else "not kept"
-                print(f"{case.name}: {why}, left out", file=sys.stderr)
+                print(f"{case.name}: {why}, skipped", file=sys.stderr)
             elif any(row.older for row in found):
                 print(f"{case.name}: kept values are older than the program, marked {OLDER}", file=sys.stderr)
             rows += found or []

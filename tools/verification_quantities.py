@@ -1,8 +1,8 @@
-"""What each expected number is a number of: the quantities by which the verification book groups its rows."""
+"""Quantity of each expected number: the groups by which the verification book groups its rows."""
 
 import re
 
-#: Quantity -> patterns of `analysis.key` (indices left out) that belong to it; the first that fits wins
+#: Quantity -> patterns of `analysis.key` (without indices) that belong to it; the first that fits wins
 QUANTITIES: dict[str, tuple[str, ...]] = {
     "code check": (r"(?:local-mechanism|code-checks)\S*\.", r"checks\."),
     "ground motion and spectrum": (r"^motion", r"^shake-table"),
@@ -92,7 +92,7 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
 def quantity_of(name: str) -> str:
     """The quantity that a row's `analysis.key[0].sub` is a number of.
 
-    Raises ValueError where none is named for it.
+    Raises ValueError for an unnamed one.
     """
     bare = re.sub(r"\[\d+\]", "", name)
     for quantity, patterns in QUANTITIES.items():

@@ -57,7 +57,7 @@ def test_the_page_shows_the_rows() -> None:
     bias, scatter = bias_and_scatter([v for b in BRIDGES if (v := ratios(b)["fill and passive pressure"])])
     assert f"scatter by a factor of {scatter:.1f} about a bias of {bias:.1f}" in re.sub(r"\s+", " ", page)
     torksey = ratios("Torksey")
-    assert f"bear {torksey['three rings'] / torksey['fill and passive pressure']:.1f} times less" in re.sub(
+    assert f"carry {torksey['three rings'] / torksey['fill and passive pressure']:.1f} times less" in re.sub(
         r"\s+", " ", page
     )
 

@@ -79,6 +79,56 @@ def test_the_verification_book_names_cases_that_exist() -> None:
     assert named and not [name for name in named if not (ROOT / "cases" / f"{name}.toml").exists()]
 
 
+def test_the_readme_quotes_the_verification_book() -> None:
+    """The deviations of README, Reliability, are cells of the book's table of quantities."""
+    book = (ROOT / "docs" / "verification.md").read_text(encoding="utf-8")
+    rows = {re.sub(r"\[(.*?)\]\(.*?\)", r"\1", row[0]): row for row in (
+        [cell.strip() for cell in line.strip("|").split("|")] for line in book.splitlines() if line.startswith("| [")
+    )}  # fmt: skip
+    text = (ROOT / "README.md").read_text(encoding="utf-8").partition("## Reliability")[2].partition("\n## ")[0]
+    quoted = re.findall(r"^\| (.*?) \| (\d+: .*?) \|$", text, re.M)
+    assert len(quoted) == 3
+    assert [name for name, cell in quoted if rows[name][4] != cell] == []
+    peers = rows["capacity in acceleration"][2]
+    count, _, within = peers.partition(": within ")
+    assert f"{count} results of other programs and methods within {within}" in re.sub(r"\s+", " ", text)
+
+
+def test_the_tree_of_contributing_has_every_package() -> None:
+    """And the way of a deck to a number, the block after it, names files that exist."""
+    tree, way = re.findall(r"^```\n(.*?)^```", (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8"), re.S | re.M)[:2]
+    named = set(re.findall(r"([\w-]+)/", tree))
+    package = ROOT / "python" / "extrados"
+    there = {path.parent.name for path in package.rglob("*.py")}
+    there |= {
+        path.parent.name
+        for top in ("fortran", "c")
+        for end in ("f90", "c", "h")
+        for path in (ROOT / top).rglob(f"*.{end}")
+    }
+    assert there - named - {"extrados"} == set()
+    folders = {
+        path.name for top in ("fortran", "c", "python", "tests") for path in (ROOT / top).rglob("*") if path.is_dir()
+    }
+    assert named - folders - {"fortran", "c", "python", "tests", "cases", "tools", "build"} == set()
+    files = re.findall(r"[\w/]+\.py\b", way)
+    assert len(files) > 9 and [file for file in files if not list(package.rglob(file))] == []
+
+
+def test_the_deck_of_the_readme_is_its_case() -> None:
+    shown = re.search(r"^```toml\n(.*?)^```", (ROOT / "README.md").read_text(encoding="utf-8"), re.S | re.M)
+    assert shown is not None
+    case = tomllib.loads((ROOT / "cases" / "arch" / "readme.toml").read_text(encoding="utf-8"))
+    del case["title"], case["note"]
+    assert tomllib.loads(shown[1]) == case
+
+
+def test_the_pictures_of_the_readme_are_light() -> None:
+    """400 kB in all; `make pictures` makes them."""
+    shown = re.findall(r"!\[.*?\]\((.*?)\)", (ROOT / "README.md").read_text(encoding="utf-8"))
+    assert len(shown) == 3 and sum((ROOT / picture).stat().st_size for picture in shown) < 400_000
+
+
 @pytest.mark.parametrize("deck", DECKS, ids=lambda p: f"{p.parent.name}/{p.stem}")
 def test_every_case_has_expected_rows_of_a_quantity(deck: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(ROOT / "tools"))

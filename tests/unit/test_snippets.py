@@ -128,6 +128,16 @@ def test_pages_run_from_top_to_bottom(name: str, folder: Path) -> None:
                 assert plain(line) in printed, f"{name}: '{line}' is not in: {printed}"
 
 
+@pytest.mark.verify
+def test_the_readme_shows_what_its_deck_prints(folder: Path) -> None:
+    shown = re.search(r"^```text\n(.*?)^```", text_of(ROOT / "README.md"), re.S | re.M)
+    assert shown is not None
+    done = CliRunner().invoke(app, ["run", "cases/arch/readme.toml", "--out", "results/readme"])
+    assert done.exit_code == 0, done.output
+    printed = plain(done.output)
+    assert [line for line in shown[1].splitlines() if plain(line).removesuffix(" ...") not in printed] == []
+
+
 #: Commands of the pages that `test_pages_run_from_top_to_bottom` runs
 RUN_WITH_THEIR_PAGE = {
     line for name in WHOLE if name != "guide" for line in commands(text_of(ROOT / "docs" / f"{name}.md"))
