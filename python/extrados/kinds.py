@@ -56,7 +56,7 @@ class AnalysisKind:
     table: its deck table. needs: (context, options) -> steps that refuse what it cannot begin with. driver:
     run(context, options) -> Result. results: the typed model of what it gives, or a union of models. validity: what it
     assumes, and its limits. figures: draws a stored analysis, (run, name, folder) -> [(figure, caption)]. page: its charts on the
-    page, of explore.stored.Shown. example: a deck with known answers, below cases/. strategies: those of `assess` that ask it.
+    page, of show.charts.Shown. example: a deck with known answers, below cases/. strategies: those of `assess` that ask it.
     """
 
     table: str
@@ -155,7 +155,7 @@ def _analysis(
     """The results of a kind are called as its table is and so is its validity."""
     return AnalysisKind(
         f"analyses.{package}.tables:{table}", f"analyses.{package}.needs:needs", f"analyses.{package}.{driver}:run",
-        f"results.{results or f'{package}:{table}'}", f"results.validity:{table}", f"show.{figures}", f"explore.stored:Shown.{page}",
+        f"results.{results or f'{package}:{table}'}", f"results.validity:{table}", f"show.{figures}", f"show.charts:Shown.{page}",
         f"{example}.toml", strategies,
     )  # fmt: skip
 

@@ -9,12 +9,12 @@ from extrados import kinds
 from extrados.analyses.assess import strategies
 from extrados.analyses.table import Analysis
 from extrados.explore.handles import Hands
-from extrados.explore.stored import Shown
 from extrados.model.structure import Structure
 from extrados.results.typed import shapes
 from extrados.results.validity import Validity
 from extrados.results.verdict import KindResults
 from extrados.schema.table import Table
+from extrados.show.charts import Shown
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 #: View -> what its maker is given

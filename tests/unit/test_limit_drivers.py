@@ -11,9 +11,9 @@ import extrados
 from extrados.analyses.context import Context
 from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
-from extrados.explore.stored import shown
 from extrados.results.model import Result
 from extrados.running.run import Run, compute
+from extrados.show.charts import shown
 
 ARCH = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 150.0, "voussoirs": 20}
 VAULT = {"kind": "vault", "preset": "dejong-a"}

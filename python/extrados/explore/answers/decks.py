@@ -17,7 +17,7 @@ from extrados._build_info import VERSION
 from extrados.analyses.context import Refused
 from extrados.decks.explain import starter
 from extrados.decks.reader import LARGEST, read_text
-from extrados.explore import statics, stored
+from extrados.explore import forms, statics
 from extrados.explore.answers.views import scene
 from extrados.explore.desk import NEW_DECK, Desk
 from extrados.explore.document import Document
@@ -100,7 +100,7 @@ def open_deck(desk: Desk, message: Message) -> Iterator[Reply]:
         raise
     origin = source or ({"here": "dropped"} if place == desk.scratch else {})
     reply.words |= {"opened": not same, "source": origin, "text": desk.document.text, "name": desk.name}
-    reply.words |= {"forms": stored.forms(live.deck)}
+    reply.words |= {"forms": forms.forms_of(live.deck)}
     yield reply
 
 

@@ -1,26 +1,20 @@
-"""What the page shows of stored runs: words, charts and bodies that move, chosen by kind from the arrays that are there;
-and the keys of a deck as a form."""
+"""What the page shows of stored runs: words, charts and bodies that move, by the entry of the kind, from the arrays that are
+there."""
 
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from extrados.decks.reader import Deck
 from extrados.kinds import ANALYSES, STRUCTURES, load, table
 from extrados.results.store import Stored, StoreError
 from extrados.results.verdict import SelfWeight
 from extrados.schema.constants import GRAVITY
-from extrados.schema.table import Table
-
-__all__ = ["StoreError", "forms", "shown", "unit_of"]
+from extrados.schema.keys import unit_along
 
 MOST_POINTS, MOST_PICTURES, MOST_STATES, MOST_MEMBERS = 4000, 600, 60, 4000
 MOST_ROWS, MOST_COLUMNS = 200, 10
 #: Values that stand in one cell
 SINGLE = int | float | str | None
-#: Sections of the form, those of the building first
-SECTIONS = ("structure", "motion", "joints", "material", "supports", "initial")
 #: Arrays of supports that move: those of a film, or of the states that figures show, and how each calls its thrust lines
 FILM, SHOWN = ("film", "line"), ("shown", "point")
 #: Blocks in space: how the page calls their arrays, and how results do
@@ -30,62 +24,6 @@ SOLIDS = {
 }  # fmt: skip
 Arrays = dict[str, np.ndarray]
 Chart = dict[str, Any]
-
-
-@lru_cache(maxsize=64)
-def _properties(model: type[Table]) -> tuple[dict[str, Any], dict[str, Any]]:
-    schema = model.model_json_schema()
-    return schema.get("properties", {}), schema.get("$defs", {})
-
-
-def _branches(about: dict[str, Any]) -> list[dict[str, Any]]:
-    found = [about, *about.get("anyOf", [])]
-    return found + [b["items"] for b in found if isinstance(b.get("items"), dict)]
-
-
-def unit_of(table: type[Table], way: list[str]) -> tuple[str, bool]:
-    """The unit of the key that a way leads to within a table, and whether a number may stand there without it."""
-    properties, definitions = _properties(table)
-    about: dict[str, Any] = {}
-    for part in way:
-        if part.isdecimal():
-            continue
-        if part not in properties:
-            return "", True
-        about = properties[part]
-        reference = next((b["$ref"] for b in _branches(about) if "$ref" in b), None)
-        if reference is not None:
-            properties = definitions[reference.rsplit("/", 1)[1]].get("properties", {})
-    found = next((b for b in _branches(about) if "unit" in b), {})
-    return found.get("unit", ""), found.get("bare", True)
-
-
-def forms(deck: Deck) -> list[dict[str, Any]]:
-    """Keys of a deck with single values: section, key, value as it stands or its default, unit, choices, meaning."""
-    tables = {"structure": deck.structure, "motion": deck.motion} | {
-        name: getattr(deck.building, name) for name in SECTIONS[2:]
-    }
-    found = []
-    for section in SECTIONS:
-        table = tables[section]
-        if table is None:
-            continue
-        given = deck.data.get(section, {})
-        for key, about in _properties(type(table))[0].items():
-            branches = _branches(about)
-            if key == "kind" or any("$ref" in b or b.get("type") in ("array", "object") for b in branches):
-                continue
-            choices = [c for b in branches for c in (*b.get("enum", ()), *([b["const"]] if "const" in b else []))]
-            sorts = {b.get("type") for b in branches}
-            found.append(
-                {
-                    "section": section, "key": key, "value": given.get(key, getattr(table, key)), "given": key in given,
-                    "unit": next((b["unit"] for b in branches if "unit" in b), ""), "choices": choices,
-                    "sort": "choice" if choices and not sorts & {"number", "integer"} else "yes" if "boolean" in sorts else "text",
-                    "about": about.get("description", ""), "number": bool(sorts & {"number", "integer"}),
-                }
-            )  # fmt: skip
-    return found
 
 
 def _axis(array: str, label: str, unit: str, factor: float = 1.0) -> dict[str, Any]:
@@ -555,7 +493,7 @@ class Shown:
         rows = [_series(k, w) for k, w in words.items() if k in self.arrays]
         key = self.run.arrays[self.name]["value"].about.removeprefix("values of ")
         kind = (self.run.summary["deck"]["resolved"].get("structure") or {}).get("kind")
-        unit = unit_of(table("structure", kind), key.split("."))[0] if kind in STRUCTURES else ""
+        unit = unit_along(table("structure", kind), key.split("."))[0] if kind in STRUCTURES else ""
         about = key.replace("_", " ")
         self._draw("Capacity", _axis("value", about, unit), _axis("", "collapse acceleration", "g"), rows)
 
