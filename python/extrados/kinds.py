@@ -28,8 +28,8 @@ class StructureKind:
 
     table: its deck table. The makers of its views take the building: blocks, piers and solids give its stones; rigid
     (building, groups, floor) rigid bodies; rocker (building, linear) the mechanism by which it rocks; mesh (building, options,
-    seed) finite elements; shell (building, options) flat shells. hands: what hands take hold of on the drawing of the
-    page; None where no key is for them.
+    seed) finite elements; shell (building, options) flat shells. handles: those of its drawing on the
+    page; None where it has none.
     """
 
     table: str
@@ -40,7 +40,7 @@ class StructureKind:
     rocker: View
     mesh: View
     shell: View
-    hands: str | None
+    handles: str | None
 
     @property
     def lacks(self) -> dict[str, str]:
@@ -84,12 +84,12 @@ NO_SHELL = Lacks("this kind of structure has no shells; `extrados explain pushov
 
 def _stones(
     table: str, *, piers: View = NO_PIERS, solids: View = SECTION, mesh: View = MESH_OF_STONES, shell: View = NO_SHELL,
-    hands: str | None = None,
+    handles: str | None = None,
 ) -> StructureKind:  # fmt: skip
     """A plane structure of blocks and joints."""
     return StructureKind(
         f"model.structures.{table}", BLOCKS, piers, solids, RIGID, ROCKER, mesh, shell,
-        None if hands is None else f"explore.handles:{hands}",
+        None if handles is None else f"explore.handles:{handles}",
     )  # fmt: skip
 
 
@@ -102,24 +102,24 @@ def _solids(table: str, shell: View = NO_SHELL) -> StructureKind:
 
 STRUCTURES: dict[str, StructureKind] = {
     "arch": _stones(
-        "arch:Arch", solids="views.solids.arch:solids_of_arch", shell="views.shell.vaults:shell_of_arch", hands="ARCH"
+        "arch:Arch", solids="views.solids.arch:solids_of_arch", shell="views.shell.vaults:shell_of_arch", handles="ARCH"
     ),
-    "block": _stones("block:Block", hands="BLOCK"),
-    "vault": _stones("vault:Vault", shell="views.shell.vaults:shell_of_vault", hands="VAULT"),
-    "aisled-vault": _stones("aisled_vault:AisledVault", hands="AISLED_VAULT"),
-    "pointed-arch": _stones("arches:PointedArch", hands="POINTED"),
-    "elliptical-arch": _stones("arches:EllipticalArch", hands="ELLIPTICAL"),
-    "bridge": _stones("bridge:Bridge", hands="BRIDGE"),
-    "blocks": _stones("blocks:Blocks", solids="views.solids.blocks:solids_of_blocks", hands="BLOCKS"),
-    "panel": _stones("walls:Panel", piers=PIERS, mesh="views.mesh.panel:mesh_panel", hands="PANEL"),
+    "block": _stones("block:Block", handles="BLOCK"),
+    "vault": _stones("vault:Vault", shell="views.shell.vaults:shell_of_vault", handles="VAULT"),
+    "aisled-vault": _stones("aisled_vault:AisledVault", handles="AISLED_VAULT"),
+    "pointed-arch": _stones("arches:PointedArch", handles="POINTED"),
+    "elliptical-arch": _stones("arches:EllipticalArch", handles="ELLIPTICAL"),
+    "bridge": _stones("bridge:Bridge", handles="BRIDGE"),
+    "blocks": _stones("blocks:Blocks", solids="views.solids.blocks:solids_of_blocks", handles="BLOCKS"),
+    "panel": _stones("walls:Panel", piers=PIERS, mesh="views.mesh.panel:mesh_panel", handles="PANEL"),
     "mesh": StructureKind(
         "model.structures.walls:MeshFile", NO_STONES, NO_PIERS, SECTION, RIGID, NO_STONES, "views.mesh.file:mesh_file",
         "views.shell.file:shell_of_file", None,
     ),
-    "column": _stones("masonry:Column", solids="views.solids.column:solids_of_column", hands="COLUMN"),
-    "brickwork": _stones("brickwork:Brickwork", piers=PIERS, hands="BRICKWORK"),
-    "frame": _stones("frame:Frame", hands="FRAME"),
-    "stack": _stones("stack:Stack", hands="STACK"),
+    "column": _stones("masonry:Column", solids="views.solids.column:solids_of_column", handles="COLUMN"),
+    "brickwork": _stones("brickwork:Brickwork", piers=PIERS, handles="BRICKWORK"),
+    "frame": _stones("frame:Frame", handles="FRAME"),
+    "stack": _stones("stack:Stack", handles="STACK"),
     "building": StructureKind(
         "model.structures.plan:Plan",
         Lacks("a building on a plan has walls, no stones in a plane: draw one of its walls as `panel` or `blocks`; the whole is for "

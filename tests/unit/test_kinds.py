@@ -8,7 +8,7 @@ import pytest
 from extrados import kinds
 from extrados.analyses.assess import strategies
 from extrados.analyses.table import Analysis
-from extrados.explore.handles import Hands
+from extrados.explore.handles import KindHandles
 from extrados.model.structure import Structure
 from extrados.results.typed import shapes
 from extrados.results.validity import Validity
@@ -49,7 +49,7 @@ def test_a_structure_has_each_view_or_a_reason(kind: str) -> None:
             assert len(view.reason) > 20, name
         else:
             takes(view, GIVEN[name])
-    assert parts.hands is None or isinstance(kinds.load(parts.hands), Hands)
+    assert parts.handles is None or isinstance(kinds.load(parts.handles), KindHandles)
 
 
 @pytest.mark.parametrize("kind", kinds.ANALYSES)

@@ -45,30 +45,30 @@ class Handle:
 
 
 @dataclass(frozen=True)
-class Hands:
-    """What hands take hold of on the drawings of a kind of structure: handles (table, stones), and the place that stays when
-    the sizes change (table, stones) [m]; None for the origin."""
+class KindHandles:
+    """The handles of a kind of structure: their maker (table, blocks), and the place that stays when the sizes change
+    (table, blocks) [m]; None for the origin."""
 
-    handles: Callable[[Any, Assembly], Iterator[Handle]]
+    make: Callable[[Any, Assembly], Iterator[Handle]]
     anchor: Callable[[Any, Assembly], np.ndarray] | None = None
 
 
-def hands_of(structure: Structure) -> Hands | None:
-    """The hands of the kind of a structure; None where no key is for them."""
-    place = kinds.STRUCTURES[structure.kind].hands
+def kind_handles(structure: Structure) -> KindHandles | None:
+    """The handles of the kind of a structure; None where it has none."""
+    place = kinds.STRUCTURES[structure.kind].handles
     return None if place is None else kinds.load(place)
 
 
 def anchor_of(structure: Structure, assembly: Assembly) -> np.ndarray:
     """The place of the building that stays in the drawing when its sizes change [m]."""
-    hands = hands_of(structure)
-    return np.zeros(2) if hands is None or hands.anchor is None else hands.anchor(structure, assembly)
+    known = kind_handles(structure)
+    return np.zeros(2) if known is None or known.anchor is None else known.anchor(structure, assembly)
 
 
 def handles_of(structure: Structure, assembly: Assembly | None) -> list[Handle]:
-    """The handles of a building, in the order in which the keyboard passes them; assembly: its stones, where it has any."""
-    hands = hands_of(structure)
-    return [] if hands is None else list(hands.handles(structure, assembly))
+    """The handles of a building, in the order in which the keyboard passes them; assembly: its blocks, where it has any."""
+    known = kind_handles(structure)
+    return [] if known is None else list(known.make(structure, assembly))
 
 
 def _centre_of_springings(arch: Any, _: Assembly) -> np.ndarray:
@@ -389,21 +389,21 @@ def _vertices(s: Any, _: Assembly) -> Iterator[Handle]:
         )  # fmt: skip
 
 
-ARCH, VAULT = Hands(_arch, _centre_of_springings), Hands(_vault, _ground)
+ARCH, VAULT = KindHandles(_arch, _centre_of_springings), KindHandles(_vault, _ground)
 AISLED_VAULT, BLOCK, COLUMN, POINTED, ELLIPTICAL = (
-    Hands(_church),
-    Hands(_block),
-    Hands(_column),
-    Hands(_pointed),
-    Hands(_elliptical),
+    KindHandles(_church),
+    KindHandles(_block),
+    KindHandles(_column),
+    KindHandles(_pointed),
+    KindHandles(_elliptical),
 )
 BRIDGE, BLOCKS, PANEL, BRICKWORK, STACK, FRAME = (
-    Hands(_bridge),
-    Hands(_vertices),
-    Hands(_panel),
-    Hands(_brickwork),
-    Hands(_stack),
-    Hands(_frame),
+    KindHandles(_bridge),
+    KindHandles(_vertices),
+    KindHandles(_panel),
+    KindHandles(_brickwork),
+    KindHandles(_stack),
+    KindHandles(_frame),
 )
 
 
