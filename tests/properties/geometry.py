@@ -13,13 +13,13 @@ from hypothesis import reject
 from hypothesis import strategies as st
 from relations import relation
 
-from extrados.building.geometry import convex, polygons
-from extrados.building.geometry.chains import in_order
-from extrados.building.geometry.contacts import find_contacts, nearest
-from extrados.building.geometry.rigid import rigid_bodies
-from extrados.building.geometry.solids import contacts as solid_contacts
-from extrados.building.geometry.solids.polyhedra import prism
-from extrados.building.geometry.solids.sections import barrel, drawn_out
+from extrados.model.geometry import convex, polygons
+from extrados.model.geometry.chains import in_order
+from extrados.model.geometry.contacts import find_contacts, nearest
+from extrados.model.geometry.solids import contacts as solid_contacts
+from extrados.model.geometry.solids.polyhedra import prism
+from extrados.model.geometry.solids.sections import barrel, drawn_out
+from extrados.views.rigid import rigid_bodies
 
 
 @st.composite

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
-from extrados.building.geometry.drawing import Polygon
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
+from extrados.model.geometry.drawing import Polygon
 from extrados.results.model import Result
 
 ezdxf = pytest.importorskip("ezdxf")

@@ -16,17 +16,17 @@ from extrados.analyses.assess.words import conclusion, table_of
 from extrados.analyses.context import Context
 from extrados.analyses.dem import perturbed
 from extrados.analyses.dem.perturbed import chaos_of
-from extrados.building.building import Building
 from extrados.core.calls import within
 from extrados.decks.reader import make_deck
 from extrados.motions import pulses
 from extrados.motions.tables import Compatible, Record, SinePulse
-from extrados.plots import report, style
-from extrados.plots.building import draw_building
 from extrados.results.assess import StrategyVerdict
 from extrados.results.model import Result
 from extrados.running.run import Run, compute
 from extrados.schema.constants import GRAVITY
+from extrados.show import report, style
+from extrados.show.building import draw_building
+from extrados.views.building import Building
 
 COLUMN = {"kind": "column", "width": 1.2, "height": 6.0, "drums": 3}
 PULSE = {"kind": "sine-pulse", "amplitude": "0.3 g", "period": 0.6}

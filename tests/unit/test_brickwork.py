@@ -11,20 +11,20 @@ from scipy.optimize import linprog
 
 import extrados
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
-from extrados.building.errors import BadGeometry
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.drawing import Polygon
-from extrados.building.geometry.polygons import properties
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.blocks import make_blocks
-from extrados.building.templates.brickwork import Bond, make_brickwork
-from extrados.building.templates.piers import make_piers
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
 from extrados.limit import programme
 from extrados.limit.answer import assess
 from extrados.limit.graphic import thrust_of
 from extrados.limit.programme import LimitAnalysis, NoAnswer
+from extrados.model.errors import BadGeometry
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.drawing import Polygon
+from extrados.model.geometry.polygons import properties
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.blocks import make_blocks
+from extrados.model.structures.brickwork import Bond, make_brickwork
+from extrados.model.structures.piers import make_piers
 from extrados.results.model import Result
 from extrados.schema.constants import GRAVITY
 

@@ -12,21 +12,21 @@ from extrados.analyses.context import Context
 from extrados.analyses.limit.moving_load import Places, _top
 from extrados.analyses.limit.tables import MovingLoad
 from extrados.analyses.limit.trains import FOR_EVER, Train, train_of
-from extrados.analyses.run import run_analyses
-from extrados.building.errors import BadGeometry
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.earth import Earth, Skyline, skyline
-from extrados.building.geometry.polygons import properties, signed_area
-from extrados.building.geometry.rigid import rigid_bodies
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.bridge import Bridge, Span, intrados, make_bridge
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
 from extrados.limit.fill import passive_pressure, pressed, under_load
 from extrados.limit.interior import RESIDUAL, CollapseProblem
 from extrados.limit.loads import Loads, tilt_loads
 from extrados.limit.programme import LimitAnalysis
+from extrados.model.errors import BadGeometry
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.earth import Earth, Skyline, skyline
+from extrados.model.geometry.polygons import properties, signed_area
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.bridge import Bridge, Span, intrados, make_bridge
 from extrados.results.model import Result
 from extrados.schema.constants import GRAVITY
+from extrados.views.rigid import rigid_bodies
 
 SPAN = {"span": 8.0, "rise": 2.0, "thickness": 0.6, "voussoirs": 20}
 FILL = {"cover": 0.3, "friction_angle": 35.0, "passive": 0.5}

@@ -8,18 +8,18 @@ from extrados.analyses.chaos import CHAOTIC, NUDGES, growth, over_critical, pert
 from extrados.analyses.context import Context
 from extrados.analyses.motion_source import source_of
 from extrados.analyses.rocking.block import toe_forces
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.block import BlockModel
-from extrados.building.rockers.joint_forces import JointForces
-from extrados.building.rockers.mechanism import MechanismModel
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.block import make_block
-from extrados.building.templates.vault import VAULT_PRESETS, make_vault
 from extrados.core import arch as core_arch
 from extrados.core.rocking import ensemble, history
 from extrados.decks.reader import make_deck
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.block import make_block
+from extrados.model.structures.vault import VAULT_PRESETS, make_vault
 from extrados.motions import pulses
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.arch import ArchModel
+from extrados.views.rockers.block import BlockModel
+from extrados.views.rockers.joint_forces import JointForces
+from extrados.views.rockers.mechanism import MechanismModel
 
 OPPENHEIM = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}
 BLOCK = {"kind": "block", "width": 1.0, "height": 2.0}

@@ -11,11 +11,11 @@ import pytest
 from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.context import Context
 from extrados.analyses.limit import common
-from extrados.analyses.run import run_analyses
-from extrados.building.templates.arch import make_arch
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
 from extrados.limit.certificate import certify
 from extrados.limit.programme import LimitAnalysis
+from extrados.model.structures.arch import make_arch
 from extrados.results.limit import DILATANT, Tilt, judge_interval
 from extrados.results.model import Result
 from extrados.results.verdict import SelfWeight

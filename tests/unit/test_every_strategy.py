@@ -11,8 +11,8 @@ import ezdxf
 import pytest
 
 import extrados
-from extrados.plots import report, style
 from extrados.running.run import Run
+from extrados.show import report, style
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 
@@ -59,7 +59,7 @@ STRATEGIES = {
 PULSE = '[motion]\nkind = "sine-pulse"\namplitude = "1 g"\nperiod = 0.5'
 EARTHQUAKES = '[motion]\nkind = "generated"\nmmi = 9\nduration = 2.0'
 
-PRESSED = "no load of this kind brings the {} down: it only presses the joints together"
+PRESSED = "no load of this kind causes collapse of the {}: such a load only compresses the joints"
 TWO = "two stacked blocks rock in two coordinates, which only `rocking` and `dem` follow"
 UNKNOWN = "the stones of the panel are not known: give unit_length and unit_height"
 REFUSED = {

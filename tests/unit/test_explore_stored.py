@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 import extrados
-from extrados.explore.stored import StoreError, shown
+from extrados.results.store import StoreError
 from extrados.running.run import Run
+from extrados.show.charts import shown
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 ARCH = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}

@@ -6,15 +6,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.builder import Builder
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.arches import make_elliptical_arch, make_pointed_arch
 from extrados.limit.answer import CannotStand, assess
+from extrados.limit.finite_motion import finite_motion, rigid_parts
 from extrados.limit.graphic import thrust_of
 from extrados.limit.loads import Loads, forces_at, tilt_loads
-from extrados.limit.motion import finite_motion, rigid_parts
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.builder import Builder
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.arches import make_elliptical_arch, make_pointed_arch
 
 GRAVITY = 9.80665
 

@@ -9,11 +9,11 @@ import pytest
 
 import extrados
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
-from extrados.explore.stored import shown
 from extrados.results.model import Result
 from extrados.running.run import Run, compute
+from extrados.show.charts import shown
 
 ARCH = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 150.0, "voussoirs": 20}
 VAULT = {"kind": "vault", "preset": "dejong-a"}
@@ -291,7 +291,7 @@ def test_same_run_same_bits() -> None:
     ],
 )
 def test_axes_call_keys_by_words(key: str, words: str) -> None:
-    from extrados.plots.limit.sweep import spoken
+    from extrados.show.limit.sweep import spoken
 
     assert spoken(key) == words
 

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from extrados.analyses.assess.reasons import HEADLINES, RULES, Facts, explained
-from extrados.building.building import Building
-from extrados.building.templates.plan import Plan
 from extrados.decks.reader import make_deck
+from extrados.model.structures.plan import Plan
 from extrados.motions import pulses
 from extrados.results.assess import StrategyVerdict
 from extrados.results.codes import Check, CodeChecks, LocalMechanism, WallMechanism
@@ -18,6 +17,7 @@ from extrados.results.limit import Fracture, NonDilatant, Tilt
 from extrados.results.model import Array, Result
 from extrados.results.rocking import Assessment, Rocking
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
 
 COLUMN = {"kind": "column", "width": 1.2, "height": 6.0, "drums": 3}
 PANEL = {"kind": "panel", "width": 4.8, "height": 3.2, "thickness": 0.4, "unit_length": 0.8, "unit_height": 0.4}

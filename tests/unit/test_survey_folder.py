@@ -13,11 +13,11 @@ from extrados import cli
 from extrados.analyses.context import Context
 from extrados.core.errors import Cancelled
 from extrados.decks.reader import DeckError, make_deck
-from extrados.plots import comparing, html, style
-from extrados.plots.telling import heading, kind_of
 from extrados.results.compare import changes, compare, flat
 from extrados.running import survey
 from extrados.running.run import Run, compute
+from extrados.show import comparing, html, style
+from extrados.show.telling import heading, kind_of
 
 COMMON = """motion = { kind = "sine-pulse", amplitude = "0.3 g", period = 0.6 }
 analysis = [{ kind = "assess", budget = 5, strategies = ["tilt", "rocking"] }]

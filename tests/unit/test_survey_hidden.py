@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from surveys import SQUARE, run, sketch
 
-from extrados.building.mesh.mesh import element_areas
-from extrados.building.templates.blocks import Blocks
 from extrados.decks.reader import make_deck
+from extrados.model.structures.blocks import Blocks
 from extrados.running.check import check_building
+from extrados.views.mesh.mesh import element_areas
 
 
 def hidden(document: Any, space: Any) -> None:

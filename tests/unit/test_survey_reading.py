@@ -9,14 +9,14 @@ import pytest
 from surveys import SQUARE, box, rows, run, sketch
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
-from extrados.building.errors import BadGeometry
-from extrados.building.geometry.drawing import Polygon
-from extrados.building.geometry.linework import net_of
-from extrados.building.geometry.polygons import signed_area
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.blocks import Blocks
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
+from extrados.model.errors import BadGeometry
+from extrados.model.geometry.drawing import Polygon
+from extrados.model.geometry.linework import net_of
+from extrados.model.geometry.polygons import signed_area
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.blocks import Blocks
 
 ezdxf = pytest.importorskip("ezdxf")
 

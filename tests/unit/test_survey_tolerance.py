@@ -7,11 +7,11 @@ import pytest
 from surveys import box, rows, run
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
-from extrados.building.geometry.contacts import find_contacts
-from extrados.building.geometry.drawing import Drawing
-from extrados.building.geometry.inspection import inspect
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
+from extrados.model.geometry.contacts import find_contacts
+from extrados.model.geometry.drawing import Drawing
+from extrados.model.geometry.inspection import inspect
 
 # --- gaps and overlaps
 

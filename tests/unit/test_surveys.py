@@ -14,25 +14,25 @@ from surveys import CHURCH, ROOT, SQUARE, box, rows, run
 from typer.testing import CliRunner
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry
-from extrados.building.geometry.assembly import GROUND
-from extrados.building.geometry.drawing import Drawing, Polygon
-from extrados.building.geometry.inspection import inspect
-from extrados.building.geometry.linework import net_of
-from extrados.building.geometry.polygons import inside
-from extrados.building.properties import Joints, Material
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.blocks import Blocks, assemble, make_blocks
+from extrados.analyses.sequence import run_analyses
 from extrados.cli import app
 from extrados.decks.reader import make_deck
 from extrados.limit.answer import assess
 from extrados.limit.places import place_of
 from extrados.limit.programme import LimitAnalysis
 from extrados.limit.supports import support_movement
-from extrados.plots import style
+from extrados.model.errors import BadGeometry
+from extrados.model.geometry.assembly import GROUND
+from extrados.model.geometry.drawing import Drawing, Polygon
+from extrados.model.geometry.inspection import inspect
+from extrados.model.geometry.linework import net_of
+from extrados.model.geometry.polygons import inside
+from extrados.model.properties import Joints, Material
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.blocks import Blocks, assemble, make_blocks
 from extrados.results.model import Result
+from extrados.show import style
+from extrados.views.building import Building
 
 # --- the church, and `check`
 

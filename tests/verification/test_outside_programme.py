@@ -12,9 +12,9 @@ from scipy import sparse
 from scipy.optimize import linprog, minimize
 
 from extrados.analyses.limit.common import loads_of
-from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.decks.reader import make_deck
 from extrados.limit.loads import Loads
+from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.motions.records import locate, read_record, record_motion
 from extrados.schema.constants import GRAVITY
 

@@ -167,7 +167,7 @@ def _draw(folder: Path, figures: bool, quiet: bool) -> None:
     report = None
     if figures:
         try:
-            from extrados.plots.report import write_report
+            from extrados.show.report import write_report
 
             report = write_report(folder)[0]
         except KeyboardInterrupt:

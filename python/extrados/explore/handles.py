@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.structure import Structure
+from extrados import kinds
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.structure import Structure
 
 #: More vertices than these are not for hands
 MOST_VERTICES = 400
@@ -43,20 +44,40 @@ class Handle:
     step: float | None = field(default=None)
 
 
+@dataclass(frozen=True)
+class KindHandles:
+    """The handles of a kind of structure: their maker (table, blocks), and the place that stays when the sizes change
+    (table, blocks) [m]; None for the origin."""
+
+    make: Callable[[Any, Assembly], Iterator[Handle]]
+    anchor: Callable[[Any, Assembly], np.ndarray] | None = None
+
+
+def kind_handles(structure: Structure) -> KindHandles | None:
+    """The handles of the kind of a structure; None where it has none."""
+    place = kinds.STRUCTURES[structure.kind].handles
+    return None if place is None else kinds.load(place)
+
+
 def anchor_of(structure: Structure, assembly: Assembly) -> np.ndarray:
     """The place of the building that stays in the drawing when its sizes change [m]."""
-    if structure.kind == "arch":
-        return np.array([0.0, structure.radius * math.cos(0.5 * math.radians(structure.embrace))])
-    if structure.kind == "vault":
-        grounded = np.flatnonzero((assembly.a == GROUND) | (assembly.b == GROUND))
-        return np.array([0.0, float(assembly.middle[grounded, 1].min())])
-    return np.zeros(2)
+    known = kind_handles(structure)
+    return np.zeros(2) if known is None or known.anchor is None else known.anchor(structure, assembly)
 
 
 def handles_of(structure: Structure, assembly: Assembly | None) -> list[Handle]:
-    """The handles of a building, in the order in which the keyboard passes them; assembly: its stones, where it has any."""
-    made = _KINDS.get(structure.kind)
-    return list(made(structure, assembly)) if made else []
+    """The handles of a building, in the order in which the keyboard passes them; assembly: its blocks, where it has any."""
+    known = kind_handles(structure)
+    return [] if known is None else list(known.make(structure, assembly))
+
+
+def _centre_of_springings(arch: Any, _: Assembly) -> np.ndarray:
+    return np.array([0.0, arch.radius * math.cos(0.5 * math.radians(arch.embrace))])
+
+
+def _ground(_: Any, assembly: Assembly) -> np.ndarray:
+    grounded = np.flatnonzero((assembly.a == GROUND) | (assembly.b == GROUND))
+    return np.array([0.0, float(assembly.middle[grounded, 1].min())])
 
 
 def _key(name: str) -> Callable[[Any], Changes]:
@@ -121,7 +142,7 @@ def _arch(s: Any, _: Assembly) -> Iterator[Handle]:
 def _vault(s: Any, assembly: Assembly) -> Iterator[Handle]:
     r, t, half = s.radius, s.thickness, 0.5 * math.radians(s.embrace)
     outer = r + 0.5 * t
-    base = float(anchor_of(s, assembly)[1])
+    base = float(_ground(s, assembly)[1])
     start = s.face if s.width_from == "face" else outer * math.sin(half)
     yield _length(
         "buttress_width", "Width of the buttresses", start + s.buttress_width, base, s.buttress_width,
@@ -368,11 +389,22 @@ def _vertices(s: Any, _: Assembly) -> Iterator[Handle]:
         )  # fmt: skip
 
 
-_KINDS: dict[str, Callable[[Any, Assembly], Iterator[Handle]]] = {
-    "arch": _arch, "vault": _vault, "aisled-vault": _church, "block": _block, "column": _column, "pointed-arch": _pointed,
-    "elliptical-arch": _elliptical, "bridge": _bridge, "blocks": _vertices,
-    "panel": _panel, "brickwork": _brickwork, "stack": _stack, "frame": _frame,
-}  # fmt: skip
+ARCH, VAULT = KindHandles(_arch, _centre_of_springings), KindHandles(_vault, _ground)
+AISLED_VAULT, BLOCK, COLUMN, POINTED, ELLIPTICAL = (
+    KindHandles(_church),
+    KindHandles(_block),
+    KindHandles(_column),
+    KindHandles(_pointed),
+    KindHandles(_elliptical),
+)
+BRIDGE, BLOCKS, PANEL, BRICKWORK, STACK, FRAME = (
+    KindHandles(_bridge),
+    KindHandles(_vertices),
+    KindHandles(_panel),
+    KindHandles(_brickwork),
+    KindHandles(_stack),
+    KindHandles(_frame),
+)
 
 
 def load_handles(loads: list[Any], name: str, surfaces: list[tuple[float, float]], scale: float) -> Iterator[Handle]:

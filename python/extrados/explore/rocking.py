@@ -13,11 +13,11 @@ from extrados.analyses.rocking.failure_domain import MODE_I, Mapper, natural_dur
 from extrados.analyses.rocking.history import answer, rest_time, run_history
 from extrados.analyses.rocking.shapes import States, shapes
 from extrados.analyses.rocking.tables import Assessment, FailureDomain, Rocking
-from extrados.analyses.run import run_one
-from extrados.building.building import Building
-from extrados.building.geometry.assembly import Assembly
+from extrados.analyses.sequence import run_one
+from extrados.model.geometry.assembly import Assembly
 from extrados.motions.motion import Motion
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
 
 #: Pictures of a history, and points of its curves
 MOST_PICTURES, MOST_POINTS = 600, 1600
@@ -115,7 +115,7 @@ def _in_two(
         "impact_times_s": get["impact_time"].tolist()[:400], "peak_rotation_rad": r.peak_rotation_rad,
         "peak_rotation_ratio": r.peak_rotation_ratio, "critical_rad": [r.critical_rotation_rad] * 2,
         "uplift_g": r.uplift_acceleration_g, "restitution": r.restitution, "peak_ground_g": r.peak_ground_acceleration_g,
-        "stop_time_s": end, "end_time_s": end, "word": building._structure().word, "answer": result.answer,
+        "stop_time_s": end, "end_time_s": end, "word": building.require_structure().word, "answer": result.answer,
         "violated": r.judged(MotionDemand(context)).violated, "warnings": result.warnings, "active_s": min(1.05 * float(time[moving[-1]]), end) if len(moving) else end,
     }  # fmt: skip
     keep = slice(0, None, max(1, -(-len(time) // MOST_POINTS)))

@@ -7,8 +7,6 @@ from typing import TypeVar
 
 import numpy as np
 
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.chains import inner_stones
 from extrados.limit.equilibrium import hanging_stones
 from extrados.limit.errors import CannotStand
 from extrados.limit.graphic import force_polygon, funicular
@@ -16,6 +14,8 @@ from extrados.limit.lines import ThrustPath, thrust_paths
 from extrados.limit.loads import Loads
 from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State
 from extrados.limit.systems import Sparse
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.chains import inner_stones
 
 Found = TypeVar("Found")
 TOUCH = 1e-6  # of a joint's length: the thrust line touches its end

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.limit.motion import rigid_parts
+from extrados.limit.finite_motion import rigid_parts
 from extrados.limit.states import Mechanism
+from extrados.model.geometry.assembly import GROUND, Assembly
 
 # Of the fastest speed of the mechanism: slip, or crushing, that is more than rounding.
 SLIPS = 1e-5

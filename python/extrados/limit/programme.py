@@ -6,7 +6,6 @@ from functools import cached_property
 import numpy as np
 from scipy import sparse
 
-from extrados.building.geometry.assembly import Assembly
 from extrados.limit.coulomb import CoulombProblem, CoulombState
 from extrados.limit.equilibrium import hanging_stones, spanning_tree
 from extrados.limit.graphic import senses, thrust_joint
@@ -25,6 +24,7 @@ from extrados.limit.solver import (
 )
 from extrados.limit.states import Mechanism, State, read_mechanism, read_state
 from extrados.limit.systems import LOOPS_REDUCED, Constraints, Reduced, Sparse
+from extrados.model.geometry.assembly import Assembly
 
 __all__ = ["Immovable", "LimitAnalysis", "Mechanism", "NoAnswer", "NoEquilibrium", "State"]
 

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.building.geometry.assembly import GROUND
 from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium, State
 from extrados.limit.solver import BOUND, MADE_UP
 from extrados.limit.states import read_state
+from extrados.model.geometry.assembly import GROUND
 
 SLIGHT = 1e-6  # cost of pressing beside that of the work on the supports
 SAME = 1e-8  # of the total load: states that do this little more work are as good

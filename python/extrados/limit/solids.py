@@ -17,10 +17,10 @@ import highspy
 import numpy as np
 from scipy import sparse
 
-from extrados.building.geometry.assembly import GROUND
-from extrados.building.geometry.solids.assembly import SolidAssembly
 from extrados.core.threads import Worker
 from extrados.limit.errors import Immovable, NoAnswer
+from extrados.model.geometry.assembly import GROUND
+from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.schema.constants import GRAVITY
 
 Found = TypeVar("Found")

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
 from extrados.limit.solver import MADE_UP
+from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.schema.constants import GRAVITY
 
 ROOM = 1e-9  # of a joint's length: how far outside the line may lie by rounding

@@ -16,7 +16,6 @@ import tomlkit
 from extrados import kinds
 from extrados.analyses.batches import stacked, stop_if_asked, sweep
 from extrados.analyses.context import Context
-from extrados.building.building import Building
 from extrados.decks.reader import LARGEST, Deck, DeckError, make_deck
 from extrados.decks.toml import loads
 from extrados.results import checkpoint, written
@@ -24,6 +23,7 @@ from extrados.results.assess import Assess
 from extrados.results.store import Stored, StoreError, cell, prepare, reason
 from extrados.running.run import Run, compute
 from extrados.schema import files
+from extrados.views.building import Building
 
 #: A deck of this name gives all others of the folder the tables that they lack: the hazard, the budget
 COMMON = "common.toml"
@@ -93,7 +93,7 @@ class SurveyJob:
         """Draw the figures of a building whose results are written; what went wrong, as words after its statement."""
         if not self.figures:
             return ""
-        from extrados.plots.report import write_report
+        from extrados.show.report import write_report
 
         try:
             write_report(Path(folder))
@@ -184,8 +184,8 @@ def assess_folder(
 
 def _write(rows: list[Assessed], out: Path, figures: bool) -> None:
     """ranking.csv, and the ranking with a page for each building; what is there and was not written by us stays."""
-    from extrados.plots import html, typeset
-    from extrados.plots.ranking import document
+    from extrados.show import html, typeset
+    from extrados.show.ranking import document
 
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

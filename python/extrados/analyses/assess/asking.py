@@ -14,12 +14,12 @@ from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import MotionDemand, concluded
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.self_weight import neglecting
-from extrados.analyses.run import run_one
+from extrados.analyses.sequence import run_one
 from extrados.analyses.statistics.summaries import wilson
-from extrados.building.errors import WHOLE
 from extrados.core.calls import within
 from extrados.core.errors import Cancelled
 from extrados.decks.reader import DeckError, make_deck
+from extrados.model.errors import WHOLE
 from extrados.results.assess import StrategyVerdict
 from extrados.results.limit import Tilt, judge_dilatant
 from extrados.results.model import Result

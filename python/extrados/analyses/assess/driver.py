@@ -27,7 +27,7 @@ from extrados.analyses.assess.words import answer, conclusion, table_of
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import faulty
 from extrados.analyses.context import Context, Refused
-from extrados.building.errors import BadGeometry, NoView
+from extrados.model.errors import BadGeometry, NoView
 from extrados.motions.from_deck import is_set
 from extrados.results import assess as out
 from extrados.results.dem import DemRun

@@ -7,8 +7,7 @@ import numpy as np
 
 from extrados.analyses.assess.asking import ENDING
 from extrados.analyses.assess.hazard import above, passages
-from extrados.building.building import Building
-from extrados.building.templates.plan import Plan
+from extrados.model.structures.plan import Plan
 from extrados.motions.motion import Motion
 from extrados.results.assess import Reason, StrategyVerdict
 from extrados.results.codes import Check, Checked, LocalMechanism
@@ -17,6 +16,7 @@ from extrados.results.limit import Tilt
 from extrados.results.model import Result
 from extrados.results.rocking import Assessment, Rocking
 from extrados.results.verdict import KindResults, SelfWeight
+from extrados.views.building import Building
 
 #: Strategies that push for ever, and those that follow the motion or a part of it
 STATIC, DYNAMIC = ("tilt", "sla", "push-x", "push-y"), ("rocking", "assessment", "probability", "dem")

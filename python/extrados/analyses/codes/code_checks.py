@@ -10,9 +10,9 @@ from extrados.analyses.codes.code_rules import Line, asce43, housner, ishiyama, 
 from extrados.analyses.codes.tables import CodeChecks
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking.conditions import of_one, told
-from extrados.building.templates.block import BlockAssembly
 from extrados.core import motion as core_motion
 from extrados.core import rocking as core_rocking
+from extrados.model.structures.block import BlockAssembly
 from extrados.motions.code_spectra import damping_factor
 from extrados.motions.from_deck import code_spectrum
 from extrados.motions.motion import Motion

@@ -15,12 +15,6 @@ from extrados.analyses.codes.walls import WallPart, wall_parts
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import collapse_beside, limit_of
 from extrados.analyses.limit.tables import Tilt
-from extrados.building.building import Building
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.rockers.mechanism import MechanismModel, NoMotion
-from extrados.building.rockers.restraints import Restraints, members_of
-from extrados.building.templates.plan import Plan
-from extrados.building.ties import Tie
 from extrados.core import mechanism as core_mechanism
 from extrados.core.restraints import FREE
 from extrados.limit.answer import cannot_stand
@@ -28,11 +22,17 @@ from extrados.limit.certificate import certify
 from extrados.limit.errors import CannotStand, Immovable, NoAnswer, NoEquilibrium
 from extrados.limit.linkage import laden
 from extrados.limit.programme import LimitAnalysis, Mechanism
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.structures.plan import Plan
+from extrados.model.ties import Tie
 from extrados.results import codes as out
 from extrados.results.limit import DILATANT, SAME
 from extrados.results.model import Array, Result, TableData
 from extrados.results.verdict import Bound
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
+from extrados.views.rockers.mechanism import MechanismModel, NoMotion
+from extrados.views.rockers.restraints import Restraints, members_of
 
 STEPS = 61
 #: Limit analysis with friction, strength and ties finds another mechanism where its multiplier is less than this share

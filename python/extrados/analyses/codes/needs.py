@@ -11,9 +11,9 @@ from extrados.analyses.codes.walls import wall_parts
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.needs import Need
 from extrados.analyses.table import Analysis
-from extrados.building.building import Building
-from extrados.building.errors import Key
-from extrados.building.templates.plan import Plan
+from extrados.model.errors import Key
+from extrados.model.structures.plan import Plan
+from extrados.views.building import Building
 
 #: What of the table describes a body by itself; and where on a building it stands, which a plan says of each of its walls
 OF_A_BODY = (

@@ -10,7 +10,7 @@ from extrados.schema.spectrum import CodeSpectrum
 from extrados.schema.table import Table, key
 
 if TYPE_CHECKING:
-    from extrados.building.building import Building
+    from extrados.views.building import Building
 
 
 class CodeChecks(BuildingAnalysis):
@@ -198,4 +198,4 @@ class LocalMechanism(BuildingAnalysis):
     def of_stones(self, building: "Building") -> bool:
         """Whether the mechanism is that of the deck's stones, not of a body by itself or of the walls of a plan."""
         structure = building.structure
-        return self.mechanism == "building" and (structure is None or "blocks" not in structure.lacks)
+        return self.mechanism == "building" and (structure is None or "blocks" not in building.kind.lacks)

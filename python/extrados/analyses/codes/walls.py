@@ -8,11 +8,11 @@ import numpy as np
 from extrados.analyses.codes.kinematics import NoMechanism, Overturning, Weight
 from extrados.analyses.codes.mechanisms import set_back
 from extrados.analyses.context import Refused
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry
-from extrados.building.properties import Material
-from extrados.building.templates.plan import MEETS, Plan, PlanWall
+from extrados.model.errors import BadGeometry
+from extrados.model.properties import Material
+from extrados.model.structures.plan import MEETS, Plan, PlanWall
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
 
 
 @dataclass(frozen=True)

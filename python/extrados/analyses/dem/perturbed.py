@@ -7,7 +7,7 @@ from extrados.analyses.batches import Unfinished
 from extrados.analyses.chaos import CHAOTIC, NUDGE, chaos_told, growth
 from extrados.analyses.context import Context
 from extrados.analyses.dem import measures
-from extrados.analyses.dem.runs import Runs, SolidRuns, answered
+from extrados.analyses.dem.job import Runs, SolidRuns, answered
 from extrados.core import dem, dem3
 from extrados.results.model import Result
 

@@ -17,8 +17,8 @@ from extrados.analyses.dem.measures import (
     off_footing,
 )
 from extrados.analyses.dem.solid_model import SolidModel
-from extrados.building.geometry.solids.contacts import GROUND
 from extrados.core import dem3
+from extrados.model.geometry.solids.contacts import GROUND
 from extrados.results.dem import APART, CLOSED, ROCKS
 
 

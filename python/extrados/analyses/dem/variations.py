@@ -3,7 +3,7 @@
 import numpy as np
 
 from extrados.analyses.context import Context
-from extrados.analyses.dem.runs import answered
+from extrados.analyses.dem.job import answered
 from extrados.analyses.dem.seen import Seen
 from extrados.analyses.dem.tables import Dem
 from extrados.analyses.dem.trial import Trial

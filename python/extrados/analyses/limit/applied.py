@@ -6,9 +6,9 @@ import numpy as np
 
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.tables import AppliedLoad
-from extrados.building.errors import WHOLE
-from extrados.building.geometry.anchors import stones_at
-from extrados.building.geometry.assembly import Assembly
+from extrados.model.errors import WHOLE
+from extrados.model.geometry.anchors import stones_at
+from extrados.model.geometry.assembly import Assembly
 
 
 def chain_of(assembly: Assembly, name: str | None) -> str | None:

@@ -10,9 +10,6 @@ from extrados.analyses.context import Refused
 from extrados.analyses.limit.applied import pieces
 from extrados.analyses.limit.needs import refuse_fracture
 from extrados.analyses.limit.tables import AppliedLoad, LimitAnalysisTable
-from extrados.building.building import Building
-from extrados.building.errors import WHOLE, BadGeometry
-from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.answer import Answer, assess
 from extrados.limit.equilibrium import Disconnected
 from extrados.limit.errors import CannotStand
@@ -24,8 +21,11 @@ from extrados.limit.places import place_of
 from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State, closed
 from extrados.limit.resistance import Resistance, together
 from extrados.limit.ties import pulls, tensions
+from extrados.model.errors import WHOLE, BadGeometry
+from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.results.limit import Hinge, Reaction, TieForce
 from extrados.results.model import Array
+from extrados.views.building import Building
 
 #: Length over which a point load on earth presses [m]
 CONTACT = 0.3

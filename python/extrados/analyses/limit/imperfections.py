@@ -9,14 +9,14 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.asked import deviation_of
 from extrados.analyses.limit.common import answer_of, geometry_arrays, loads_of
 from extrados.analyses.limit.tables import Imperfections
-from extrados.building.building import Building
-from extrados.building.errors import WHOLE
-from extrados.building.geometry.assembly import Assembly
-from extrados.building.geometry.deviation import resurveyed
 from extrados.limit.answer import cannot_stand
 from extrados.limit.programme import Immovable, LimitAnalysis, NoAnswer, NoEquilibrium
+from extrados.model.errors import WHOLE
+from extrados.model.geometry.assembly import Assembly
+from extrados.model.geometry.deviation import resurveyed
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
+from extrados.views.building import Building
 
 BAND = (5.0, 95.0)  # percentiles that are told
 

@@ -23,18 +23,18 @@ from extrados.analyses.limit.common import (
 from extrados.analyses.limit.tables import MovingLoad, PartialFactors
 from extrados.analyses.limit.trains import Train, fitting_train
 from extrados.analyses.limit.variation import signature, spoken
-from extrados.building.errors import WHOLE
-from extrados.building.geometry.assembly import Assembly
-from extrados.building.geometry.chains import is_stack
-from extrados.building.geometry.earth import skyline
-from extrados.building.structure import Structure
 from extrados.limit.answer import cannot_stand
 from extrados.limit.errors import CannotStand, Immovable, NoAnswer
 from extrados.limit.fill import pressed, under_load
+from extrados.limit.finite_motion import finite_motion
 from extrados.limit.lines import thrust_paths
 from extrados.limit.loads import Loads, forces_at
-from extrados.limit.motion import finite_motion
 from extrados.limit.programme import LimitAnalysis, Mechanism, State
+from extrados.model.errors import WHOLE
+from extrados.model.geometry.assembly import Assembly
+from extrados.model.geometry.chains import is_stack
+from extrados.model.geometry.earth import skyline
+from extrados.model.structure import Structure
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY

@@ -7,9 +7,9 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit import tables
 from extrados.analyses.limit.asked import deviation_of, refuse_still, sections_of, values_of
 from extrados.analyses.needs import Need, stones_of
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry, Key
-from extrados.building.geometry.assembly import Assembly
+from extrados.model.errors import BadGeometry, Key
+from extrados.model.geometry.assembly import Assembly
+from extrados.views.building import Building
 
 
 def needs(context: Context, options: tables.BuildingAnalysis) -> Iterator[Need]:

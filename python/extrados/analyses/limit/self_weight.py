@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from extrados.analyses.limit.common import geometry_arrays
-from extrados.building.building import Building
-from extrados.building.errors import NoView
 from extrados.limit.errors import CannotStand
+from extrados.model.errors import NoView
 from extrados.results.model import Array, Result
 from extrados.results.verdict import SelfWeight
+from extrados.views.building import Building
 
 _RESTRAINTS = "the restraints of the deck (ties, dampers, hinges)"
 _WALL = "the abutting wall"

@@ -5,10 +5,10 @@ import numpy as np
 from extrados.analyses.context import Context
 from extrados.analyses.limit.common import named_places
 from extrados.analyses.limit.tables import Tilt
-from extrados.building.geometry.assembly import GROUND
-from extrados.building.geometry.solids.assembly import SolidAssembly
 from extrados.limit.errors import CannotStand, Immovable
 from extrados.limit.solids import Falls, Programme, SolidLimit
+from extrados.model.geometry.assembly import GROUND
+from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.results import solids as out
 from extrados.results.limit import DILATANT
 from extrados.results.model import Array, Result

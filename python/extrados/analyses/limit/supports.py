@@ -8,9 +8,6 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.asked import movements_of, refuse_still
 from extrados.analyses.limit.common import geometry_arrays, spoken_ties, state_arrays, tie_arrays, tie_rows, ties_of
 from extrados.analyses.limit.tables import MovingSupports
-from extrados.building.errors import WHOLE, BadGeometry
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.chains import in_order, is_stack
 from extrados.limit.answer import cannot_stand
 from extrados.limit.loads import tilt_loads
 from extrados.limit.places import place_of
@@ -18,6 +15,9 @@ from extrados.limit.programme import LimitAnalysis, NoEquilibrium
 from extrados.limit.resistance import together
 from extrados.limit.settlement import settle
 from extrados.limit.supports import support_movement
+from extrados.model.errors import WHOLE, BadGeometry
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.chains import in_order, is_stack
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
 

@@ -21,12 +21,12 @@ from extrados.analyses.limit.variation import (
     outcomes_of,
     spoken,
 )
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry
 from extrados.limit.errors import CannotStand
-from extrados.limit.motion import finite_motion
+from extrados.limit.finite_motion import finite_motion
+from extrados.model.errors import BadGeometry
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
+from extrados.views.building import Building
 
 #: Of the greatest capacity: by so little capacities differ that are the same but for rounding
 LEVEL = 1e-6

@@ -9,7 +9,7 @@ from extrados.schema.quantities import Angle, Force, Gravities, Length, LineForc
 from extrados.schema.table import Table, key
 
 if TYPE_CHECKING:
-    from extrados.building.building import Building
+    from extrados.views.building import Building
 
 
 class AppliedLoad(Table):

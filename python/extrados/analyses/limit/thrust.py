@@ -16,11 +16,11 @@ from extrados.analyses.limit.common import (
     tie_rows,
 )  # fmt: skip
 from extrados.analyses.limit.tables import Thrust
-from extrados.building.geometry.assembly import Assembly
-from extrados.building.geometry.chains import is_stack
 from extrados.limit.answer import Answer, assess, safety_factor
 from extrados.limit.graphic import thrust_joint, thrust_of
 from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium, State
+from extrados.model.geometry.assembly import Assembly
+from extrados.model.geometry.chains import is_stack
 from extrados.results import limit as out
 from extrados.results.model import Result, TableData
 

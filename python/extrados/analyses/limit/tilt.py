@@ -22,17 +22,17 @@ from extrados.analyses.limit.common import (
     tie_rows,
 )  # fmt: skip
 from extrados.analyses.limit.tables import Tilt
-from extrados.building.building import Building
-from extrados.building.errors import NoView
-from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.answer import CENTRAL, Answer
 from extrados.limit.certificate import certify
+from extrados.limit.finite_motion import finite_motion
 from extrados.limit.fracture import Fracture
 from extrados.limit.graphic import thrust_joint, thrust_of
-from extrados.limit.motion import finite_motion
 from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium
+from extrados.model.errors import NoView
+from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.results import limit as out
 from extrados.results.model import Array, Result
+from extrados.views.building import Building
 
 __all__ = ["geometry_arrays", "run", "state_arrays"]
 

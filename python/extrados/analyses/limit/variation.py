@@ -9,13 +9,13 @@ from extrados.analyses.batches import Swept
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.common import fracture_of, limit_of
 from extrados.analyses.limit.tables import LimitAnalysisTable
-from extrados.building.building import Building
-from extrados.building.geometry.assembly import GROUND, Assembly, part_of
-from extrados.building.geometry.builder import BadGeometry
 from extrados.limit.answer import cannot_stand
 from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium
 from extrados.limit.solver import Immovable, NoAnswer
+from extrados.model.geometry.assembly import GROUND, Assembly, part_of
+from extrados.model.geometry.builder import BadGeometry
 from extrados.results import limit as out
+from extrados.views.building import Building
 
 Signature = tuple[tuple[str, str], ...]
 #: Stands for a structure that no load of the kind brings down

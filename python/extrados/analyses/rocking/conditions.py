@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from extrados.building.rockers.rocker import Rocker
-from extrados.building.rockers.soft_base import SoftBaseModel
-from extrados.building.rockers.watch import LOST, Watch
 from extrados.core.rocking import FAILED, JointDemand, Response
 from extrados.results.rocking import Conditions, JointTime
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.rocker import Rocker
+from extrados.views.rockers.soft_base import SoftBaseModel
+from extrados.views.rockers.watch import LOST, Watch
 
 #: What a member of an ensemble keeps of the demand on its joints, see `rows_of`
 ROWS = ("friction", "slips", "strays")

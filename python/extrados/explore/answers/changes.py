@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from extrados.decks.reader import DeckError
-from extrados.explore import statics, stored
+from extrados.explore import forms, statics
 from extrados.explore.answers import motion
 from extrados.explore.answers.views import scene
 from extrados.explore.desk import Desk
@@ -15,6 +15,7 @@ from extrados.explore.document import as_written, tidy
 from extrados.explore.frames import Reply
 from extrados.explore.handles import Handle, rounded
 from extrados.explore.messages import BadMessage, Message, numbers, quantity
+from extrados.schema.keys import unit_along
 
 KEY = re.compile(r"[A-Za-z_][\w-]*(\.[\w-]+){0,8}")
 
@@ -58,7 +59,7 @@ def set_keys(desk: Desk, message: Message) -> Iterator[Reply]:
 def rest(desk: Desk, _: Message) -> Iterator[Reply]:
     """What is told when the hand rests: the text of the deck, its forms, then mechanisms and safety."""
     desk.held = None
-    yield Reply({"text": desk.document.text, "forms": stored.forms(desk.there().deck), "name": desk.name})
+    yield Reply({"text": desk.document.text, "forms": forms.forms_of(desk.there().deck), "name": desk.name})
     if desk.picture is not None:
         words, arrays = statics.detail(desk.picture, desk.anchor)
         yield Reply({"detail": words}, arrays)
@@ -150,4 +151,4 @@ def _unit(desk: Desk, key: str) -> tuple[str, bool]:
     table = {"structure": deck.structure, "motion": deck.motion}.get(way[0], getattr(deck.building, way[0], None))
     if way[0] == "analysis" and len(way) > 2:
         table, way = deck.analyses[live.names.index(way[1])], way[1:]
-    return stored.unit_of(type(table), way[1:]) if table is not None else ("", True)
+    return unit_along(type(table), way[1:]) if table is not None else ("", True)

@@ -2,18 +2,18 @@
 
 from collections.abc import Iterator
 
-from extrados.explore import stored
 from extrados.explore.answers.decks import saved
 from extrados.explore.desk import Desk
 from extrados.explore.frames import Reply
 from extrados.explore.messages import Message, path
+from extrados.show.charts import shown
 
 
 def stored_run(desk: Desk, message: Message) -> Iterator[Reply]:
     """A stored run of the folder: its words; then, of one analysis, all that its view draws."""
     place = path(message)
     name = message.get("analysis") if isinstance(message.get("analysis"), str) else None
-    words, arrays = stored.shown(desk.folder.run(place), name)
+    words, arrays = shown(desk.folder.run(place), name)
     yield Reply({"run": {**words, "path": place, "side": message.get("side")}}, arrays, frozenset(("time",)))
 
 

@@ -1,0 +1,175 @@
+"""dem under a motion: from rest under the own weight to the end, to rest or to collapse."""
+
+from typing import Any
+
+import numpy as np
+
+from extrados.analyses.batches import Unfinished
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.dem import files as dem_files
+from extrados.analyses.dem import measures
+from extrados.analyses.dem import model as dem_model
+from extrados.analyses.dem.friction import friction_threshold
+from extrados.analyses.dem.job import watched
+from extrados.analyses.dem.model import Model
+from extrados.analyses.dem.perturbed import FACTOR, probe_chaos
+from extrados.analyses.dem.seen import Seen
+from extrados.analyses.dem.tables import Dem
+from extrados.analyses.dem.trial import Trial
+from extrados.analyses.dem.variations import vary
+from extrados.analyses.dem.words import motion_answer
+from extrados.analyses.limit.common import geometry_arrays
+from extrados.core import dem
+from extrados.model.structures.block import BlockAssembly
+from extrados.results import dem as out
+from extrados.results.model import Array, Result, TableData
+from extrados.views.rockers.block import BlockModel
+
+
+def run(context: Context, options: Dem, model: Model) -> Result:
+    """The run, and with it what else the deck asks: variations, the least friction."""
+    trial = Trial(context, options, model)
+    # The rates after and before impacts of a single block need a fine history.
+    step = min(options.output_step, 0.002) if model.rigid.count == 1 else options.output_step
+    job = trial.job([model.values], output_step=step)
+    found = dem_model.checked(watched(context, "dem-motion", job, "discrete elements"), model)
+    ground = context.motion.sample(found.time) if context.deck.motion else np.zeros(len(found.time))
+    seen = Seen.of(model, found, options.floor is not None)
+    result = Result("dem", status="interrupted" if found.interrupted else "ok")
+    again = "; --resume goes on from here" if context.checkpoint is not None and len(found.time) else ""
+    result.reason = f"interrupted at {found.stop_time:.3f} s{again}" if found.interrupted else ""
+    shadow = trial.job([model.values], FACTOR, output_step=step) if options.perturbed else None
+
+    def outcome_of(one: dem.Run) -> str:
+        return Seen.of(model, one, options.floor is not None).fate(trial.collapse).outcome
+
+    chaos = probe_chaos(context, shadow, trial.idle, found, model.rigid.count, trial.collapse, outcome_of, result)
+    numbers = _numbers(options, trial, seen, ground) | chaos | {"animation": options.animation}
+    _store(options, seen, ground, result)
+    if seen.slides:
+        result.warnings.append(f"joints slide by up to {1e3 * seen.sliding.peak:.3g} mm")
+    if who := numbers["off_footing"]:
+        result.warnings.append(
+            f"{', '.join(who[:6])} slides off its footing: floor = {measures.ground_level(model):.4g} names a floor to slide on"
+        )
+    if found.residual > 0.01:
+        result.warnings.append(
+            f"the energy ledger is off by {100 * found.residual:.2g} % of the energy that went round"
+        )
+    result.warnings += dem_model.unconverged(found.effort) + chaos["violated"]
+    if numbers["still_moving"]:
+        result.warnings.append("it still moves at the end of the run: a longer end_time may show another outcome")
+    if trial.idle:
+        result.warnings.append("nothing moves it: add [motion], [[initial.movements]] or [initial] rotation_ratio")
+    if result.status == "ok":
+        _further(context, options, trial, result, numbers)
+    result.results = out.DemRun(**numbers)
+    result.files |= dem_files.files(model, found, options)
+    result.answer = motion_answer(result.results, trial.idle)
+    return result
+
+
+def _numbers(options: Dem, trial: Trial, seen: Seen, ground: np.ndarray) -> dict[str, Any]:
+    """The results of the run itself; ground: its acceleration (time) [m/s^2]."""
+    model, found, names = seen.model, seen.run, seen.model.assembly.block_names
+    peak = np.abs(seen.rotation).argmax(axis=0)
+    mobile = slice(0, model.rigid.count)
+    fate = seen.fate(trial.collapse)
+    return {
+        "outcome": fate.outcome,
+        "collapse_criterion": fate.criterion,
+        "collapse_time_s": fate.time,
+        "governing_block": model.rigid.names[fate.block],
+        "stopped": found.reason,
+        "stopped_by": [model.rigid.names[k] for k in found.blamed],
+        "stop_time_s": found.stop_time,
+        "still_moving": found.reason == "end" and measures.moving(found, model),
+        "peak_rotation_rad": {
+            names[i]: float(seen.rotation[peak[i], i]) for i in measures.tracked(model, options, found)
+        },
+        "collapse_displacement_m": trial.collapse.displacement,
+        "peak_displacement_m": measures.peak_displacement(found, seen.farthest, trial.collapse.displacement),
+        "peak_slip_m": seen.sliding.peak,
+        "residual_slip_m": seen.sliding.residual,
+        "slip_ratio": seen.sliding.ratio,
+        "slip_limit_ratio": out.SLIP_LIMIT,
+        "slipped_joint": model.assembly.joint_names[seen.sliding.joint] if seen.slides else None,
+        "off_footing": [names[i] for i in seen.off_footing],
+        "peak_kinetic_energy_J": float(found.energy["kinetic"].max(initial=0.0)),
+        "friction_loss_J": float(found.energy["friction"][-1]) if len(found.time) else 0.0,
+        "damping_loss_J": float(found.energy["damping"][-1]) if len(found.time) else 0.0,
+        "energy_residual_ratio": found.residual,
+        "restitution_measured": measures.restitution(found, seen.state, ground) if model.rigid.count == 1 else None,
+        "restitution_housner": float(BlockModel(model.assembly).housner[0])
+        if isinstance(model.assembly, BlockAssembly)
+        else None,
+        "bounces": int(found.bounces[mobile].sum()),
+        "airborne_time_s": float(found.airborne[mobile].max(initial=0.0)),
+        "solver": options.solver,
+        "convergence": measures.convergence(found.effort) if options.rigid else None,
+        **measures.springs(options, model.values, found),
+        "steps": found.steps,
+        "settling_steps": found.settling_steps,
+        "time_step_s": found.step,
+        "contact_searches": found.searches,
+    }
+
+
+def _store(options: Dem, seen: Seen, ground: np.ndarray, result: Result) -> None:
+    """Arrays and tables of the run into `result`."""
+    model, found, names = seen.model, seen.run, seen.model.assembly.block_names
+    tracked = measures.tracked(model, options, found)
+    result.tables["dem"] = TableData(
+        {
+            "time": found.time,
+            **{f"rotation of {names[i]}": seen.rotation[:, i] for i in tracked},
+            **{f"{name}_energy": values for name, values in found.energy.items() if name != "leapfrog"},
+        },
+        {
+            "time": "s",
+            **{f"rotation of {names[i]}": "rad" for i in tracked},
+            **{f"{name}_energy": "J" for name in found.energy if name != "leapfrog"},
+        },
+    )
+    result.tables["dem_hinges"] = measures.hinge_table(model, found.time, seen.state)
+    result.arrays = {
+        **geometry_arrays(model.assembly),
+        "time": Array(found.time, ("time",), "s", "output times"),
+        "place": Array(
+            measures.block_places(model, found.place),
+            ("time", "block", "component"),
+            "m, m, rad",
+            "centroid and rotation of the blocks",
+        ),
+        "rate": Array(measures.block_rates(model, found), ("time", "block", "component"), "m/s, m/s, rad/s"),
+        "rotation": Array(seen.rotation, ("time", "block"), "rad", "from the settled state, positive to +x"),
+        "tracked": Array(np.array(tracked), ("tracked",), "", "blocks whose rotation is reported"),
+        "hinge": Array(
+            seen.state, ("time", "joint"), "", "0 closed, -1 hinged at the first end, 1 at the second, 2 open"
+        ),
+        "opening_p": Array(seen.gap_p, ("time", "joint"), "m", "gap at the first ends of the joints"),
+        "opening_q": Array(seen.gap_q, ("time", "joint"), "m", "gap at the second ends"),
+        "slip": Array(seen.slip, ("time", "joint"), "m", "slip at the closed ends"),
+        **{
+            f"{name}_energy": Array(values, ("time",), "J")
+            for name, values in found.energy.items()
+            if name != "leapfrog"
+        },
+        "ground": Array(ground, ("time",), "m/s^2"),
+        "snapshot_time": Array(measures.snapshot_times(options, found), ("snapshot",), "s"),
+        **measures.support_arrays(model),
+    }
+
+
+def _further(context: Context, options: Dem, trial: Trial, result: Result, numbers: dict[str, Any]) -> None:
+    """Variations and the search for the friction, into `numbers`; what stops them leaves the run itself as it is."""
+    try:
+        numbers |= vary(context, options, trial, result)
+        if options.find_friction:
+            numbers["friction_threshold"] = friction_threshold(context, trial, options.slip)
+    except Unfinished as error:
+        result.status = "interrupted" if error.interrupted else "failed"
+        result.reason = f"in the variations or the friction search: {error}; the run before them is complete"
+    except Refused as error:
+        numbers["friction_threshold"] = None
+        result.warnings.append(f"the least friction was not found: {error}")

@@ -1,0 +1,1 @@
+"""Blocks in space of a building, and what they stand on."""
