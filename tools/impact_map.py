@@ -15,10 +15,10 @@ sys.path.insert(0, str(ROOT / "tests" / "verification"))
 
 from test_impact_map import ARCHES, measured  # noqa: E402
 
-from extrados.building.errors import NoView  # noqa: E402
-from extrados.building.rockers.arch import ArchModel  # noqa: E402
-from extrados.building.templates.arch import make_arch  # noqa: E402
-from extrados.plots import style  # noqa: E402
+from extrados.model.errors import NoView  # noqa: E402
+from extrados.model.structures.arch import make_arch  # noqa: E402
+from extrados.show import style  # noqa: E402
+from extrados.views.rockers.arch import ArchModel  # noqa: E402
 
 FOLDER = ROOT / "results" / "impact-map"
 #: Axes of the maps

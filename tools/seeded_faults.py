@@ -113,18 +113,18 @@ OUTCOMES = {
 }  # fmt: skip
 #: Where strategies join: what makes views of a building, hands them to the core, and makes verdicts of what comes back
 JOINS = (
-    "analyses/conclude.py", "analyses/run.py", "analyses/left_out.py", "analyses/motion_source.py", "analyses/assess/asking.py",
+    "analyses/conclude.py", "analyses/sequence.py", "analyses/left_out.py", "analyses/motion_source.py", "analyses/assess/asking.py",
     "analyses/assess/words.py", "analyses/assess/reasons.py", "analyses/codes/kinematics.py", "analyses/codes/local_mechanism.py",
     "analyses/codes/mechanisms.py", "analyses/codes/ntc.py", "analyses/codes/walls.py", "analyses/dem/measures.py",
-    "analyses/dem/model.py", "analyses/dem/motion.py", "analyses/dem/runs.py", "analyses/dem/solid_model.py", "analyses/dem/standing.py", "analyses/dem/tilt.py",
+    "analyses/dem/model.py", "analyses/dem/history.py", "analyses/dem/job.py", "analyses/dem/solid_model.py", "analyses/dem/standing.py", "analyses/dem/tilt.py",
     "analyses/limit/applied.py", "analyses/limit/asked.py", "analyses/limit/common.py", "analyses/limit/moving_load.py", "analyses/limit/solids.py",
     "analyses/limit/supports.py", "analyses/limit/thrust.py", "analyses/limit/tilt.py", "analyses/rocking/block.py", "analyses/rocking/driver.py",
     "analyses/rocking/failure_domain.py", "analyses/rocking/mechanism.py", "analyses/rocking/stack.py", "analyses/statistics/fragility.py", "analyses/statistics/levels.py",
-    "analyses/statistics/summaries.py", "building/building.py", "building/properties.py", "building/ties.py", "building/geometry/assembly.py", "building/geometry/chains.py",
-    "building/geometry/compas.py", "building/geometry/contacts.py", "building/geometry/polygons.py", "building/geometry/rigid.py",
-    "building/geometry/solids/assembly.py", "building/geometry/solids/contacts.py", "building/geometry/solids/sections.py", "building/rockers/arch.py",
-    "building/rockers/block.py", "building/rockers/frame.py", "building/rockers/mechanism.py", "building/rockers/rocker.py", "building/rockers/stack.py",
-    "building/templates/arch.py", "building/templates/block.py", "building/templates/brickwork.py", "building/templates/masonry.py", "building/templates/stack.py",
+    "analyses/statistics/summaries.py", "views/building.py", "model/properties.py", "model/ties.py", "model/geometry/assembly.py", "model/geometry/chains.py",
+    "model/geometry/compas.py", "model/geometry/contacts.py", "model/geometry/polygons.py", "views/rigid.py",
+    "model/geometry/solids/assembly.py", "model/geometry/solids/contacts.py", "model/geometry/solids/sections.py", "views/rockers/arch.py",
+    "views/rockers/block.py", "views/rockers/frame.py", "views/rockers/mechanism.py", "views/rockers/rocker.py", "views/rockers/stack.py",
+    "model/structures/arch.py", "model/structures/block.py", "model/structures/brickwork.py", "model/structures/masonry.py", "model/structures/stack.py",
     "results/verdict.py", "results/codes.py", "results/dem.py", "results/rocking.py", "results/statistics.py", "running/survey.py",
 )  # fmt: skip
 #: Kernels at the joins, and the modules of the core that hand them their numbers

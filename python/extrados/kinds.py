@@ -5,47 +5,134 @@ Only names stand here: a command loads no more than the kinds that its deck asks
 
 import importlib
 from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
 from extrados import room  # which also looks at the room for SciPy before it is loaded
 
 
 @dataclass(frozen=True)
-class AnalysisKind:
-    """Where the parts of an analysis live, each "module:name" within the package.
+class Lacks:
+    """Why a kind of structure has no such view, in words."""
 
-    table: its deck table. driver: run(context, options) -> Result. results: the typed model of what it gives, or a
-    union of models. figures: draws a stored analysis, (run, name, folder) -> [(figure, caption)]. example: a deck with
-    known answers, below cases/.
+    reason: str
+
+
+#: Where the maker of a view lives, "module:name" within the package; or why there is none
+View = str | Lacks
+
+
+@dataclass(frozen=True)
+class StructureKind:
+    """Where the parts of a structure live, each "module:name" within the package.
+
+    table: its deck table. The makers of its views take the building: blocks, piers and solids give its stones; rigid
+    (building, groups, floor) rigid bodies; rocker (building, linear) the mechanism by which it rocks; mesh (building, options,
+    seed) finite elements; shell (building, options) flat shells. hands: what hands take hold of on the drawing of the
+    page; None where no key is for them.
     """
 
     table: str
+    blocks: View
+    piers: View
+    solids: View
+    rigid: View
+    rocker: View
+    mesh: View
+    shell: View
+    hands: str | None
+
+    @property
+    def lacks(self) -> dict[str, str]:
+        """The views that analyses may look at and this kind has not, each with the reason."""
+        views = {"blocks": self.blocks, "solids": self.solids, "rocker": self.rocker, "mesh": self.mesh}
+        return {name: view.reason for name, view in views.items() if isinstance(view, Lacks)}
+
+
+@dataclass(frozen=True)
+class AnalysisKind:
+    """Where the parts of an analysis live, each "module:name" within the package.
+
+    table: its deck table. needs: (context, options) -> steps that refuse what it cannot begin with. driver:
+    run(context, options) -> Result. results: the typed model of what it gives, or a union of models. validity: what it
+    assumes, and its limits. figures: draws a stored analysis, (run, name, folder) -> [(figure, caption)]. page: its charts on the
+    page, of explore.stored.Shown. example: a deck with known answers, below cases/. strategies: those of `assess` that ask it.
+    """
+
+    table: str
+    needs: str
     driver: str
     results: str
+    validity: str
     figures: str
+    page: str
     example: str
+    strategies: tuple[str, ...]
 
 
-STRUCTURES: dict[str, str] = {
-    "arch": "building.templates.arch:Arch",
-    "block": "building.templates.block:Block",
-    "vault": "building.templates.vault:Vault",
-    "aisled-vault": "building.templates.aisled_vault:AisledVault",
-    "pointed-arch": "building.templates.arches:PointedArch",
-    "elliptical-arch": "building.templates.arches:EllipticalArch",
-    "bridge": "building.templates.bridge:Bridge",
-    "blocks": "building.templates.blocks:Blocks",
-    "panel": "building.templates.walls:Panel",
-    "mesh": "building.templates.walls:MeshFile",
-    "column": "building.templates.masonry:Column",
-    "brickwork": "building.templates.brickwork:Brickwork",
-    "frame": "building.templates.frame:Frame",
-    "stack": "building.templates.stack:Stack",
-    "building": "building.templates.plan:Plan",
-    "wall": "building.templates.wall:Wall",
-    "dome": "building.templates.dome:Dome",
-    "cross-vault": "building.templates.cross_vault:CrossVault",
-}
+#: Makers that several kinds share, and reasons
+BLOCKS, PIERS, RIGID = "views.blocks:make_blocks", "views.blocks:make_piers", "views.rigid:make_rigid"
+ROCKER = "views.rockers.rocker:make_rocker"
+SECTION, SPATIAL = "views.solids:solids_of_section", "views.solids:solids_of_spatial"
+MESH_OF_STONES, RODS = "views.mesh.stones:make_stones", "views.mesh.rods:add_rods"
+NO_SECTION = Lacks("it is no plane section; `tilt` and `dem` look at its solids")
+NO_STONES = Lacks("a mesh file holds elements, no stones: describe the wall as `panel` or `blocks`")
+NO_PIERS = Lacks("only a wall, of the kinds panel and brickwork, has piers")
+NO_SHELL = Lacks("this kind of structure has no shells; `extrados explain pushover` lists those that have")
+
+
+def _stones(
+    table: str, *, piers: View = NO_PIERS, solids: View = SECTION, mesh: View = MESH_OF_STONES, shell: View = NO_SHELL,
+    hands: str | None = None,
+) -> StructureKind:  # fmt: skip
+    """A plane structure of blocks and joints."""
+    return StructureKind(
+        f"model.structures.{table}", BLOCKS, piers, solids, RIGID, ROCKER, mesh, shell,
+        None if hands is None else f"explore.handles:{hands}",
+    )  # fmt: skip
+
+
+def _solids(table: str, shell: View = NO_SHELL) -> StructureKind:
+    """Blocks in space, no plane section."""
+    return StructureKind(
+        f"model.structures.{table}", NO_SECTION, NO_PIERS, SPATIAL, NO_SECTION, NO_SECTION, NO_SECTION, shell, None
+    )
+
+
+STRUCTURES: dict[str, StructureKind] = {
+    "arch": _stones(
+        "arch:Arch", solids="views.solids:solids_of_arch", shell="views.shell.vaults:shell_of_arch", hands="ARCH"
+    ),
+    "block": _stones("block:Block", hands="BLOCK"),
+    "vault": _stones("vault:Vault", shell="views.shell.vaults:shell_of_vault", hands="VAULT"),
+    "aisled-vault": _stones("aisled_vault:AisledVault", hands="AISLED_VAULT"),
+    "pointed-arch": _stones("arches:PointedArch", hands="POINTED"),
+    "elliptical-arch": _stones("arches:EllipticalArch", hands="ELLIPTICAL"),
+    "bridge": _stones("bridge:Bridge", hands="BRIDGE"),
+    "blocks": _stones("blocks:Blocks", solids="views.solids:solids_of_blocks", hands="BLOCKS"),
+    "panel": _stones("walls:Panel", piers=PIERS, mesh="views.mesh.panel:mesh_panel", hands="PANEL"),
+    "mesh": StructureKind(
+        "model.structures.walls:MeshFile", NO_STONES, NO_PIERS, SECTION, RIGID, NO_STONES, "views.mesh.file:mesh_file",
+        "views.shell.file:shell_of_file", None,
+    ),
+    "column": _stones("masonry:Column", solids="views.solids:solids_of_column", hands="COLUMN"),
+    "brickwork": _stones("brickwork:Brickwork", piers=PIERS, hands="BRICKWORK"),
+    "frame": _stones("frame:Frame", hands="FRAME"),
+    "stack": _stones("stack:Stack", hands="STACK"),
+    "building": StructureKind(
+        "model.structures.plan:Plan",
+        Lacks("a building on a plan has walls, no stones in a plane: draw one of its walls as `panel` or `blocks`; the whole is for "
+              "`pushover`, with [analysis.frame] for its piers by codes, its walls out of plane for `local-mechanism`"),
+        NO_PIERS, SECTION, RIGID,
+        Lacks("a building on a plan does not rock as one body: draw one of its walls"),
+        Lacks("the walls of a building stand in space: its analysis is `pushover`; draw one of them as `panel`"),
+        "views.shell.plan:shell_of_plan", None,
+    ),
+    "wall": _solids("wall:Wall"),
+    "dome": _solids("dome:Dome", shell="views.shell.vaults:shell_of_dome"),
+    "chimney": _solids("chimney:Chimney", shell="views.shell.chimney:shell_of_chimney"),
+    "cross-vault": _solids("cross_vault:CrossVault", shell="views.shell.vaults:shell_of_cross_vault"),
+}  # fmt: skip
 MOTIONS: dict[str, str] = {
     "constant": "motions.tables:Constant",
     "step-pulse": "motions.tables:StepPulse",
@@ -60,61 +147,49 @@ MOTIONS: dict[str, str] = {
 }
 
 
-def _analysis(place: str, table: str, driver: str, figures: str, example: str) -> AnalysisKind:
-    """The results of a kind are called as its table is."""
+def _analysis(
+    package: str, table: str, driver: str, figures: str, page: str, example: str, strategies: tuple[str, ...] = (),
+    results: str | None = None,
+) -> AnalysisKind:  # fmt: skip
+    """The results of a kind are called as its table is and so is its validity."""
     return AnalysisKind(
-        f"analyses.{place}.tables:{table}", f"analyses.{place}.{driver}:run", f"results.{place}:{table}", f"plots.{figures}",
-        f"{example}.toml",
+        f"analyses.{package}.tables:{table}", f"analyses.{package}.needs:needs", f"analyses.{package}.{driver}:run",
+        f"results.{results or f'{package}:{table}'}", f"results.validity:{table}", f"show.{figures}", f"explore.stored:Shown.{page}",
+        f"{example}.toml", strategies,
     )  # fmt: skip
 
 
 ANALYSES: dict[str, AnalysisKind] = {
-    "tilt": AnalysisKind(
-        "analyses.limit.tables:Tilt", "analyses.limit.tilt:run", "results.solids:Tilt", "plots.solids:draw_tilt", "limit/oppenheim.toml"
-    ),
-    "thrust": _analysis("limit", "Thrust", "thrust", "limit.thrust:draw", "vault/dejong-a"),
-    "sweep": _analysis("limit", "Sweep", "sweep", "limit.sweep:draw_sweep", "vault/vezelay-sweep"),
-    "survey": _analysis("limit", "Survey", "survey", "limit.sweep:draw_survey", "limit/survey"),
-    "imperfections": _analysis(
-        "limit", "Imperfections", "imperfections", "limit.sweep:draw_imperfections", "limit/church"
-    ),
-    "supports": _analysis("limit", "MovingSupports", "supports", "limit.supports:draw", "limit/oppenheim"),
-    "moving-load": _analysis("limit", "MovingLoad", "moving_load", "limit.moving_load:draw", "limit/oppenheim"),
-    "rocking": _analysis("rocking", "Rocking", "driver", "arch:draw_rocking", "arch/oppenheim"),
-    "failure-domain": _analysis(
-        "rocking", "FailureDomain", "failure_domain", "arch:draw_failure_domain", "arch/oppenheim-domain"
-    ),
-    "failure-curves": _analysis(
-        "rocking", "FailureCurves", "failure_curves", "curves:draw_failure_curves", "arch/figure-5-4"
-    ),
-    "assessment": _analysis("rocking", "Assessment", "assessment", "arch:draw_assessment", "arch/readme"),
-    "fragility": _analysis(
-        "statistics", "Fragility", "fragility", "statistics:draw_fragility", "fragility/pga-curve"
-    ),
-    "resonance": _analysis("statistics", "Resonance", "resonance", "statistics:draw_resonance", "rocking/resonance"),
-    "rocking-spectrum": _analysis(
-        "statistics", "RockingSpectrum", "rocking_spectrum", "statistics:draw_rocking_spectrum", "rocking/el-centro-block"
-    ),
-    "harmonic-map": _analysis(
-        "statistics", "HarmonicMap", "harmonic_map", "statistics:draw_harmonic_map", "rocking/el-centro-block"
-    ),
-    "code-checks": _analysis("codes", "CodeChecks", "code_checks", "statistics:draw_code_checks", "rocking/el-centro-block"),
-    "local-mechanism": _analysis(
-        "codes", "LocalMechanism", "local_mechanism", "codes:draw_local_mechanism", "codes/facade"
-    ),
-    "motion": _analysis("motion", "MotionStudy", "motion_study", "motion:draw_motion", "motion/el-centro"),
-    "shake-table": _analysis("motion", "ShakeTable", "shake_table", "motion:draw_shake_table", "motion/appendix-c"),
-    "sla": _analysis("sla", "Sla", "driver", "sla:draw_sla", "sla/beam"),
-    "pushover": _analysis("shell", "Pushover", "pushover", "shell:draw_pushover", "building/two-rooms"),
-    "dem": _analysis("dem", "Dem", "driver", "dem:draw_dem", "dem/oppenheim"),
-    "dem-domain": _analysis("dem", "DemDomain", "dem_domain", "dem:draw_domain", "dem/domain"),
-    "assess": _analysis("assess", "Assess", "driver", "assess:draw_assess", "assess/readme-arch"),
-    "dem-parameters": _analysis("dem", "DemParameters", "dem_parameters", "dem:draw_parameters", "dem/rocking-block"),
+    "tilt": _analysis("limit", "Tilt", "tilt", "solids:draw_tilt", "tilt", "limit/oppenheim", ("tilt",), results="solids:Tilt"),
+    "thrust": _analysis("limit", "Thrust", "thrust", "limit.thrust:draw", "thrust", "vault/dejong-a"),
+    "sweep": _analysis("limit", "Sweep", "sweep", "limit.sweep:draw_sweep", "sweep", "vault/vezelay-sweep"),
+    "survey": _analysis("limit", "Survey", "survey", "limit.sweep:draw_survey", "survey", "limit/survey"),
+    "imperfections": _analysis("limit", "Imperfections", "imperfections", "limit.sweep:draw_imperfections", "others", "limit/church"),
+    "supports": _analysis("limit", "MovingSupports", "supports", "limit.supports:draw", "supports", "limit/oppenheim"),
+    "moving-load": _analysis("limit", "MovingLoad", "moving_load", "limit.moving_load:draw", "moving_load", "limit/oppenheim"),
+    "rocking": _analysis("rocking", "Rocking", "driver", "arch:draw_rocking", "rocking", "arch/oppenheim", ("rocking",)),
+    "failure-domain": _analysis("rocking", "FailureDomain", "failure_domain", "arch:draw_failure_domain", "failure_domain", "arch/oppenheim-domain"),
+    "failure-curves": _analysis("rocking", "FailureCurves", "failure_curves", "curves:draw_failure_curves", "failure_curves", "arch/figure-5-4"),
+    "assessment": _analysis("rocking", "Assessment", "assessment", "arch:draw_assessment", "assessment", "arch/readme", ("assessment",)),
+    "fragility": _analysis("statistics", "Fragility", "fragility", "statistics:draw_fragility", "fragility", "fragility/pga-curve", ("probability",)),
+    "resonance": _analysis("statistics", "Resonance", "resonance", "statistics:draw_resonance", "others", "rocking/resonance"),
+    "rocking-spectrum": _analysis("statistics", "RockingSpectrum", "rocking_spectrum", "statistics:draw_rocking_spectrum", "others", "rocking/el-centro-block"),
+    "harmonic-map": _analysis("statistics", "HarmonicMap", "harmonic_map", "statistics:draw_harmonic_map", "others", "rocking/el-centro-block"),
+    "code-checks": _analysis("codes", "CodeChecks", "code_checks", "statistics:draw_code_checks", "others", "rocking/el-centro-block", ("code-checks",)),
+    "local-mechanism": _analysis("codes", "LocalMechanism", "local_mechanism", "codes:draw_local_mechanism", "local_mechanism", "codes/facade", results="codes:LocalMechanisms"),
+    "motion": _analysis("motion", "MotionStudy", "motion_study", "motion:draw_motion", "others", "motion/el-centro"),
+    "shake-table": _analysis("motion", "ShakeTable", "shake_table", "motion:draw_shake_table", "others", "motion/appendix-c"),
+    "sla": _analysis("sla", "Sla", "driver", "sla:draw_sla", "sla", "sla/beam", ("sla",)),
+    "pushover": _analysis("shell", "Pushover", "pushover", "shell:draw_pushover", "pushover", "building/two-rooms", ("push-x", "push-y")),
+    "dem": _analysis("dem", "Dem", "driver", "dem:draw_dem", "dem", "dem/oppenheim", ("dem",)),
+    "dem-domain": _analysis("dem", "DemDomain", "dem_domain", "dem:draw_domain", "dem_domain", "dem/domain"),
+    "assess": _analysis("assess", "Assess", "driver", "assess:draw_assess", "others", "assess/readme-arch"),
+    "dem-parameters": _analysis("dem", "DemParameters", "dem_parameters", "dem:draw_parameters", "others", "dem/rocking-block"),
 }  # fmt: skip
 
 #: Section of a deck -> its kinds, each with the place of its table
 TABLES: dict[str, dict[str, str]] = {
-    "structure": STRUCTURES,
+    "structure": {kind: parts.table for kind, parts in STRUCTURES.items()},
     "motion": MOTIONS,
     "analysis": {kind: parts.table for kind, parts in ANALYSES.items()},
 }
@@ -124,7 +199,7 @@ def load(place: str) -> Any:
     """What stands at "module:name" within the package; MemoryError where there is no room to load it."""
     module, name = place.split(":")
     try:
-        return getattr(importlib.import_module(f"extrados.{module}"), name)
+        return attrgetter(name)(importlib.import_module(f"extrados.{module}"))
     except Exception as error:
         if room.lacked(error):
             raise MemoryError(f"not enough memory: {type(error).__name__}: {error}") from error

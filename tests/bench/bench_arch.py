@@ -8,14 +8,14 @@ import numpy as np
 from timing import processor, seconds
 
 from extrados.analyses.rocking.failure_domain import Mapper, failure_curves, settling_time, unit_pulse
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.block import BlockModel
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.block import make_block
 from extrados.core import rocking
 from extrados.limit.programme import LimitAnalysis
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.block import make_block
 from extrados.motions.records import locate, read_record, record_motion
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.arch import ArchModel
+from extrados.views.rockers.block import BlockModel
 
 
 def four_bar(model: ArchModel):

@@ -18,13 +18,13 @@ import dem_peers
 import numpy as np
 from peers import has
 
-from extrados.building.geometry.assembly import Assembly
-from extrados.building.geometry.rigid import rigid_bodies
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.brickwork import Bond, make_brickwork
-from extrados.building.templates.masonry import make_column
 from extrados.core import dem
 from extrados.core.ground import Ground
+from extrados.model.geometry.assembly import Assembly
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.brickwork import Bond, make_brickwork
+from extrados.model.structures.masonry import make_column
+from extrados.views.rigid import rigid_bodies
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "unit"))
 from dem_models import G, cosine, housner, pieces

@@ -23,19 +23,19 @@ import numpy as np
 import solid_peers
 from peers import has
 
-from extrados.analyses.dem.runs import SOLIDS_FOR_THREADS
-from extrados.building.geometry.solids.assembly import SolidAssembly
-from extrados.building.geometry.solids.columns import drums
-from extrados.building.geometry.solids.sections import drawn_out
-from extrados.building.geometry.solids.supports import supports_of
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.brickwork import Bond
-from extrados.building.templates.dome import make_dome
-from extrados.building.templates.wall import make_wall
+from extrados.analyses.dem.job import SOLIDS_FOR_THREADS
 from extrados.core import dem3
 from extrados.core.dem_run import STILL
 from extrados.core.ground import Ground, as_motion_set
+from extrados.model.geometry.solids.assembly import SolidAssembly
+from extrados.model.geometry.solids.columns import drums
+from extrados.model.geometry.solids.sections import drawn_out
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.brickwork import Bond
+from extrados.model.structures.dome import make_dome
+from extrados.model.structures.wall import make_wall
 from extrados.schema.constants import GRAVITY
+from extrados.views.solid_supports import supports_of
 
 FRICTION = 0.7
 

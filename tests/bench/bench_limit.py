@@ -10,17 +10,17 @@ from scipy.optimize import linprog
 from timing import processor, seconds
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.templates.aisled_vault import Aisle, make_church
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.blocks import Polygon, make_blocks
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
 from extrados.limit.answer import assess
 from extrados.limit.equilibrium import spanning_tree
 from extrados.limit.loads import tilt_loads
 from extrados.limit.programme import LimitAnalysis
 from extrados.limit.systems import Sparse
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.structures.aisled_vault import Aisle, make_church
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.blocks import Polygon, make_blocks
 
 
 def church() -> Assembly:

@@ -16,11 +16,11 @@ import numpy as np
 from peers import has
 from scipy.integrate import solve_ivp
 
-from extrados.building.rockers.block import BlockModel
-from extrados.building.templates.block import make_block
 from extrados.core import rocking
 from extrados.core.rocking import BodyList, Ground, MotionSet
+from extrados.model.structures.block import make_block
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.block import BlockModel
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
 from rocking_oracle import reference

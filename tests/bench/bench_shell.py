@@ -10,9 +10,9 @@ import time
 import numpy as np
 from bench_sla import Wall
 
-from extrados.building.mesh.shells import nodal_areas, spread
 from extrados.core import sla as core
 from extrados.core.shell import node_frames
+from extrados.views.shell.mesh import nodal_areas, spread
 
 #: Elements a side of the plane wall and of the shell, of about as many equations; events
 SIZES = ((100, 64, 600), (224, 148, 600))

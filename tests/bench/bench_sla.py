@@ -14,11 +14,11 @@ import numpy as np
 
 from extrados.analyses.context import Context
 from extrados.analyses.sla.model import build
-from extrados.building.building import Building
-from extrados.building.mesh.options import MeshOptions
-from extrados.building.templates.walls import Panel
 from extrados.core.sla import EVENT, Freedoms, Model, Monitor, Plane, Softening, body_force
 from extrados.decks.reader import make_deck
+from extrados.model.structures.walls import Panel
+from extrados.views.building import Building
+from extrados.views.mesh.options import MeshOptions
 
 WHOLE = {
     "structure": {

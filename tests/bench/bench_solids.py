@@ -7,11 +7,11 @@ import time
 
 from timing import processor
 
-from extrados.building.geometry.solids.assembly import SolidAssembly
-from extrados.building.templates.brickwork import Bond
-from extrados.building.templates.dome import make_dome
-from extrados.building.templates.wall import make_wall
 from extrados.limit.solids import Falls, SolidLimit
+from extrados.model.geometry.solids.assembly import SolidAssembly
+from extrados.model.structures.brickwork import Bond
+from extrados.model.structures.dome import make_dome
+from extrados.model.structures.wall import make_wall
 
 FEW = 160  # stones: pyramids of more take minutes
 SIDES = 8

@@ -14,7 +14,7 @@ from timing import seconds
 import extrados
 from extrados.analyses.limit.common import answer_of
 from extrados.decks.reader import make_deck
-from extrados.limit.motion import finite_motion
+from extrados.limit.finite_motion import finite_motion
 
 ROOT = Path(__file__).resolve().parents[2]
 README = ROOT / "cases" / "arch" / "readme.toml"
@@ -53,7 +53,7 @@ mark("analyses")
 with tempfile.TemporaryDirectory() as folder:
     run.write(Path(folder) / "run", figures=False)
     mark("writing")
-    from extrados.plots.report import write_report
+    from extrados.show.report import write_report
     for options in deck.analyses:
         kinds.load(kinds.ANALYSES[options.kind].figures)
     mark("imports of the figures")

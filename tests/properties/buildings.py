@@ -189,6 +189,18 @@ def groins(draw: st.DrawFn) -> Deck:
     }  # fmt: skip
 
 
+@st.composite
+def chimneys(draw: st.DrawFn) -> Deck:
+    """Tapered chimneys of rings that are whole, or of blocks."""
+    width = draw(number(1.0, 3.0))
+    blocks = draw(st.sampled_from([1, 1, 4]))
+    return {
+        "kind": "chimney", "width": width, "height": float(f"{width * draw(number(3.0, 6.0)):.4g}"),
+        "thickness": float(f"{width * draw(number(0.15, 0.3)):.4g}"), "rings": draw(st.integers(2, 4)), "blocks": blocks,
+        "top_width": float(f"{width * draw(st.sampled_from([1.0, 0.8])):.4g}"), "facets": 8,
+    }  # fmt: skip
+
+
 #: Two elements of a wall as an Abaqus file, written beside decks of kind `mesh`
 MESH = """*NODE
 1, 0, 0
@@ -234,6 +246,7 @@ KINDS: dict[str, Callable[[], Strategy]] = {
     "building": houses,
     "wall": legs,
     "dome": domes,
+    "chimney": chimneys,
     "cross-vault": groins,
 }  # fmt: skip
 #: Those with a plane section of stones, those whose stones have none, those that are one rocking body or a mechanism
@@ -241,7 +254,7 @@ SECTIONS = (
     "block", "column", "brickwork", "stack", "blocks", "arch", "frame", "panel", "pointed-arch", "elliptical-arch", "bridge", "vault",
     "aisled-vault",
 )  # fmt: skip
-SOLIDS = ("wall", "dome", "cross-vault")
+SOLIDS = ("wall", "dome", "chimney", "cross-vault")
 ROCKING = ("block", "column", "arch", "frame", "brickwork", "pointed-arch", "elliptical-arch", "vault")
 SMALL = ("block", "column", "brickwork", "stack", "blocks")
 

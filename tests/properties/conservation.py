@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from relations import EARTHQUAKES, GRAVITY, RECTANGLES, WEAK_SET, ok, recorded, relation
 
 from extrados import kinds
-from extrados.building.building import Building
 from extrados.decks.reader import make_deck
+from extrados.views.building import Building
 
 
 def building(deck: Deck) -> Building:

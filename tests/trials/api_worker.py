@@ -19,9 +19,6 @@ from typing import Any
 import numpy as np
 
 from extrados import _core
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.mechanism import MechanismModel
-from extrados.building.templates.arch import make_arch
 from extrados.core import (
     arch,
     dem,
@@ -38,6 +35,9 @@ from extrados.core import (
     stack,
 )
 from extrados.core.ground import Ground, MotionSet
+from extrados.model.structures.arch import make_arch
+from extrados.views.rockers.arch import ArchModel
+from extrados.views.rockers.mechanism import MechanismModel
 
 BOX = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 dem_run.FIRST_PAUSE = 3  # steps

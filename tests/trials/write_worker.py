@@ -15,8 +15,6 @@ import tempfile
 import traceback
 from pathlib import Path
 
-import extrados.plots.report
-import extrados.running.run  # noqa: F401 (loaded once, not in each child)
 from extrados import cli
 from extrados.results import store
 

@@ -71,7 +71,7 @@ class Watch:
         self.found: dict[str, list[str]] = {}
 
     def __call__(self, fig: Figure, target: Path, name: str) -> str:
-        from extrados.plots import style
+        from extrados.show import style
 
         fig.get_layout_engine().execute(fig)
         fig.set_layout_engine("none")

@@ -8,8 +8,8 @@ import pytest
 from PIL import Image
 
 import extrados
-from extrados.plots import animation
 from extrados.schema.programs import ffmpeg
+from extrados.show import film as animation
 
 ARCH = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}
 STACK = {"kind": "stack", "lower_width": 1.0, "lower_height": 2.0, "upper_width": 0.6, "upper_height": 2.4}

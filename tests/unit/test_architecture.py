@@ -12,47 +12,42 @@ from extrados import _core
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "python" / "extrados"
 
-#: room -> rooms it may import; a room may always import itself. "" is the package's own top level.
-MAY_IMPORT = {
+#: Package -> packages it may import, in the order of the layers: each imports only what stands above it here, and itself.
+#: Deck tables of analyses are a layer of their own, which decks read. "" is the face of the package.
+LAYERS = {
     "schema": set(),
-    "kinds": {"room"},
     "interrupts": set(),
     "room": set(),
-    "_build_info": set(),  # made by the build; it lies among the sources where a tool builds apart
-    "core": {"_core", "interrupts", "schema"},
-    "geometry": {"errors", "schema"},
-    "errors": set(),
-    "limit": {"geometry", "errors", "core", "schema"},
-    "rockers": {"building", "geometry", "errors", "limit", "core", "schema"},
-    "building": {"geometry", "errors", "rockers", "schema"},
+    "kinds": {"room"},
+    "core": {"interrupts", "schema"},
+    "model": {"schema"},
     "motions": {"core", "schema"},
-    "tables": {"building", "schema"},
-    "decks": {"kinds", "tables", "building", "schema"},
-    "results": {"kinds", "schema", "_build_info"},
+    "limit": {"core", "model", "schema"},
+    "views": {"kinds", "core", "limit", "model", "schema"},
+    "tables": {"kinds", "model", "views", "schema"},
+    "decks": {"kinds", "tables", "model", "views", "schema"},
+    "results": {"kinds", "schema"},
     "analyses": {
-        "kinds", "tables", "decks", "building", "geometry", "errors", "rockers", "motions", "limit", "core", "results",
-        "schema", "interrupts", "room",
+        "kinds", "tables", "decks", "model", "views", "motions", "limit", "core", "results", "schema", "interrupts", "room",
     },
-    "plots": {"interrupts", "kinds", "results", "schema"},
-    "running": {"interrupts", "objects", "kinds", "analyses", "tables", "building", "geometry", "errors", "decks", "motions", "results", "plots", "schema", "_build_info"},
-    "explore": {
-        "interrupts", "kinds", "analyses", "tables", "building", "geometry", "errors", "limit", "decks", "motions", "core", "results", "plots",
-        "running", "schema", "_build_info",
-    },
+    "show": {"interrupts", "kinds", "results", "schema"},
     "objects": {"kinds", "decks", "schema"},
-    "bridges": {"decks", "building", "geometry", "errors", "rockers", "schema", "_build_info"},
-    "cli": {"bridges", "interrupts", "kinds", "analyses", "decks", "results", "plots", "running", "explore", "schema", "_build_info", "room"},
-    "__main__": {"cli", "interrupts"},
+    "bridges": {"decks", "model", "views", "schema"},
+    "running": {
+        "interrupts", "objects", "kinds", "analyses", "tables", "model", "views", "decks", "motions", "results", "show", "schema",
+    },
+    "explore": {
+        "interrupts", "kinds", "analyses", "tables", "model", "views", "limit", "decks", "motions", "core", "results", "show",
+        "running", "schema",
+    },
     "": {"analyses", "bridges", "decks", "objects", "results", "running", "explore"},
+    "cli": {"bridges", "interrupts", "kinds", "analyses", "decks", "results", "show", "running", "explore", "schema", "room"},
+    "__main__": {"cli", "interrupts"},
 }  # fmt: skip
-#: Rooms within rooms: the deck tables of analyses are what decks read; views of a building that rock need limit
-#: analysis, which knows blocks and joints alone
-WITHIN = (
-    (re.compile(r"building[./]geometry\b"), "geometry"),
-    (re.compile(r"building[./]errors\b"), "errors"),
-    (re.compile(r"building[./]rockers\b"), "rockers"),
-    (re.compile(r"analyses[./](\w+[./])?tables?\b"), "tables"),
-)
+#: Made by the build, which knows no sources of ours
+BUILT = ("extrados._core", "extrados._build_info")
+#: Names of the standard library that begin with an underscore and are public
+STANDARD = {"_replace", "_asdict", "_fields", "_exit"}
 #: Fortran room -> rooms it may use
 MAY_USE = {
     "common": set(),
@@ -69,33 +64,108 @@ MAY_USE = {
 }
 
 
-def room(place: str) -> str:
-    """The room of a module, by its dotted name or its path below the package."""
-    inner = next((name for pattern, name in WITHIN if pattern.match(place)), None)
-    return inner or re.split(r"[./]", place)[0]
-
-
-def room_of(path: Path) -> str:
-    place = path.relative_to(PACKAGE).with_suffix("").as_posix()
-    return "" if place == "__init__" else room(place)
-
-
-def imports(path: Path) -> set[str]:
-    found = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("extrados"):
-            rest = node.module.removeprefix("extrados").removeprefix(".")
-            found |= {room(f"{rest}.{alias.name}" if rest else alias.name) for alias in node.names}
-        elif isinstance(node, ast.Import):
-            found |= {room(a.name.removeprefix("extrados.")) for a in node.names if a.name.startswith("extrados.")}
+def read_modules() -> dict[str, ast.Module]:
+    """Name -> syntax tree of every module of the package."""
+    found = {}
+    for path in sorted(PACKAGE.rglob("*.py")):
+        name = ".".join(("extrados", *path.relative_to(PACKAGE).with_suffix("").parts)).removesuffix(".__init__")
+        found[name] = ast.parse(path.read_text(encoding="utf-8"))
     return found
 
 
-@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda p: str(p.relative_to(PACKAGE)))
-def test_python_rooms(path: Path) -> None:
-    here = room_of(path)
-    assert here in MAY_IMPORT, f"{here} is a new room: add it to the plan"
-    assert imports(path) - {here} <= MAY_IMPORT[here]
+def imported_of(tree: ast.Module) -> set[str]:
+    """The modules of the package that a module imports anywhere: at its top, late in a function, or for its types alone."""
+    found = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.module and node.module.split(".")[0] == "extrados":
+            names = {f"{node.module}.{alias.name}" for alias in node.names}
+            found |= {name if name in MODULES else node.module for name in names if name not in BUILT}
+        elif isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names if alias.name.split(".")[0] == "extrados"}
+    return found & set(MODULES)
+
+
+MODULES = read_modules()
+GRAPH = {name: imported_of(tree) - {name} for name, tree in MODULES.items()}
+
+
+def layer_of(module: str) -> str:
+    """The package of a module; deck tables of analyses stand below it."""
+    inner = module.removeprefix("extrados").removeprefix(".")
+    return "tables" if re.fullmatch(r"analyses\.(\w+\.)?tables?", inner) else inner.split(".")[0]
+
+
+def circles_of(graph: dict[str, set[str]]) -> list[list[str]]:
+    """Strongly connected components of more than one module (Tarjan 1972)."""
+    number: dict[str, int] = {}
+    low: dict[str, int] = {}
+    stack: list[str] = []
+    found: list[list[str]] = []
+
+    def visit(one: str) -> None:
+        number[one] = low[one] = len(number)
+        stack.append(one)
+        for other in graph[one]:
+            if other not in number:
+                visit(other)
+                low[one] = min(low[one], low[other])
+            elif other in stack:
+                low[one] = min(low[one], number[other])
+        if low[one] == number[one]:
+            circle = [stack.pop()]
+            while circle[-1] != one:
+                circle.append(stack.pop())
+            if len(circle) > 1:
+                found.append(sorted(circle))
+
+    for one in graph:
+        if one not in number:
+            visit(one)
+    return found
+
+
+def test_circles_are_found() -> None:
+    graph = {"a": {"b"}, "b": {"c"}, "c": {"b", "d"}, "d": set(), "e": {"a", "f"}, "f": {"e"}}
+    assert circles_of(graph) == [["b", "c"], ["e", "f"]]
+
+
+def test_no_import_circle() -> None:
+    assert circles_of(GRAPH) == []
+
+
+def test_layers_stand_in_order() -> None:
+    names = list(LAYERS)
+    for place, (name, below) in enumerate(LAYERS.items()):
+        assert below <= set(names[:place]), name
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_a_module_imports_only_lower_layers(module: str) -> None:
+    here = layer_of(module)
+    assert here in LAYERS, f"{here} is a new package: give it a place among the layers"
+    assert {layer_of(other) for other in GRAPH[module]} - {here} <= LAYERS[here]
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_no_private_name_of_another_module(module: str) -> None:
+    tree, foreign = MODULES[module], []
+    own = {getattr(node, "name", "") for node in ast.walk(tree)}
+    own |= {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    own |= {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute) and of_itself(node)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "extrados":
+            foreign += [alias.name for alias in node.names if is_private(alias.name)]
+        elif isinstance(node, ast.Attribute) and is_private(node.attr) and not of_itself(node):
+            foreign += [node.attr] if node.attr not in own | STANDARD else []
+    assert not foreign
+
+
+def is_private(name: str) -> bool:
+    return name.startswith("_") and not name.startswith("__") and f"extrados.{name}" not in BUILT
+
+
+def of_itself(node: ast.Attribute) -> bool:
+    return isinstance(node.value, ast.Name) and node.value.id in ("self", "cls")
 
 
 @pytest.mark.parametrize(
@@ -158,7 +228,7 @@ def test_no_evaluation_of_code() -> None:
                 assert not names & {"pickle", "marshal", "shelve", "dill", "joblib"}, path
 
 
-@pytest.mark.parametrize("room", ["analyses", "building"])
+@pytest.mark.parametrize("room", ["analyses", "model", "views"])
 def test_a_refusal_says_which_key_is_to_blame(room: str) -> None:
     """Or, by WHOLE, that none is: so that it is told with file and line wherever that can be."""
     silent = []

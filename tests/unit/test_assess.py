@@ -14,17 +14,17 @@ from extrados.analyses.assess import driver, hazard, reasons, sensitivity, strat
 from extrados.analyses.assess.reasons import Facts
 from extrados.analyses.assess.words import conclusion, table_of
 from extrados.analyses.context import Context
-from extrados.building.building import Building
 from extrados.core.calls import within
 from extrados.decks.reader import make_deck
 from extrados.motions import pulses
 from extrados.motions.tables import Compatible, Record, SinePulse
-from extrados.plots import report, style
-from extrados.plots.building import draw_building
 from extrados.results.assess import StrategyVerdict
 from extrados.results.model import Result
 from extrados.running.run import Run, compute
 from extrados.schema.constants import GRAVITY
+from extrados.show import report, style
+from extrados.show.building import draw_building
+from extrados.views.building import Building
 
 COLUMN = {"kind": "column", "width": 1.2, "height": 6.0, "drums": 3}
 PULSE = {"kind": "sine-pulse", "amplitude": "0.3 g", "period": 0.6}
@@ -118,7 +118,7 @@ def test_the_clock_stops_what_takes_too_long(monkeypatch: pytest.MonkeyPatch) ->
     r = extrados.run(deck(assess={"strategies": ["tilt", "dem"], "options": {"dem": {"time_step": 1e-6}}}))["assess"]
     rows = {v.strategy: v for v in r.verdicts}
     assert rows["dem"].status == "left out" and "stopped" in rows["dem"].reason
-    assert any("stopped by the clock" in text for text in r.not_done)
+    assert any("stopped at the time limit" in text for text in r.not_done)
 
 
 def test_a_deadline_stops_the_core_and_leaves_no_flag() -> None:
@@ -369,6 +369,25 @@ def test_what_cannot_stand_is_the_answer_of_an_assessment(structure: dict) -> No
     assert (verdict["outcome"], verdict["ratio"]) == ("cannot-stand", 0.0)
     assert not [v for v in r.verdicts if v.outcome == "stands"], [v.statement for v in r.verdicts]
     assert not [v for v in r.verdicts if v.status == "failed"], [v.reason for v in r.verdicts]
+
+
+@pytest.mark.parametrize(
+    "held",
+    [
+        {"ties": [{"start": [0.9, 2.5], "ground": [-5.0, 2.5], "yield_force": 50e3, "stiffness": 1e7}]},
+        {"supports": {"abutting_wall": "right"}},
+    ],
+)
+def test_no_proof_of_collapse_leaves_out_what_holds_the_building(held: dict) -> None:
+    """A leaning block stands by its tie, 11.8 kN at rest, or by its wall: strategies asked without them prove nothing."""
+    lean = {"kind": "blocks", "block": [{"name": "lean", "points": [[0, 0], [0.5, 0], [1.4, 3], [0.9, 3]]}]}
+    run = extrados.run({"structure": lean, "motion": PULSE, "analysis": {"kind": "assess", "budget": 5}, **held})
+    r = run["assess"]
+    assert r.overall != "cannot stand" and "cannot stand" not in run.analyses[0]["answer"]
+    open_rows = [v for v in r.verdicts if v.outcome == "open"]
+    assert not [v.strategy for v in r.verdicts if v.outcome == "cannot-stand"] and open_rows
+    told = "the restraints of the deck" if "ties" in held else "the abutting wall"
+    assert all(told in v.statement and v.margin is None for v in open_rows if v.capacity == 0.0)
 
 
 def test_a_strategy_that_fails_leaves_the_others(monkeypatch: pytest.MonkeyPatch) -> None:

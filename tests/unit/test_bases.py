@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from extrados.analyses.rocking.block import pose, toe_forces
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry
-from extrados.building.templates.block import Block, make_block
 from extrados.core.ground import Ground
 from extrados.core.rocking import history
 from extrados.limit.programme import LimitAnalysis
+from extrados.model.errors import BadGeometry
+from extrados.model.structures.block import Block, make_block
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
 
 SLOPE = np.radians(3.0)
 ALPHA = np.arctan2(0.5, 2.0)

@@ -5,12 +5,12 @@ import pytest
 
 import extrados
 from extrados.analyses.rocking.block import pose, toe_forces
-from extrados.building.rockers.block import BlockModel
-from extrados.building.templates.block import make_block
 from extrados.core import rocking
 from extrados.core.rocking import Ground
 from extrados.decks.reader import DeckError, make_deck
+from extrados.model.structures.block import make_block
 from extrados.motions import pulses
+from extrados.views.rockers.block import BlockModel
 
 G = 9.80665
 

@@ -11,20 +11,20 @@ from scipy.optimize import linprog
 
 import extrados
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
-from extrados.building.errors import BadGeometry
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.drawing import Polygon
-from extrados.building.geometry.polygons import properties
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.blocks import make_blocks
-from extrados.building.templates.brickwork import Bond, make_brickwork
-from extrados.building.templates.piers import make_piers
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
 from extrados.limit import programme
 from extrados.limit.answer import assess
 from extrados.limit.graphic import thrust_of
 from extrados.limit.programme import LimitAnalysis, NoAnswer
+from extrados.model.errors import BadGeometry
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.drawing import Polygon
+from extrados.model.geometry.polygons import properties
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.blocks import make_blocks
+from extrados.model.structures.brickwork import Bond, make_brickwork
+from extrados.model.structures.piers import make_piers
 from extrados.results.model import Result
 from extrados.schema.constants import GRAVITY
 
@@ -156,7 +156,7 @@ def test_a_picture_that_fails_is_a_warning(monkeypatch: pytest.MonkeyPatch) -> N
         {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}, {"kind": "tilt"}
     )
     assert bare["collapse_acceleration_g"] == pytest.approx(whole.gamma, abs=1e-12)
-    assert sum("left out: it wandered" in w for w in bare.warnings) == 3
+    assert sum("not given: it wandered" in w for w in bare.warnings) == 3
 
 
 @pytest.mark.parametrize("gamma", [0.0, 0.2])
@@ -179,7 +179,7 @@ def test_panel_as_stones() -> None:
     side = sum(r["horizontal_N"] for r in thrust["central"]["reactions"])
     assert up == pytest.approx(thrust["weight_N"], rel=1e-6) and side == pytest.approx(-0.1 * up, rel=1e-5)
     (refused,) = run({**PANEL, **UNIT}, {"kind": "thrust", "chain": "arch"})
-    assert "no stones form one" in refused.reason
+    assert "no blocks form one" in refused.reason
     (refused,) = run(PANEL, {"kind": "tilt"})
     assert refused.status == "refused" and "give unit_length and unit_height" in refused.reason
     with pytest.raises(DeckError, match="give unit_length and unit_height, or neither"):
@@ -192,7 +192,7 @@ def test_what_falls_without_lintels() -> None:
          "openings": [{"x": [0.4, 1.2], "y": [0.0, 0.8]}]},
         {"kind": "tilt"}, joints={"friction": 0.5},
     )  # fmt: skip
-    assert result.verdict.outcome == "cannot-stand" and "Nothing but friction bears unit 2 of course 5" in result.answer
+    assert result.verdict.outcome == "cannot-stand" and "Only friction carries unit 2 of course 5" in result.answer
 
 
 def test_regions_of_another_density() -> None:

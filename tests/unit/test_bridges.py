@@ -12,21 +12,21 @@ from extrados.analyses.context import Context
 from extrados.analyses.limit.moving_load import Places, _top
 from extrados.analyses.limit.tables import MovingLoad
 from extrados.analyses.limit.trains import FOR_EVER, Train, train_of
-from extrados.analyses.run import run_analyses
-from extrados.building.errors import BadGeometry
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.earth import Earth, Skyline, skyline
-from extrados.building.geometry.polygons import properties, signed_area
-from extrados.building.geometry.rigid import rigid_bodies
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.bridge import Bridge, Span, intrados, make_bridge
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
 from extrados.limit.fill import passive_pressure, pressed, under_load
 from extrados.limit.interior import RESIDUAL, CollapseProblem
 from extrados.limit.loads import Loads, tilt_loads
 from extrados.limit.programme import LimitAnalysis
+from extrados.model.errors import BadGeometry
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.earth import Earth, Skyline, skyline
+from extrados.model.geometry.polygons import properties, signed_area
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.bridge import Bridge, Span, intrados, make_bridge
 from extrados.results.model import Result
 from extrados.schema.constants import GRAVITY
+from extrados.views.rigid import rigid_bodies
 
 SPAN = {"span": 8.0, "rise": 2.0, "thickness": 0.6, "voussoirs": 20}
 FILL = {"cover": 0.3, "friction_angle": 35.0, "passive": 0.5}
@@ -650,11 +650,20 @@ def test_a_bridge_without_fill_is_a_bare_ring_and_with_it_is_not() -> None:
     assert not filled.verdict.violated and not any("no model of a bridge" in w for w in filled.warnings)
 
 
-def test_forces_of_a_deck_on_a_ring_are_its_own() -> None:
-    one, axles = ring(force="10 kN"), ring(axle_loads=["10 kN", "10 kN"], axles=[0.0, 1.2])
-    assert one.verdict.outcome == axles.verdict.outcome == "stands"
-    assert not any("no fill" in w for w in one.warnings)
-    assert sum("no fill spreads them" in w for w in axles.warnings) == 1
+@pytest.mark.parametrize(
+    "load",
+    [
+        {"force": "10 kN"},
+        {"axle_loads": ["10 kN", "10 kN"], "axles": [0.0, 1.2]},
+        {"axles": [], "uniform": [{"load": "5 kN/m"}]},
+    ],
+)
+def test_any_load_on_a_bare_ring_leaves_the_verdict_open(load: dict[str, Any]) -> None:
+    found = ring(**load)
+    assert found.verdict.ratio > 1.0 and found.verdict.outcome == "open"
+    (violated,) = found.verdict.violated
+    assert "on the blocks of the arch themselves: no fill spreads it" in violated
+    assert sum(violated in w for w in found.warnings) == 1
 
 
 @pytest.mark.parametrize("factors", [{}, {"live": 1.35}, {"masonry": 0.95}, {"strength": 2.0}, {"friction": 1.1}])
@@ -669,4 +678,5 @@ def test_a_verdict_without_partial_factors_says_so(factors: dict[str, float]) ->
 
 def test_no_remark_where_there_is_no_verdict() -> None:
     found = ring()
-    assert found.verdict.outcome == "not-applicable" and "partial factors" not in found.verdict.statement + found.answer
+    assert found.verdict.outcome == "not-applicable" and found.verdict.violated
+    assert "partial factors" not in found.verdict.statement + found.answer

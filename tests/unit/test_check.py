@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_one
+from extrados.analyses.sequence import run_one
 from extrados.decks.reader import Deck, DeckError, read_deck
 from extrados.running.check import check_building
 from extrados.running.run import compute

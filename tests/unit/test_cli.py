@@ -281,7 +281,7 @@ def test_a_channel_with_an_odd_digit(tmp_path, channel) -> None:
 MOMENTS = {
     "as the first module is loaded": "import typer",
     "as the core is loaded": "import extrados._core",
-    "as figures are drawn": "import extrados.plots.report",
+    "as figures are drawn": "import extrados.show.report",
 }
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.core import motion as core_motion
 from extrados.core import rocking
 from extrados.decks.reader import DeckError, make_deck

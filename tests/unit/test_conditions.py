@@ -8,18 +8,18 @@ from extrados.analyses.context import Context
 from extrados.analyses.motion_source import source_of
 from extrados.analyses.rocking.block import toe_forces
 from extrados.analyses.rocking.doubts import CHAOTIC, NUDGES, growth, perturbed, turning
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.block import BlockModel
-from extrados.building.rockers.joint_forces import JointForces
-from extrados.building.rockers.mechanism import MechanismModel
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.block import make_block
-from extrados.building.templates.vault import VAULT_PRESETS, make_vault
 from extrados.core import arch as core_arch
 from extrados.core.rocking import ensemble, history
 from extrados.decks.reader import make_deck
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.block import make_block
+from extrados.model.structures.vault import VAULT_PRESETS, make_vault
 from extrados.motions import pulses
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.arch import ArchModel
+from extrados.views.rockers.block import BlockModel
+from extrados.views.rockers.joint_forces import JointForces
+from extrados.views.rockers.mechanism import MechanismModel
 
 OPPENHEIM = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}
 BLOCK = {"kind": "block", "width": 1.0, "height": 2.0}
@@ -335,6 +335,15 @@ def test_curves_of_thin_arches_state_the_band_of_the_impact_rules(
     assert set(fragile.collapse_probability_by_rule) == set(curves)
     assessed = result_of("assessment", structure, "no-sliding", record).results
     assert set(assessed.margins_by_rule) <= set(curves) and len(assessed.margins_by_rule) > 1
+
+
+def test_no_friction_is_too_low_where_a_joint_comes_under_tension() -> None:
+    """Where no finite friction is enough the sentence does not advise to check the friction."""
+    arch = {"kind": "arch", "radius": 5.0, "thickness": 0.6, "embrace": 170.0, "voussoirs": 20}
+    keys = {"durations": [0.2, 0.5], "pulse": "step", "max_amplitude": "1.5 g", "amplitudes": 10}
+    conditions = result_of("failure-domain", arch, 0.7, **keys).results.conditions
+    assert conditions.sliding and not np.isfinite(conditions.required_friction or np.inf)
+    assert conditions.violated[0].startswith("A joint comes under tension or slides in ")
 
 
 def test_sampled_arches_that_slide_at_rest_are_no_safe_ones() -> None:

@@ -8,13 +8,13 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from extrados.building.geometry.solids.assembly import Stone, assemble, mass_properties
-from extrados.building.geometry.solids.polyhedra import Polyhedron, box, prism
 from extrados.core import dem, dem3, dem_run
 from extrados.core.dem3 import Law, Options, Solids
 from extrados.core.errors import CoreError
 from extrados.core.ground import Ground, as_motion_set
 from extrados.limit.solids import Programme, SolidLimit
+from extrados.model.geometry.solids.assembly import Stone, assemble, mass_properties
+from extrados.model.geometry.solids.polyhedra import Polyhedron, box, prism
 from extrados.schema.constants import GRAVITY
 
 DENSITY = 2000.0

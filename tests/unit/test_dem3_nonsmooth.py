@@ -10,11 +10,11 @@ from scipy.spatial.transform import Rotation
 from test_dem3_core import solids
 
 from extrados import _core
-from extrados.building.geometry.solids.assembly import mass_properties
-from extrados.building.geometry.solids.polyhedra import Polyhedron, box, prism
 from extrados.core import dem, dem3, dem_run
 from extrados.core.errors import CoreError
 from extrados.core.ground import as_motion_set
+from extrados.model.geometry.solids.assembly import mass_properties
+from extrados.model.geometry.solids.polyhedra import Polyhedron, box, prism
 
 ANY = 1e9  # stiffness: rigid contacts do not ask for it
 

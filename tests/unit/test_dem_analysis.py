@@ -9,10 +9,11 @@ import pytest
 
 import extrados
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
-from extrados.building.rockers.mechanism import MechanismModel
-from extrados.building.templates.arch import make_arch
+from extrados.analyses.dem.from_deck import make_model
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
+from extrados.model.structures.arch import make_arch
+from extrados.views.rockers.mechanism import MechanismModel
 
 ARCH = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}
 PULSE = {"kind": "step-pulse", "amplitude": "-1.0 g", "duration": 0.27}
@@ -105,8 +106,8 @@ def test_an_arch_too_thin_cannot_stand() -> None:
 def test_overlapping_blocks_are_refused_by_name(monkeypatch: pytest.MonkeyPatch) -> None:
     from extrados.analyses.dem import model as dem_model
     from extrados.analyses.dem.tables import Dem
-    from extrados.building.templates.masonry import Column, make_column
     from extrados.core import dem
+    from extrados.model.structures.masonry import Column, make_column
 
     column = make_column(1.0, [1.0, 1.0])
     column.outlines[1][:2, 1] -= 0.2  # the upper drum reaches into the lower one
@@ -119,7 +120,7 @@ def test_overlapping_blocks_are_refused_by_name(monkeypatch: pytest.MonkeyPatch)
         )
     )
     monkeypatch.setattr(Column, "assembly", lambda *_: column)
-    model = dem_model.make_model(context, Dem(kind="dem"))
+    model = make_model(context, Dem(kind="dem"))
     with pytest.raises(Exception, match="drum 1 and drum 2 overlap"):
         dem_model.checked(dem.run(model.bodies(), dem.Options(1.0)), model)
 
@@ -127,7 +128,6 @@ def test_overlapping_blocks_are_refused_by_name(monkeypatch: pytest.MonkeyPatch)
 def test_failure_curve_resumes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """An interrupted sweep goes on from what it has: the answers kept are not computed again."""
     from extrados.analyses.dem import dem_domain
-    from extrados.analyses.dem import model as dem_model
     from extrados.core import dem
 
     deck = make_deck(
@@ -143,7 +143,7 @@ def test_failure_curve_resumes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     )  # fmt: skip
     options = deck.analyses[0]
     first = Context(deck, out=tmp_path / "run")
-    model = dem_model.make_model(first, options)
+    model = make_model(first, options)
     asked = [(0, 0.6 * 9.80665, 0.2), (0, 0.6 * 9.80665, 0.8)]
     curves = [dem_domain.Curve("as given", model.values)]
     search = dem_domain.Search(first, options, model, curves, 4)
@@ -356,9 +356,9 @@ STRUCTURES = {
 @pytest.mark.parametrize("name", STRUCTURES)
 def test_every_structure_of_stones(name: str, tmp_path: Path) -> None:
     """Its properties are the building's: softer ground, joints that differ; it moves, and is drawn."""
-    from extrados.plots.dem import draw_dem
     from extrados.results.store import read
     from extrados.running.run import run_to
+    from extrados.show.dem import draw_dem
 
     (tmp_path / "pier.json").write_text(json.dumps({"blocks": [{"name": "pier", "points": PIER}]}))
     if name == "DXF":

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import extrados
-from extrados.building.geometry.convex import crossings, overlap
-from extrados.building.geometry.polygons import distance, properties
-from extrados.building.geometry.rigid import _cut_overlaps
 from extrados.decks.reader import make_deck
+from extrados.model.geometry.convex import crossings, overlap
+from extrados.model.geometry.polygons import distance, properties
+from extrados.views.rigid import _cut_overlaps
 
 #: 1 x 3 m, both lower corners bevelled by 40 x 44 mm
 BEVELLED = [[0.04, 0.0], [0.96, 0.0], [1.0, 0.044], [1.0, 3.0], [0.0, 3.0], [0.0, 0.044]]

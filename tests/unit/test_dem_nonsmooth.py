@@ -10,15 +10,15 @@ from interrupting import interrupted
 
 import extrados
 from extrados import _core
-from extrados.analyses.dem.runs import Runs, Task
-from extrados.building.geometry.rigid import rigid_bodies
-from extrados.building.rockers.impact import inelastic_impact
-from extrados.building.rockers.mechanism import MechanismModel
-from extrados.building.templates.arch import make_arch
+from extrados.analyses.dem.job import Runs, Task
 from extrados.core import dem, dem_run
 from extrados.core.ground import as_motion_set
 from extrados.decks.reader import DeckError
+from extrados.model.structures.arch import make_arch
 from extrados.running.run import Run
+from extrados.views.rigid import rigid_bodies
+from extrados.views.rockers.impact import inelastic_impact
+from extrados.views.rockers.mechanism import MechanismModel
 
 ANY = 1e9  # stiffness: rigid contacts do not ask for it
 

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from extrados.analyses.dem import impact_rules as rules
-from extrados.building.errors import BadGeometry
-from extrados.building.geometry.convex import convex_parts, is_convex
-from extrados.building.geometry.polygons import signed_area as area
-from extrados.building.geometry.rigid import rigid_bodies
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.brickwork import Bond, make_brickwork
-from extrados.building.templates.masonry import make_column
+from extrados.model.errors import BadGeometry
+from extrados.model.geometry.convex import convex_parts, is_convex
+from extrados.model.geometry.polygons import signed_area as area
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.brickwork import Bond, make_brickwork
+from extrados.model.structures.masonry import make_column
+from extrados.views.rigid import rigid_bodies
 
 
 def block(width: float, height: float, density: float, stiffness: float) -> rules.Impact:

@@ -9,12 +9,12 @@ import pytest
 import extrados
 from extrados.analyses.context import Context
 from extrados.analyses.dem import standing
-from extrados.analyses.dem.model import make_model
+from extrados.analyses.dem.from_deck import make_model
 from extrados.analyses.dem.settlement import TIMES, closed_settlement, farthest_settlement
-from extrados.building.geometry.convex import overlap_depth
 from extrados.core import dem, dem_run
 from extrados.core.ground import as_motion_set
 from extrados.decks.reader import read_text
+from extrados.model.geometry.convex import overlap_depth
 
 #: name -> outlines of stones [m]
 SLAB = {"slab": [[0, 0], [0.5, 0], [1.04, 1], [0.54, 1]]}  # centroid 2 cm outside the base

@@ -9,12 +9,12 @@ import pytest
 
 import extrados
 from extrados.analyses.dem.solid_model import SolidModel, SolidValues
-from extrados.building.geometry.solids.assembly import Stone, assemble
-from extrados.building.geometry.solids.columns import doweled, drums
-from extrados.building.geometry.solids.polyhedra import box
-from extrados.building.geometry.solids.supports import supports_of
 from extrados.decks.reader import DeckError
+from extrados.model.geometry.solids.assembly import Stone, assemble
+from extrados.model.geometry.solids.columns import doweled, drums
+from extrados.model.geometry.solids.polyhedra import box
 from extrados.schema.constants import GRAVITY
+from extrados.views.solid_supports import supports_of
 
 COLUMN = """
 [structure]

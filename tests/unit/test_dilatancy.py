@@ -10,12 +10,12 @@ import pytest
 
 from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.context import Context
-from extrados.analyses.limit import tilt as driver
-from extrados.analyses.run import run_analyses
-from extrados.building.templates.arch import make_arch
+from extrados.analyses.limit import common
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
 from extrados.limit.certificate import certify
 from extrados.limit.programme import LimitAnalysis
+from extrados.model.structures.arch import make_arch
 from extrados.results.limit import DILATANT, Tilt
 from extrados.results.model import Result
 from extrados.results.verdict import SelfWeight
@@ -69,6 +69,8 @@ def test_a_sliding_wall_has_an_interval() -> None:
         verdict = r.judged(asked(peak))
         assert (verdict.outcome, verdict.capacity) == (outcome, least) and DILATANT in verdict.statement
         assert verdict.ratio == pytest.approx(least / peak)
+        place = {"stands": "below the least state found", "open": "between both", "collapses": "above the upper bound"}
+        assert place[outcome] in verdict.statement, "no lower end of the interval is known"
 
 
 def test_the_rule_of_the_deck_does_not_change_the_verdict() -> None:
@@ -95,7 +97,7 @@ def test_joints_that_only_part_do_not_dilate() -> None:
 
 def test_a_bound_without_a_state_decides_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of large walls no state is sought: the bound is told as such, and nothing stands by it."""
-    monkeypatch.setattr(driver, "MOST_BESIDE", 10)
+    monkeypatch.setattr(common, "MOST_BESIDE", 10)
     r = run(WALL, kind="tilt").results
     assert r.non_dilatant is None and "more than 10 joints" in r.non_associated_reason
     below, above = (r.judged(asked(share * r.collapse_acceleration_g)) for share in (0.5, 1.01))
@@ -227,6 +229,41 @@ def test_a_survey_with_an_open_joint_says_what_closing_it_gives() -> None:
     assert "with all gaps closed" in open_joint.results.certificate
     told = float(open_joint.results.certificate.split("to +x is ")[1].split(" g")[0])
     assert told == pytest.approx(whole.results.collapse_acceleration_g, rel=1e-3)
+
+
+def by_codes(peak_g: float, structure: dict[str, Any]) -> Result:
+    return run(
+        structure, kind="local-mechanism", mechanism="building", base_height=0.0, peak_acceleration=f"{peak_g} g"
+    )
+
+
+def test_codes_use_the_lower_end() -> None:
+    """The multiplier of codes is the least state of limit analysis; a check that fails by it and holds by the upper bound is open."""
+    tilt = run(coursed(2), kind="tilt").results
+    least = min(tilt.interval(opposite)[0] for opposite in (False, True))
+    found = by_codes(0.01, coursed(2))
+    r = found.results
+    assert r.multiplier == pytest.approx(least, rel=1e-6) and r.multiplier < r.multiplier_associated and r.bound is None
+    assert found.verdict.outcome == "stands" and r.margin_associated > r.least() > 1.0
+    weakest, strongest = 0.01 * r.least(), 0.01 * r.margin_associated
+    between, above = by_codes(0.5 * (weakest + strongest), coursed(2)), by_codes(1.05 * strongest, coursed(2))
+    assert between.verdict.outcome == "open" and DILATANT in between.verdict.statement
+    assert above.verdict.outcome == "collapses"
+
+
+def test_codes_without_a_state_beside_the_bound_stay_open(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(common, "MOST_BESIDE", 1)
+    found = by_codes(0.01, coursed(2))
+    assert (found.verdict.outcome, found.verdict.bound) == ("open", "upper")
+    assert any(DILATANT in w and "No state without dilatancy" in w for w in found.warnings)
+
+
+def test_a_block_that_slides_on_one_joint_has_no_interval() -> None:
+    """Coulomb: the multiplier is the friction by either flow rule, and the codes decide by it."""
+    block = {"kind": "column", "width": 1.0, "height": 2.0, "drums": 1}
+    found = run(block, 0.3, kind="local-mechanism", mechanism="building", peak_acceleration="0.2 g")
+    assert found.results.multiplier == pytest.approx(0.3) and found.results.multiplier_associated is None
+    assert found.results.bound is None and found.verdict.outcome == "stands"
 
 
 def test_an_assessment_uses_the_lower_end() -> None:

@@ -8,8 +8,8 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 import extrados
-from extrados.plots import report, style
 from extrados.results.store import StoreError
+from extrados.show import report, style
 
 DECK = {
     "structure": {"kind": "arch", "radius": 1.0, "thickness": 0.2, "embrace": 150.0, "voussoirs": 9},

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from extrados.plots.forked import Lost, side_by_side
+from extrados.show.forked import Lost, side_by_side
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="figures are drawn side by side on Linux")
 SECONDS = 30.0  # a hang is for ever; a busy machine takes its time
@@ -41,9 +41,9 @@ def group(leader: int) -> list[int]:
 #: The command, whose figures of `rocking` take longer than anyone waits
 ENDLESS = """
 import sys, time
-import extrados.plots.arch
+import extrados.show.arch
 from extrados.__main__ import main
-extrados.plots.arch.draw_rocking = lambda *_: time.sleep(600)
+extrados.show.arch.draw_rocking = lambda *_: time.sleep(600)
 sys.argv[0] = "extrados"
 main()
 """

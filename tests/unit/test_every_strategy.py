@@ -11,8 +11,8 @@ import ezdxf
 import pytest
 
 import extrados
-from extrados.plots import report, style
 from extrados.running.run import Run
+from extrados.show import report, style
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 

@@ -158,7 +158,7 @@ kind = "tilt"
 def test_what_nothing_brings_down_is_not_said_to_fall(session: Session) -> None:
     (reply,) = do(session, do="open", text=HELD)
     assert reply.words["scene"]["stands"] is True
-    assert "no such load brings it down" in reply.words["scene"]["immovable"]
+    assert "no such load causes collapse" in reply.words["scene"]["immovable"]
     list(session.answer({"do": "rest"}))
 
 
@@ -243,6 +243,18 @@ def test_what_rocks_in_two_coordinates_does_so_as_in_a_run(session: Session, pre
     told = reply.words["rocking"]
     assert (told["outcome"], told["peak_rotation_rad"]) == (run.outcome, run.peak_rotation_rad)
     assert len(reply.arrays["picture_time"]) == len(reply.arrays["pose"]) > 10
+
+
+def test_a_history_says_which_assumptions_do_not_hold(session: Session) -> None:
+    """A block that slides first: its rocking is no verdict, on the page as in a run."""
+    deck = {
+        "structure": {"kind": "block", "width": 0.5, "height": 0.3},
+        "motion": {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 1.0},
+    }
+    for friction, holds in ((0.2, False), ("no-sliding", True)):
+        do(session, do="set", changes={**deck, "joints": {"friction": friction}})
+        (reply,) = do(session, do="rocking")
+        assert (reply.words["rocking"]["violated"] == []) is holds
 
 
 def test_a_wall_rocks_where_it_stands(session: Session) -> None:

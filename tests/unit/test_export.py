@@ -15,9 +15,9 @@ import pytest
 
 import extrados
 from extrados.bridges import compas
-from extrados.building.geometry.polygons import properties
-from extrados.building.geometry.solids.polyhedra import moments
 from extrados.decks.reader import Deck
+from extrados.model.geometry.polygons import properties
+from extrados.model.geometry.solids.polyhedra import moments
 
 ARCH = extrados.Arch(radius=10.0, thickness=1.5, embrace=157.5, voussoirs=7)
 DECK = extrados.deck(ARCH, extrados.Tilt(), title='An "arch"')

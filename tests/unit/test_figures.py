@@ -9,8 +9,8 @@ from figure_faults import Watch, faults
 
 import extrados
 from extrados.analyses.assess.hazard import Demanded
-from extrados.plots import report, style
-from extrados.plots.sla import near_the_peak
+from extrados.show import report, style
+from extrados.show.sla import near_the_peak
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 #: Quick decks whose figures are unlike each other

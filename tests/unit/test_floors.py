@@ -5,11 +5,11 @@ import pytest
 
 from extrados.analyses.shell.model import build
 from extrados.analyses.shell.tables import Pushover
-from extrados.building.building import Building
-from extrados.building.mesh.shells import ShellOptions
-from extrados.building.properties import Material
-from extrados.building.templates.plan import Plan
+from extrados.model.properties import Material
+from extrados.model.structures.plan import Plan
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
+from extrados.views.shell.options import ShellOptions
 
 MASONRY = Material(density=2000.0, young=2e9, poisson=0.0)
 STEEL = Material(density=0.0, young=200e9)

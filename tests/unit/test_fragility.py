@@ -12,7 +12,7 @@ import extrados
 from extrados.analyses import batches
 from extrados.analyses.codes.code_rules import asce43, ishiyama, piers
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.analyses.statistics import summaries
 from extrados.analyses.statistics.fragility import EnsembleJob
 from extrados.analyses.statistics.resonance import (
@@ -21,15 +21,15 @@ from extrados.analyses.statistics.resonance import (
     least_cap,
     optimal_motion,
 )
-from extrados.building.rockers.block import BlockModel
-from extrados.building.rockers.rocker import Rocker
-from extrados.building.templates.block import make_block
 from extrados.core import rocking
 from extrados.decks.reader import DeckError, make_deck
+from extrados.model.structures.block import make_block
 from extrados.motions import pulses
 from extrados.motions.from_deck import make_motion
 from extrados.results import checkpoint, store
 from extrados.running.run import run_to
+from extrados.views.rockers.block import BlockModel
+from extrados.views.rockers.rocker import Rocker
 
 G = 9.80665
 BLOCK = {"kind": "block", "width": 0.1, "height": 0.4}

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from extrados.building.building import Building
-from extrados.building.properties import Joints
-from extrados.building.rockers.mechanism import MechanismModel
-from extrados.building.templates.block import Block
-from extrados.building.templates.frame import Frame
 from extrados.core.ground import Ground
 from extrados.core.rocking import history
+from extrados.model.properties import Joints
+from extrados.model.structures.block import Block
+from extrados.model.structures.frame import Frame
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
+from extrados.views.rockers.mechanism import MechanismModel
 
 WIDTH, HEIGHT = 1.0, 6.0
 

@@ -11,16 +11,16 @@ from scipy.special import ndtr
 from scipy.stats import norm, qmc
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.analyses.statistics.annual import rates
 from extrados.analyses.statistics.cloud import fit_cloud
 from extrados.analyses.statistics.uncertain import Sample
-from extrados.building.rockers.arch import minimum_thickness
 from extrados.core import rocking
 from extrados.decks.reader import DeckError, make_deck
 from extrados.motions.from_deck import generated_set
 from extrados.motions.hazard import HazardCurve
 from extrados.results.model import Result
+from extrados.views.rockers.arch import minimum_thickness
 
 BLOCK = {"kind": "block", "width": 0.3, "height": 1.5}
 ARCH = {"kind": "arch", "radius": 1.0, "thickness": 0.18, "embrace": 160.0, "voussoirs": 13, "thickness_factor": 0.85}

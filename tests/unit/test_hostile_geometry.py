@@ -9,17 +9,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from extrados.building.errors import BadGeometry
-from extrados.building.geometry.compas import read_compas
-from extrados.building.geometry.contacts import find_contacts
-from extrados.building.geometry.drawing import read_json
-from extrados.building.geometry.dxf import read_dxf
-from extrados.building.geometry.linework import net_of
-from extrados.building.geometry.polygons import crossing_edges
-from extrados.building.geometry.solids.assembly import Stone, assemble
-from extrados.building.geometry.solids.meshes import read_solids, stones_of
-from extrados.building.geometry.solids.polyhedra import ManyFaces, box, hull, overlap_depth
-from extrados.building.templates.blocks import _marked as marked
+from extrados.model.errors import BadGeometry
+from extrados.model.geometry.compas import read_compas
+from extrados.model.geometry.contacts import find_contacts
+from extrados.model.geometry.drawing import read_json
+from extrados.model.geometry.dxf import read_dxf
+from extrados.model.geometry.linework import net_of
+from extrados.model.geometry.polygons import crossing_edges
+from extrados.model.geometry.solids.assembly import Stone, assemble
+from extrados.model.geometry.solids.meshes import read_solids, stones_of
+from extrados.model.geometry.solids.polyhedra import ManyFaces, box, hull, overlap_depth
+from extrados.model.structures.blocks import _marked as marked
 from extrados.schema.files import File
 
 NO_GROUND = np.empty((0, 4))
@@ -74,11 +74,11 @@ def test_ground_of_many_segments_takes_little_memory() -> None:
 
 
 def test_what_would_be_compared_too_often_is_told(monkeypatch) -> None:
-    monkeypatch.setattr("extrados.building.geometry.contacts.MOST_COMPARED", 10_000)
+    monkeypatch.setattr("extrados.model.geometry.contacts.MOST_COMPARED", 10_000)
     with pytest.raises(BadGeometry, match=r"more than 10,000 pairs.*fewer points"):
         find_contacts([ring(200, 5.0), ring(200, 5.5)], NO_GROUND, 1e-4)
-    monkeypatch.setattr("extrados.building.geometry.contacts.MOST_KEPT", 100)
-    monkeypatch.setattr("extrados.building.geometry.contacts.MOST_COMPARED", 10_000_000)
+    monkeypatch.setattr("extrados.model.geometry.contacts.MOST_KEPT", 100)
+    monkeypatch.setattr("extrados.model.geometry.contacts.MOST_COMPARED", 10_000_000)
     with pytest.raises(BadGeometry, match="lies over itself"):
         find_contacts([square(0.0)], np.tile([0.0, 0.0, 1.0, 0.0], (1000, 1)), 1e-4)
 
@@ -186,7 +186,7 @@ def test_bodies_of_many_corners_take_little_memory() -> None:
 
 
 def test_a_body_of_too_many_corners_is_told(monkeypatch) -> None:
-    monkeypatch.setattr("extrados.building.geometry.solids.meshes.MOST_CORNERS", 100)
+    monkeypatch.setattr("extrados.model.geometry.solids.meshes.MOST_CORNERS", 100)
     few, many = (read_solids({"graph": {"node": {"0": {"block": prism(k)}}}}, "a.json") for k in (60, 400))
     with pytest.raises(BadGeometry, match="block 0 is of more than 100 corners, the most that are looked at"):
         stones_of(few, 2000.0, None, "a.json")
@@ -195,14 +195,14 @@ def test_a_body_of_too_many_corners_is_told(monkeypatch) -> None:
         hull(many[0].points, most=200)
     with pytest.raises(BadGeometry, match="block 0 is of more than 100 corners"):
         stones_of(many, 2000.0, None, "a.json")
-    monkeypatch.setattr("extrados.building.geometry.solids.meshes.MOST_POINTS", 500)
+    monkeypatch.setattr("extrados.model.geometry.solids.meshes.MOST_POINTS", 500)
     with pytest.raises(BadGeometry, match="block 0 is a mesh of 800 points, at most 500 are looked at"):
         stones_of(many, 2000.0, None, "a.json")
 
 
 def test_bodies_over_each_other_are_told_before_all_pairs_are_looked_at(monkeypatch) -> None:
-    monkeypatch.setattr("extrados.building.geometry.solids.contacts.MOST_PAIRS", 100)
-    monkeypatch.setattr("extrados.building.geometry.solids.contacts.MOST_NEIGHBOURS", 1)
+    monkeypatch.setattr("extrados.model.geometry.solids.contacts.MOST_PAIRS", 100)
+    monkeypatch.setattr("extrados.model.geometry.solids.contacts.MOST_NEIGHBOURS", 1)
     stones = [Stone(f"block {k}", [box((0, 0, 0), (1, 1, 1))], 2000.0) for k in range(30)]
     with pytest.raises(BadGeometry, match="more than 100 pairs, the most that are looked at"):
         assemble(stones, 1e-4)

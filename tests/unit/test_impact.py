@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 
 import extrados
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.impact import inelastic_impact
-from extrados.building.rockers.mechanism import MechanismModel, linkage
-from extrados.building.templates.arch import ArchAssembly, make_arch
 from extrados.core import mechanism as core_mechanism
 from extrados.core import rocking
 from extrados.decks.reader import make_deck
+from extrados.model.structures.arch import ArchAssembly, make_arch
 from extrados.motions.pulses import step_pulse
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.arch import ArchModel
+from extrados.views.rockers.impact import inelastic_impact
+from extrados.views.rockers.mechanism import MechanismModel, linkage
 
 
 def deck(thickness: float, embrace: float, duration: float, rule: str | float = "inelastic") -> dict:

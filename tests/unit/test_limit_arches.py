@@ -6,15 +6,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.builder import Builder
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.arches import make_elliptical_arch, make_pointed_arch
 from extrados.limit.answer import CannotStand, assess
+from extrados.limit.finite_motion import finite_motion, rigid_parts
 from extrados.limit.graphic import thrust_of
 from extrados.limit.loads import Loads, forces_at, tilt_loads
-from extrados.limit.motion import finite_motion, rigid_parts
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.builder import Builder
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.arches import make_elliptical_arch, make_pointed_arch
 
 GRAVITY = 9.80665
 
@@ -283,7 +283,7 @@ def test_cannot_stand_says_where_and_by_how_much() -> None:
     builder = Builder(2000.0, 1.0)
     leaning = builder.block("leaning", np.array([[0.0, 0.0], [1.0, 0.0], [3.0, 4.0], [2.0, 4.0]]))
     builder.joint("base", np.array([0.0, 0.0]), np.array([1.0, 0.0]), leaning, GROUND, 1)
-    with pytest.raises(CannotStand, match=r"only when pushed sideways by -0\.75"):
+    with pytest.raises(CannotStand, match=r"only under a horizontal load of -0\.75"):
         assess(builder.assembly())
 
 

@@ -8,14 +8,17 @@ import numpy as np
 import pytest
 
 import extrados
-from extrados.building.files import LARGEST_FILE, read
-from extrados.building.geometry import dxf
-from extrados.building.geometry.assembly import GROUND
-from extrados.building.geometry.builder import BadGeometry
-from extrados.building.geometry.contacts import Overlap, find_contacts
-from extrados.building.geometry.drawing import Drawing, read_json
-from extrados.building.geometry.inspection import inspect
-from extrados.building.geometry.polygons import (
+from extrados.limit.interior import RESIDUAL, CollapseProblem
+from extrados.limit.loads import Loads, tilt_loads
+from extrados.limit.programme import Immovable, LimitAnalysis
+from extrados.model.files import LARGEST_FILE, read
+from extrados.model.geometry import dxf
+from extrados.model.geometry.assembly import GROUND
+from extrados.model.geometry.builder import BadGeometry
+from extrados.model.geometry.contacts import Overlap, find_contacts
+from extrados.model.geometry.drawing import Drawing, read_json
+from extrados.model.geometry.inspection import inspect
+from extrados.model.geometry.polygons import (
     below,
     crossing_edges,
     crossings,
@@ -25,12 +28,9 @@ from extrados.building.geometry.polygons import (
     reach,
     signed_area,
 )
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.blocks import Polygon, assemble, make_blocks
-from extrados.building.templates.brickwork import Bond, make_brickwork
-from extrados.limit.interior import RESIDUAL, CollapseProblem
-from extrados.limit.loads import Loads, tilt_loads
-from extrados.limit.programme import Immovable, LimitAnalysis
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.blocks import Polygon, assemble, make_blocks
+from extrados.model.structures.brickwork import Bond, make_brickwork
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 

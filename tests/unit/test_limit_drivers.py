@@ -9,7 +9,7 @@ import pytest
 
 import extrados
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
 from extrados.explore.stored import shown
 from extrados.results.model import Result
@@ -225,7 +225,7 @@ def test_what_cannot_stand_is_an_answer_with_its_proof() -> None:
         ("% thicker", {**ARCH, "thickness": 0.9, "embrace": 180.0}, {}),
         ("friction of at least 0.", ARCH, {"joints": {"friction": 0.15}}),
         ("strength", ARCH, {"material": {"compressive_strength": 2e5}}),
-        ("only when pushed sideways", leaning, {}),
+        ("only under a horizontal load", leaning, {}),
     ):
         for kind in ("tilt", "thrust"):
             found = run(structure, kind=kind, **keys)
@@ -291,7 +291,7 @@ def test_same_run_same_bits() -> None:
     ],
 )
 def test_axes_call_keys_by_words(key: str, words: str) -> None:
-    from extrados.plots.limit.sweep import spoken
+    from extrados.show.limit.sweep import spoken
 
     assert spoken(key) == words
 

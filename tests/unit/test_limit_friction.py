@@ -4,11 +4,7 @@ import numpy as np
 import pytest
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
-from extrados.building.geometry.assembly import Assembly
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.brickwork import Bond, make_brickwork
-from extrados.building.templates.masonry import make_column
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
 from extrados.limit.answer import CannotStand, assess
 from extrados.limit.coulomb import CoulombProblem
@@ -18,6 +14,10 @@ from extrados.limit.loads import Loads, forces_at, tilt_loads
 from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium
 from extrados.limit.states import State
 from extrados.limit.systems import Sparse
+from extrados.model.geometry.assembly import Assembly
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.brickwork import Bond, make_brickwork
+from extrados.model.structures.masonry import make_column
 
 UNIT = (0.4, 0.175)  # Ferris and Tin-Loi (2001)
 

@@ -3,7 +3,7 @@
 import pytest
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
 from extrados.results.model import Result
 from extrados.schema.constants import GRAVITY

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.brickwork import Bond, make_brickwork
-from extrados.building.templates.vault import make_vault
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
 from extrados.limit.programme import LimitAnalysis
 from extrados.limit.settlement import settle
 from extrados.limit.supports import support_movement
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.brickwork import Bond, make_brickwork
+from extrados.model.structures.vault import make_vault
 
 
 def moved(assembly: Assembly, joint: str, dx: float = 0.0, dy: float = 0.0, turn: float = 0.0) -> np.ndarray:
@@ -88,7 +88,7 @@ def test_driver_and_refusals() -> None:
     spread = run(None, vault)
     assert [o.name for o in spread.results.openings] and spread.results.movement_at_fall_m is None
     column = {"kind": "column", "width": 1.0, "height": 4.0, "drums": 4}
-    assert "stands on one support" in run(None, column).reason
+    assert "has one support" in run(None, column).reason
     assert (
         run(None, {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}).status == "ok"
     )

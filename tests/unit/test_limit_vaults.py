@@ -7,19 +7,19 @@ import numpy as np
 import pytest
 
 from extrados.analyses.limit.variation import signature
-from extrados.building.errors import BadGeometry
-from extrados.building.geometry.assembly import GROUND, Assembly, part_of
-from extrados.building.geometry.builder import Builder
-from extrados.building.templates.aisled_vault import Added, Aisle, Flyer, make_church
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.block import make_block
-from extrados.building.templates.vault import make_vault
 from extrados.limit.answer import assess
 from extrados.limit.fracture import crack, fractured_collapse, section_distance
 from extrados.limit.graphic import section_forces, thrust_of
 from extrados.limit.loads import Loads, forces_at, tilt_loads
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
 from extrados.limit.supports import support_movement
+from extrados.model.errors import BadGeometry
+from extrados.model.geometry.assembly import GROUND, Assembly, part_of
+from extrados.model.geometry.builder import Builder
+from extrados.model.structures.aisled_vault import Added, Aisle, Flyer, make_church
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.block import make_block
+from extrados.model.structures.vault import make_vault
 from extrados.schema.constants import GRAVITY
 
 FACE_B = 10.0 * np.sin(np.pi / 3.0)

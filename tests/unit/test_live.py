@@ -7,8 +7,8 @@ import pytest
 
 import extrados
 from extrados import kinds
-from extrados.building.templates.arch import Arch
 from extrados.decks.reader import DeckError
+from extrados.model.structures.arch import Arch
 from extrados.motions import from_deck
 
 ARCH = {"kind": "arch", "radius": 1.0, "thickness": 0.2, "embrace": 150.0, "voussoirs": 9}

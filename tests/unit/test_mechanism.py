@@ -7,14 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from extrados.building.errors import NoView
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.block import BlockModel
-from extrados.building.rockers.impact import energy_kept
-from extrados.building.rockers.mechanism import MechanismModel
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.block import make_block
 from extrados.core import arch as core_arch
 from extrados.core import mechanism as core_mechanism
 from extrados.core import rocking
@@ -23,9 +15,17 @@ from extrados.decks.reader import make_deck, read_deck
 from extrados.limit.errors import CannotStand
 from extrados.limit.linkage import CannotRock, linkage
 from extrados.limit.programme import LimitAnalysis
+from extrados.model.errors import NoView
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.block import make_block
 from extrados.motions import pulses
 from extrados.motions.records import locate, read_record, record_motion
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.arch import ArchModel
+from extrados.views.rockers.block import BlockModel
+from extrados.views.rockers.impact import energy_kept
+from extrados.views.rockers.mechanism import MechanismModel
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 ARCHES = [(10.0, 1.5, 157.5, 7), (10.0, 2.0, 180.0, 15), (10.0, 1.2, 170.0, 31)]

@@ -280,7 +280,7 @@ def test_refused_with_a_reason(tmp_path, motion, words) -> None:
     record(tmp_path)
     deck = make_deck({"motion": motion, "analysis": {"kind": "shake-table"}}, tmp_path)
     from extrados.analyses.context import Context
-    from extrados.analyses.run import run_analyses
+    from extrados.analyses.sequence import run_analyses
 
     result = run_analyses(Context(deck))[0]
     assert result.status == "refused" and words in result.reason, result.reason

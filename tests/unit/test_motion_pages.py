@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
 from extrados.motions.formats.record import RecordError, time_unit_in
 from extrados.motions.measures import fourier_spectrum, konno_ohmachi

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
-from extrados.building.errors import BadGeometry
-from extrados.building.geometry.solids.assembly import SolidAssembly, Stone, assemble
-from extrados.building.geometry.solids.meshes import read_obj, read_stl, stones_of
-from extrados.building.geometry.solids.polyhedra import Polyhedron, box, fitted, moments
-from extrados.building.templates.dome import make_dome
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
 from extrados.limit.solids import Programme, SolidLimit
+from extrados.model.errors import BadGeometry
+from extrados.model.geometry.solids.assembly import SolidAssembly, Stone, assemble
+from extrados.model.geometry.solids.meshes import read_obj, read_stl, stones_of
+from extrados.model.geometry.solids.polyhedra import Polyhedron, box, fitted, moments
+from extrados.model.structures.dome import make_dome
 from extrados.results.model import Result
 
 FRICTION = 0.65

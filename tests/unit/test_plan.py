@@ -4,12 +4,13 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry, NoView
-from extrados.building.mesh.shells import ShellOptions, nodal_areas
-from extrados.building.properties import Material
-from extrados.building.templates.plan import Plan, meeting
+from extrados.model.errors import BadGeometry, NoView
+from extrados.model.properties import Material
+from extrados.model.structures.plan import Plan, meeting
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
+from extrados.views.shell.mesh import nodal_areas
+from extrados.views.shell.options import ShellOptions
 
 WALLS = (
     {"name": "front", "start": [0.0, 0.0], "end": [6.0, 0.0], "thickness": 0.3,
@@ -157,7 +158,7 @@ def test_what_does_not_fit_together_is_told():
     with pytest.raises(BadGeometry, match="ground"):
         meshed(plan([{**WALLS[1], "storeys": [2, 2]}]))
     with pytest.raises(NoView, match="plane"):
-        plan().assembly(2000.0, None)
+        Building(plan()).blocks()
 
 
 @pytest.mark.parametrize("start, end", [(0, 6), (6, 0), (0, 3), (1, 3), (-1, 7), (5, 8), (3, 6)])

@@ -10,13 +10,13 @@ import extrados
 from extrados.analyses.shell.model import build
 from extrados.analyses.shell.sections import drifts
 from extrados.analyses.shell.tables import Pushover
-from extrados.building.building import Building
-from extrados.building.mesh.shells import ShellOptions
-from extrados.building.properties import Material
-from extrados.building.templates.plan import Plan
-from extrados.plots import shell as figures
+from extrados.model.properties import Material
+from extrados.model.structures.plan import Plan
 from extrados.results.store import read
 from extrados.schema.constants import GRAVITY
+from extrados.show import shell as figures
+from extrados.views.building import Building
+from extrados.views.shell.options import ShellOptions
 
 DECK = """
     [structure]
@@ -185,8 +185,8 @@ def test_curves_of_several_runs_stand_in_one_picture(run, tmp_path) -> None:
     from typer.testing import CliRunner
 
     from extrados.cli import app
-    from extrados.plots import style
-    from extrados.plots.together import draw, pushes
+    from extrados.show import style
+    from extrados.show.together import draw, pushes
 
     found, pushed = run
     wall = tmp_path / "wall.toml"

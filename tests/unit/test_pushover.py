@@ -9,10 +9,10 @@ import extrados
 from extrados.analyses.shell.model import build, first_mode
 from extrados.analyses.shell.sections import sections
 from extrados.analyses.shell.tables import Pushover
-from extrados.building.building import Building
-from extrados.building.mesh.shells import ShellOptions
-from extrados.building.properties import Material
-from extrados.building.templates.plan import Plan
+from extrados.model.properties import Material
+from extrados.model.structures.plan import Plan
+from extrados.views.building import Building
+from extrados.views.shell.options import ShellOptions
 
 MASONRY = Material(density=1900.0, young=3e9, poisson=0.2, tensile_strength=0.1e6, fracture_energy=40.0)
 DECK = """

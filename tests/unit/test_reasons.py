@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 
 from extrados.analyses.assess.reasons import HEADLINES, RULES, Facts, explained
-from extrados.building.building import Building
-from extrados.building.templates.plan import Plan
 from extrados.decks.reader import make_deck
+from extrados.model.structures.plan import Plan
 from extrados.motions import pulses
 from extrados.results.assess import StrategyVerdict
 from extrados.results.codes import Check, CodeChecks, LocalMechanism, WallMechanism
 from extrados.results.dem import DemRun
-from extrados.results.limit import Fracture, Tilt
+from extrados.results.limit import Fracture, NonDilatant, Tilt
 from extrados.results.model import Array, Result
 from extrados.results.rocking import Assessment, Rocking
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
 
 COLUMN = {"kind": "column", "width": 1.2, "height": 6.0, "drums": 3}
 PANEL = {"kind": "panel", "width": 4.8, "height": 3.2, "thickness": 0.4, "unit_length": 0.8, "unit_height": 0.4}
@@ -32,8 +32,9 @@ def row(strategy: str, outcome: str, **more: object) -> StrategyVerdict:
     keys = {
         "label": strategy, "part": None, "status": "ok", "reason": "", "axis": "acceleration", "unit": "g", "capacity": None,
         "demand": None, "margin": None, "margin_at_least": None, "margin_below": None, "parameters": "", "assumes": "", "statement": "",
+        "violated": [],
     }  # fmt: skip
-    return StrategyVerdict(strategy=strategy, outcome=outcome, bound=None, violated=[], **(keys | more))
+    return StrategyVerdict(strategy=strategy, outcome=outcome, bound=None, **(keys | more))
 
 
 # Results with no more than what a rule reads: one that reads more fails at once.
@@ -49,11 +50,19 @@ def dem(outcome: str = "recovery", moved: float = 0.1, slip: float = 0.0) -> Res
     return Result("dem", results=DemRun.model_construct(**keys))
 
 
-def tilt(right: float, left: float | None = None, fracture: Fracture | None = None) -> Result:
+def tilt(
+    right: float, left: float | None = None, fracture: Fracture | None = None, dilating: list[int] | None = None
+) -> Result:
+    sliding = {} if dilating is None else {
+        "dilating_joints": dilating, "dilating_joints_opposite": dilating, "collapse_acceleration_non_associated_g": right,
+        "collapse_acceleration_non_associated_opposite_g": right, "non_dilatant": NonDilatant.model_construct(associated_g=right),
+        "non_dilatant_opposite": NonDilatant.model_construct(associated_g=right),
+    }  # fmt: skip
     keys = {
         "collapse_acceleration_g": right,
         "collapse_acceleration_opposite_g": right if left is None else left,
         "fracture": fracture,
+        **sliding,
     }
     return Result("tilt", results=Tilt.model_construct(**keys))
 
@@ -228,6 +237,15 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
             "elements say as the others do": lambda f: rated(f, row("dem", "stands")),
         },
     ),
+    "an assumption that does not hold": (
+        "violated",
+        lambda: facts([FALLS, row("rocking", "open", violated=["Friction is too low."])]),
+        {
+            "all hold": lambda f: rated(f, row("rocking", "open")),
+            "both are open": lambda f: rated(f, row("tilt", "open")),
+            "it is decided all the same": lambda f: rated(f, row("rocking", "stands", violated=["Friction is too low."])),
+        },
+    ),
     "one sine for the whole motion": (
         "sine-for-record",
         lambda: facts([row("assessment", "stands"), row("rocking", "collapses")],
@@ -247,6 +265,16 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
             "they hardly slid": lambda f: having(f, dem=dem("collapse", 1.0, slip=0.005)),
             "without sliding they end alike": lambda f: probed(f, no_sliding=dem("collapse", 0.9)),
             "nobody tried without": lambda f: probed(f, no_sliding=None),
+            "the run is one draw of many": lambda f: probed(f, dem_nudged=dem()),
+        },
+    ),
+    "sliding that statics counts as collapse": (
+        "sliding",
+        lambda: facts([FALLS, row("dem", "stands")], {"tilt": tilt(0.2, dilating=[0]), "dem": dem(moved=0.014, slip=0.014)}),
+        {
+            "no pressed joint slides": lambda f: having(f, tilt=tilt(0.2)),
+            "the blocks rock rather than slide": lambda f: having(f, dem=dem(moved=0.1, slip=0.014)),
+            "they collapse": lambda f: having(rated(f, row("dem", "open")), dem=dem("collapse", 0.014, slip=0.014)),
             "the run is one draw of many": lambda f: probed(f, dem_nudged=dem()),
         },
     ),
@@ -399,6 +427,13 @@ def test_the_codes_are_held_against_the_sense_that_no_wall_stops() -> None:
     (one,) = found
     assert one.numbers["static_capacity"] == 0.2 and one.numbers["factor"] == pytest.approx(1.8)
     assert "0.2 g of statics, times 1.8" in one.text
+
+
+def test_elements_that_slide_explain_the_stones_of_statics_and_of_the_mesh_alike() -> None:
+    rows = [row(n, "collapses", capacity=0.2, margin=0.5) for n in ("tilt", "sla")] + [row("dem", "stands")]
+    f = facts(rows, {"dem": dem(slip=0.3)}, probes={"no-sliding": dem(moved=1e-6)})
+    (slides,) = (r for r in explained(f)[0] if r.rule == "sliding")
+    assert slides.explains == [["tilt", "dem"], ["sla", "dem"]]
 
 
 def test_a_pair_without_a_reason_is_told_as_unexplained() -> None:

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 import extrados
-from extrados.building.dimensions import dimensions
 from extrados.decks.reader import DeckError, make_deck
-from extrados.plots import html, typeset
-from extrados.plots.document import Code, Document, Heading, Table, Words
-from extrados.plots.report import write_report
-from extrados.plots.telling import _flowing
-from extrados.results.limits import LIMITS
+from extrados.model.dimensions import dimensions
+from extrados.results import validity
 from extrados.results.store import StoreError
+from extrados.show import html, typeset
+from extrados.show.document import Code, Document, Heading, Table, Words
+from extrados.show.report import write_report
+from extrados.show.telling import _flowing
 
 ARCH = {"kind": "arch", "radius": 2.0, "thickness": 0.4, "embrace": 180.0, "voussoirs": 12}
 
@@ -45,7 +45,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_page_says_who_what_and_how_to_repeat(folder: Path) -> None:
     page = (folder / "report.html").read_text()
     for words in ("St Martin", "A. Mason", "2026-05-04", "Contents", "clear span", "3.6", "material.density", "2100", "kg/m^3",
-                  "Limits of validity", "To repeat it", "Figure 1. The building", LIMITS["tilt"][1][:40]):  # fmt: skip
+                  "Limits of validity", "To repeat it", "Figure 1. The building", validity.Tilt.limits[:40]):  # fmt: skip
         assert words in page, words
     assert "An &lt;arch&gt;" in page and "<details" not in page, "what is folded vanishes in print"
     assert "analysis" in page and "http://" not in page.replace("http://www.w3.org", "")

@@ -8,18 +8,18 @@ import pytest
 from restraint_oracle import GRAVITY, Spring, rock
 
 import extrados
-from extrados.building.building import Building
-from extrados.building.devices import AddedHinge, Damper
-from extrados.building.properties import Initial, Joints, Supports
-from extrados.building.rockers.block import block_model
-from extrados.building.rockers.restraints import three_impacts
-from extrados.building.templates.arch import Arch
-from extrados.building.templates.block import Block
-from extrados.building.ties import Tie
 from extrados.core import mechanism as core_mechanism
 from extrados.core.ground import Ground
 from extrados.core.rocking import ensemble, history
 from extrados.decks.reader import DeckError, read_text
+from extrados.model.devices import AddedHinge, Damper
+from extrados.model.properties import Initial, Joints, Supports
+from extrados.model.structures.arch import Arch
+from extrados.model.structures.block import Block
+from extrados.model.ties import Tie
+from extrados.views.building import Building
+from extrados.views.rockers.block import block_model
+from extrados.views.rockers.restraints import three_impacts
 
 B, H = 0.5, 2.0  # half width and half height [m]
 MASS = 2000.0 * 4.0 * B * H

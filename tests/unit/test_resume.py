@@ -13,7 +13,7 @@ import pytest
 
 from extrados.analyses.context import Context
 from extrados.analyses.dem import dem_domain
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.analyses.sla.model import build
 from extrados.core import calls
 from extrados.core import sla as core
@@ -210,7 +210,7 @@ SURVEY = "name,thickness\n" + "".join(f"arch {k},{1.2 + 0.02 * k:.2f}\n" for k i
 #: Ends itself without a word when it has kept so many batches
 KILLED = """
 import os, signal, sys
-from extrados.analyses.dem import runs
+from extrados.analyses.dem import job as runs
 from extrados.results.checkpoint import Checkpoint
 runs.KEEP_SECONDS = 0.0
 real, left = Checkpoint.keep, [int(sys.argv[1])]

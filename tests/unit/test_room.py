@@ -215,7 +215,7 @@ def test_an_end_that_found_no_room_to_be_told_is_told_after(monkeypatch) -> None
     def fail(*_: object) -> None:
         raise SystemError("error return without exception set")
 
-    monkeypatch.setattr("extrados.analyses.run.run_one", fail)
+    monkeypatch.setattr("extrados.analyses.sequence.run_one", fail)
     reason = "not enough memory: SystemError: error return without exception set (internal-error-tilt.txt says where)"
     assert failing(monkeypatch, MemoryError()).reason == reason
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from extrados.building.mesh.shells import nodal_areas, spread
 from extrados.core import sla as core
 from extrados.core.shell import node_frames
+from extrados.views.shell.mesh import nodal_areas, spread
 
 
 def surface(n, place, m=None):

@@ -8,15 +8,16 @@ import pytest
 
 import extrados
 from extrados.analyses.context import Context
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry
-from extrados.building.mesh.shells import ShellOptions, nodal_areas
-from extrados.building.properties import Material
-from extrados.building.templates.walls import MeshFile
 from extrados.decks.reader import read_deck
+from extrados.model.errors import BadGeometry
+from extrados.model.properties import Material
+from extrados.model.structures.walls import MeshFile
 from extrados.running.check import check_building
 from extrados.running.run import compute
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
+from extrados.views.shell.mesh import nodal_areas
+from extrados.views.shell.options import ShellOptions
 
 meshio = pytest.importorskip("meshio")
 N = 4  # elements of a side

@@ -7,9 +7,9 @@ import pytest
 from typer.testing import CliRunner
 
 import extrados
-from extrados.building.mesh.shells import ShellOptions
 from extrados.cli import app
 from extrados.decks.reader import read_text
+from extrados.views.shell.options import ShellOptions
 
 BED = """
     [structure]

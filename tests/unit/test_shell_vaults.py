@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from extrados.building.mesh.shells import nodal_areas, spread
 from extrados.core import sla as core
 from extrados.core.shell import node_frames
 from extrados.schema.constants import GRAVITY
+from extrados.views.shell.mesh import nodal_areas, spread
 
 WEIGHT, RADIUS, THICKNESS = 20e3, 5.0, 0.2
 LAW = core.Softening(5e3, 5.0, "linear", 0.2)

@@ -7,7 +7,7 @@ import pytest
 from test_sla_events import run_deck
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.analyses.sla.bar_forces import along, bar_rows, history
 from extrados.analyses.sla.curve import states
 from extrados.analyses.sla.events import run_curves

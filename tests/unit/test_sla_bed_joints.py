@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from extrados.building.properties import Material
 from extrados.core.sla import (
     Bars,
     Bedding,
@@ -18,6 +17,7 @@ from extrados.core.sla import (
     Stop,
     teeth,
 )
+from extrados.model.properties import Material
 
 YOUNG, STRENGTH, ENERGY, THICKNESS = 5e9, 0.2e6, 40.0, 0.1
 SIDE = 0.25

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from extrados.building.mesh.mesh import add_middles
 from extrados.core.errors import CoreError
 from extrados.core.sla import (
     BadElement,
@@ -19,6 +18,7 @@ from extrados.core.sla import (
     Stop,
     body_force,
 )  # fmt: skip
+from extrados.views.mesh.mesh import add_middles
 
 YOUNG, NU = 7.3e9, 0.23
 LINES = {"T3": 1, "Q4": 1, "T6": 2, "Q8": 2}

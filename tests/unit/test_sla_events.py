@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.analyses.sla.curve import bilinear, envelope
 from extrados.analyses.sla.events import damage_before, run_curves
 from extrados.analyses.sla.model import build

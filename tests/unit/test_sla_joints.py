@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.analyses.sla.contact import SHUT, settle
 from extrados.analyses.sla.model import build
 from extrados.core.sla import EVENT, MODE, Behaviour, Freedoms, Joints, Model, Monitor, Softening, Stop

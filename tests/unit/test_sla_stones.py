@@ -9,15 +9,15 @@ import pytest
 from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.conclude import assumptions_of
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
-from extrados.building.errors import BadGeometry
-from extrados.building.geometry.assembly import GROUND
-from extrados.building.geometry.polygons import properties, signed_area
-from extrados.building.mesh.mesh import Mesh, element_areas
-from extrados.building.mesh.options import MeshOptions
-from extrados.building.mesh.triangles import fill_ring
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
+from extrados.model.errors import BadGeometry
+from extrados.model.geometry.assembly import GROUND
+from extrados.model.geometry.polygons import properties, signed_area
 from extrados.results.verdict import SelfWeight
+from extrados.views.mesh.mesh import Mesh, element_areas
+from extrados.views.mesh.options import MeshOptions
+from extrados.views.mesh.triangles import fill_ring
 
 BLOCKS = [
     {"name": "left", "points": [[0.0, 0.0], [1.0, 0.0], [1.0, 3.0], [0.0, 3.0]]},

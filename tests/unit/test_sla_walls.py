@@ -10,7 +10,7 @@ import pytest
 from test_sla_events import run_deck, wall
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
 from extrados.results.store import read
 from extrados.running.run import run_to

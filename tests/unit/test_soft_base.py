@@ -7,11 +7,6 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import extrados
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry, NoView
-from extrados.building.properties import Initial, Supports
-from extrados.building.rockers.soft_base import soft_base_model
-from extrados.building.templates.block import Block
 from extrados.core.ground import Ground
 from extrados.core.rocking import ensemble, history
 from extrados.core.soft_base import (
@@ -21,7 +16,12 @@ from extrados.core.soft_base import (
     soft_base_history,
     soft_base_start,
 )
+from extrados.model.errors import BadGeometry, NoView
+from extrados.model.properties import Initial, Supports
+from extrados.model.structures.block import Block
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
+from extrados.views.rockers.soft_base import soft_base_model
 
 WINKLER, SPRINGS = False, True
 

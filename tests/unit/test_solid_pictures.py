@@ -10,9 +10,9 @@ import pytest
 from PIL import Image
 
 import extrados
-from extrados.building.geometry.solids.polyhedra import Polyhedron, box
-from extrados.plots import scene
+from extrados.model.geometry.solids.polyhedra import Polyhedron, box
 from extrados.results.solid_files import glb, quaternions, rotations, series
+from extrados.show import scene
 
 FRONT = scene.View(azimuth=-90.0, elevation=0.0)  # x to the right, z up
 COLOURS = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])

@@ -10,15 +10,15 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry, NoView
-from extrados.building.geometry.solids.assembly import SolidAssembly, Stone, assemble, mass_properties
-from extrados.building.geometry.solids.contacts import touching
-from extrados.building.geometry.solids.polyhedra import Polyhedron, box, cut, hull, moments, overlap_depth, prism
-from extrados.building.templates.cross_vault import LEAST_PIECE
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
+from extrados.model.errors import BadGeometry, NoView
+from extrados.model.geometry.solids.assembly import SolidAssembly, Stone, assemble, mass_properties
+from extrados.model.geometry.solids.contacts import touching
+from extrados.model.geometry.solids.polyhedra import Polyhedron, box, cut, hull, moments, overlap_depth, prism
+from extrados.model.structures.cross_vault import LEAST_PIECE
 from extrados.running.check import check_building, write_solids
+from extrados.views.building import Building
 
 CUBE = box((0, 0, 0), (1, 1, 1))
 

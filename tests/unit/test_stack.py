@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from extrados.building.building import Building
-from extrados.building.properties import Initial
-from extrados.building.templates.block import Block
 from extrados.core import mechanism as core_mechanism
 from extrados.core.ground import Ground
 from extrados.core.rocking import history
 from extrados.core.stack import Stack, stack_history, stack_impact
+from extrados.model.properties import Initial
+from extrados.model.structures.block import Block
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
 
 
 def stack(

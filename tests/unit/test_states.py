@@ -11,11 +11,11 @@ from extrados.analyses.shell.model import build
 from extrados.analyses.shell.sliding import sliding_limits
 from extrados.analyses.shell.tables import Pushover
 from extrados.analyses.sla.curve import envelope, has_fallen
-from extrados.building.building import Building
-from extrados.building.mesh.shells import ShellOptions
-from extrados.building.properties import Joints, Material
-from extrados.building.templates.plan import Plan
+from extrados.model.properties import Joints, Material
+from extrados.model.structures.plan import Plan
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
+from extrados.views.shell.options import ShellOptions
 
 FACADE = {
     "structure": {

@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 
 import extrados
-from extrados.plots.report import write_report
 from extrados.results import store
 from extrados.results.model import Array, Result, TableData
 from extrados.results.statistics import RockingSpectrum
 from extrados.schema import files
+from extrados.show.report import write_report
 
 
 def sample() -> Result:

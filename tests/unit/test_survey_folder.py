@@ -13,10 +13,11 @@ from extrados import cli
 from extrados.analyses.context import Context
 from extrados.core.errors import Cancelled
 from extrados.decks.reader import DeckError, make_deck
-from extrados.plots import comparing, html, style
 from extrados.results.compare import changes, compare, flat
 from extrados.running import survey
 from extrados.running.run import Run, compute
+from extrados.show import comparing, html, style
+from extrados.show.telling import heading, kind_of
 
 COMMON = """motion = { kind = "sine-pulse", amplitude = "0.3 g", period = 0.6 }
 analysis = [{ kind = "assess", budget = 5, strategies = ["tilt", "rocking"] }]
@@ -41,10 +42,32 @@ def test_the_worst_comes_first(folder: Path, tmp_path: Path, monkeypatch: pytest
     assert [r.least_margin for r in rows] == pytest.approx([0.8 / 6 / 0.3, 1.2 / 6 / 0.3, 2.0 / 6 / 0.3])
     told = list(csv.DictReader((tmp_path / "out" / "ranking.csv").open()))
     assert [t["building"] for t in told] == ["w0.8", "w1.2", "w2.0"] and told[2]["overall"] == "stands under all"
+    deck = extrados.load(rows[0].folder).summary["deck"]
+    assert (deck["path"], heading(deck), kind_of(deck)) == ("w0.8.toml", "w0.8", "column")
     page = (tmp_path / "out" / "ranking.html").read_text()
     assert page.index("w0.8") < page.index("w1.2") and "limit analysis" in page
     assert extrados.load(rows[0].folder)["assess"].overall == rows[0].overall
     assert not (tmp_path / "out.checkpoint").exists()
+
+
+def test_the_assessment_of_a_deck_is_its_own_or_the_common_one(folder: Path) -> None:
+    (folder / "w0.8.toml").write_text(COLUMN.format(0.8) + 'analysis = [{ kind = "tilt" }]\n')
+    assert 'strategies = ["tilt", "rocking"]' in survey.decks_of(folder)["w0.8"], "the common one, not a default"
+    (folder / "w0.8.toml").write_text(COLUMN.format(0.8) + 'analysis = [{ kind = "asses" }, { kind = "assess" }]\n')
+    with pytest.raises(DeckError, match="unknown kind 'asses'; did you mean 'assess'"):
+        survey.decks_of(folder)
+
+
+def test_the_order_of_the_ranking() -> None:
+    """Collapse that is proven, no answer, no verdict, the least margins, what stands by a margin that is not known."""
+    nan = float("nan")
+    worst_first = [
+        ("cannot stand", 0.0, "ok"), ("", nan, "failed"), ("open", nan, "ok"), ("open", 0.4, "ok"), ("depends", 0.9, "ok"),
+        ("stands under all", 1.4, "ok"), ("stands under all", nan, "ok"),
+    ]  # fmt: skip
+    rows = [survey.Assessed("", overall, margin, "", status, "", Path()) for overall, margin, status in worst_first]
+    orders = [row.order for row in rows]
+    assert orders == sorted(orders) and orders[0] < orders[1] and orders[5] < orders[6]
 
 
 def test_what_cannot_stand_comes_first(folder: Path, tmp_path: Path) -> None:

@@ -7,9 +7,7 @@ import pytest
 
 from extrados.analyses.context import Context
 from extrados.analyses.limit.common import loads_of
-from extrados.analyses.run import run_analyses
-from extrados.building.geometry.assembly import GROUND
-from extrados.building.templates.arch import make_arch
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import DeckError, make_deck
 from extrados.limit.answer import assess
 from extrados.limit.coulomb import CoulombProblem
@@ -17,6 +15,8 @@ from extrados.limit.interior import CollapseProblem
 from extrados.limit.loads import tilt_loads
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
 from extrados.limit.solver import BOUND
+from extrados.model.geometry.assembly import GROUND
+from extrados.model.structures.arch import make_arch
 from extrados.results.model import Result
 from extrados.results.verdict import SelfWeight
 

@@ -11,14 +11,14 @@ from itertools import combinations
 
 import numpy as np
 
-from extrados.building.rockers.impact import inelastic_impact
-from extrados.building.templates.arch import ArchAssembly
 from extrados.core import mechanism as core_mechanism
 from extrados.core.errors import CoreError
 from extrados.limit.linkage import CannotRock, linkage
 from extrados.limit.states import Mechanism
+from extrados.model.structures.arch import ArchAssembly
 from extrados.motions.motion import Motion
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.impact import inelastic_impact
 
 #: Steps in the time of the arch, 1/p of a block; at twice as many no outcome of the sample changes.
 STEPS = 80

@@ -13,15 +13,16 @@ from functools import cache, cached_property
 import numpy as np
 
 from extrados.analyses.dem import model as dem_model
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.mechanism import MechanismModel
-from extrados.building.templates.arch import ArchAssembly, make_arch
+from extrados.analyses.dem.from_deck import joint_values
 from extrados.core import arch as core_arch
 from extrados.core import dem, rocking
 from extrados.decks.reader import make_deck
+from extrados.model.structures.arch import ArchAssembly, make_arch
 from extrados.motions import pulses
 from extrados.motions.motion import Motion
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.arch import ArchModel
+from extrados.views.rockers.mechanism import MechanismModel
 
 #: t/R, embrace in degrees, voussoirs.
 ARCHES = [
@@ -117,7 +118,7 @@ class Sample:
                 "analysis": [{"kind": "tilt"}],
             }
         ).building  # fmt: skip
-        return dem_model.Model(building.blocks(), building.rigid(), dem_model.joint_values(building))
+        return dem_model.Model(building.blocks(), building.rigid(), joint_values(building))
 
     def falls(self, motion: Motion) -> bool:
         """Does it fall in discrete elements?"""

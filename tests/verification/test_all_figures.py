@@ -6,7 +6,7 @@ import pytest
 from figure_faults import Watch
 
 import extrados
-from extrados.plots import report, style
+from extrados.show import report, style
 
 ROOT = Path(__file__).resolve().parents[2]
 DECKS = sorted(p for p in (ROOT / "cases").rglob("*.toml") if not p.name.endswith(".expect.toml"))

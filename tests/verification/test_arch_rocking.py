@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from arch_oracle import Oracle
 
-from extrados.building.errors import NoView
-from extrados.building.rockers.arch import ArchModel, minimum_thickness
-from extrados.building.templates.arch import make_arch
 from extrados.core import rocking
+from extrados.model.errors import NoView
+from extrados.model.structures.arch import make_arch
 from extrados.motions import pulses
 from extrados.motions.records import locate, read_record, record_motion
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.arch import ArchModel, minimum_thickness
 
 
 @pytest.fixture(scope="module")
@@ -181,7 +181,7 @@ def test_minimum_thickness(n, value) -> None:
 
 def test_ring_sector_against_a_fine_polygon() -> None:
     """Area, centroid and inertia of a voussoir against its polygon of many sides."""
-    from extrados.building.geometry.sectors import ring_sector
+    from extrados.model.geometry.sectors import ring_sector
 
     inner, outer, angle = 1.3, 1.9, 0.37
     area, centre, polar = ring_sector(inner, outer, angle)

@@ -5,9 +5,9 @@ import pytest
 from scipy.optimize import least_squares
 
 from extrados.analyses.rocking import criterion
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.templates.arch import make_arch
+from extrados.model.structures.arch import make_arch
 from extrados.motions.impulse import primary_impulses
+from extrados.views.rockers.arch import ArchModel
 
 #: Table 5.3, cells whose impact rule is not in question (c_v below 0.9)
 PRINTED = {

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from extrados.building.templates.dome import make_dome
 from extrados.limit.solids import Programme, SolidLimit
+from extrados.model.structures.dome import make_dome
 
 
 def least_thickness(rings: int, lunes: int, friction: float | None) -> float:

@@ -10,13 +10,7 @@ from scipy import sparse
 from test_dilatancy import coursed
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
-from extrados.building.errors import BadGeometry
-from extrados.building.geometry.assembly import Assembly
-from extrados.building.templates.aisled_vault import Aisle, make_church
-from extrados.building.templates.arch import make_arch
-from extrados.building.templates.brickwork import Bond, make_brickwork
-from extrados.building.templates.vault import make_vault
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
 from extrados.limit.answer import assess
 from extrados.limit.equilibrium import spanning_tree
@@ -24,6 +18,12 @@ from extrados.limit.errors import CannotStand
 from extrados.limit.loads import tilt_loads
 from extrados.limit.programme import Immovable, LimitAnalysis
 from extrados.limit.systems import Sparse
+from extrados.model.errors import BadGeometry
+from extrados.model.geometry.assembly import Assembly
+from extrados.model.structures.aisled_vault import Aisle, make_church
+from extrados.model.structures.arch import make_arch
+from extrados.model.structures.brickwork import Bond, make_brickwork
+from extrados.model.structures.vault import make_vault
 
 pytestmark = pytest.mark.verify
 

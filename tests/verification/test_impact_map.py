@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import extrados
-from extrados.building.rockers.arch import ArchModel, Impacts
-from extrados.building.rockers.mechanism import MechanismModel
-from extrados.building.templates.arch import make_arch
+from extrados.model.structures.arch import make_arch
+from extrados.views.rockers.arch import ArchModel, Impacts
+from extrados.views.rockers.mechanism import MechanismModel
 
 pytestmark = pytest.mark.verify
 

@@ -10,8 +10,8 @@ import pytest
 
 import extrados
 from extrados.analyses.rocking import criterion
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.templates.arch import make_arch
+from extrados.model.structures.arch import make_arch
+from extrados.views.rockers.arch import ArchModel
 
 RULES = criterion.RULES
 #: Table 5.3 as printed, C1, C2, T_min by t/R and embrace; the cell of .12 and 180 degrees is blank

@@ -6,11 +6,11 @@ from linear_block import edges, one_cosine, one_sine, outcome, rectangle
 from scipy.optimize import brentq
 
 from extrados.analyses.rocking.failure_domain import Mapper
-from extrados.building.rockers.block import BlockModel
-from extrados.building.templates.block import make_block
 from extrados.core import rocking
+from extrados.model.structures.block import make_block
 from extrados.motions.pulses import sine_pulse
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.block import BlockModel
 from trials import Trial
 
 C_V = 0.9

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from extrados.building.rockers.block import BlockModel
-from extrados.building.templates.block import make_block
 from extrados.core import rocking
+from extrados.model.structures.block import make_block
 from extrados.motions import pulses
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.block import BlockModel
 from trials import Trial
 
 SHAPES = ("step", "sine", "half-sine", "rectangular", "cosine", "train")

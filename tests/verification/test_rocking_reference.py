@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from rocking_oracle import reference
 
-from extrados.building.rockers.block import BlockModel
-from extrados.building.templates.block import make_block
 from extrados.core import rocking
 from extrados.core.rocking import Ground
+from extrados.model.structures.block import make_block
+from extrados.views.rockers.block import BlockModel
 from trials import Trial
 
 STEP, POINTS = 0.02, 301

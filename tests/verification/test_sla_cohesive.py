@@ -8,7 +8,7 @@ import pytest
 from cohesive_beam import Beam, Path, cohesive_path
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
 
 YOUNG, NU, STRENGTH, ENERGY = 37e9, 0.2, 3.9e6, 143.0

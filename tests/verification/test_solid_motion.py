@@ -10,15 +10,15 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 from test_dem3_core import DENSITY, solids
 
-from extrados.building.geometry.solids.assembly import mass_properties
-from extrados.building.geometry.solids.polyhedra import Polyhedron, prism
-from extrados.building.geometry.solids.sections import drawn_out
-from extrados.building.geometry.solids.supports import supports_of
-from extrados.building.templates.arch import make_arch
 from extrados.core import dem3
 from extrados.core.dem3 import Law, Options, Solids
 from extrados.core.ground import Ground
+from extrados.model.geometry.solids.assembly import mass_properties
+from extrados.model.geometry.solids.polyhedra import Polyhedron, prism
+from extrados.model.geometry.solids.sections import drawn_out
+from extrados.model.structures.arch import make_arch
 from extrados.schema.constants import GRAVITY
+from extrados.views.solid_supports import supports_of
 
 RADIUS, SIDES = 0.5, 96
 COIN, DRUM = 0.1, 2.0  # heights

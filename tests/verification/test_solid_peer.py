@@ -7,10 +7,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 from test_dem3_core import solids
 
-from extrados.building.geometry.solids.polyhedra import Polyhedron, box
 from extrados.core import dem3
 from extrados.core.dem3 import Law, Options
 from extrados.core.ground import Ground
+from extrados.model.geometry.solids.polyhedra import Polyhedron, box
 from extrados.schema.constants import GRAVITY
 
 STIFF, SOFT = 1e11, 1e10  # [Pa/m]

@@ -11,13 +11,14 @@ import numpy as np
 import pytest
 
 from extrados.analyses.dem import model as dem_model
+from extrados.analyses.dem.from_deck import joint_values
 from extrados.analyses.rocking.failure_domain import shortest_durations
-from extrados.building.properties import Joints, Material
-from extrados.building.rockers.mechanism import MechanismModel
 from extrados.core import dem
 from extrados.decks.reader import read_deck
+from extrados.model.properties import Joints, Material
 from extrados.motions import pulses
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.mechanism import MechanismModel
 
 ROOT = Path(__file__).resolve().parents[2]
 #: Rotation of a buttress that counts as rocking [rad]
@@ -33,7 +34,7 @@ def vault():
 def elements(modulus: float) -> dem_model.Model:
     building = read_deck(ROOT / "cases" / "vault" / "dejong-a.toml").building
     building = building.having(material=Material(young=modulus), joints=Joints(friction=2.0))
-    return dem_model.Model(building.blocks(), building.rigid(), dem_model.joint_values(building))
+    return dem_model.Model(building.blocks(), building.rigid(), joint_values(building))
 
 
 def falls(modulus: float, amplitude: float, duration: float) -> int:

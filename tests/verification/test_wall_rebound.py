@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import extrados
-from extrados.building.building import Building
-from extrados.building.properties import Supports
-from extrados.building.templates.block import Block
+from extrados.model.properties import Supports
+from extrados.model.structures.block import Block
+from extrados.views.building import Building
 
 pytestmark = pytest.mark.verify
 

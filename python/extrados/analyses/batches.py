@@ -20,10 +20,10 @@ import numpy as np
 
 from extrados.analyses import workers
 from extrados.analyses.context import Context, Refused
-from extrados.building.errors import WHOLE
 from extrados.core.calls import cancel_requested, interruptible, thread_count
 from extrados.core.errors import Cancelled, status_code
 from extrados.core.threads import Worker
+from extrados.model.errors import WHOLE
 from extrados.results.checkpoint import fingerprint
 from extrados.results.model import Streamed
 

@@ -6,7 +6,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from extrados.analyses.context import Refused
-from extrados.building.errors import WHOLE, BadGeometry
+from extrados.model.errors import WHOLE, BadGeometry
 from extrados.schema.table import Table
 
 

@@ -10,7 +10,6 @@ from functools import cached_property
 from extrados import room
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.table import Analysis
-from extrados.building.building import Building
 from extrados.motions.from_deck import is_set
 from extrados.motions.tables import Pulse, SinePulse, StepPulse
 from extrados.results.assumptions import Assumption, spoken
@@ -18,6 +17,7 @@ from extrados.results.model import Result
 from extrados.results.verdict import judge
 from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import unit_of
+from extrados.views.building import Building
 
 
 class MotionDemand:

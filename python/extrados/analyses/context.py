@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from extrados.analyses.table import Analysis
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry, Key
 from extrados.decks.reader import Deck
+from extrados.model.errors import BadGeometry, Key
 from extrados.motions import tables
+from extrados.views.building import Building
 
 if TYPE_CHECKING:
     from extrados.motions.motion import Motion

@@ -6,11 +6,11 @@ from typing import Any
 
 from extrados import kinds
 from extrados.analyses.table import OVERRIDES, Analysis
-from extrados.building.building import Building
-from extrados.building.errors import Key
-from extrados.building.properties import JointType
 from extrados.decks.reader import PROPERTIES, Deck
+from extrados.model.errors import Key
+from extrados.model.properties import JointType
 from extrados.schema.table import Table
+from extrados.views.building import Building
 
 #: What bears on whether stones stand, however that is asked: worth a word where only some of a deck's analyses use it
 SHARED = frozenset(

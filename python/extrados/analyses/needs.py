@@ -1,30 +1,27 @@
 """What an analysis needs before it computes: `check` tells it and `run` refuses by it, so that the two cannot differ.
 
 A need is a step without mechanics that raises Refused or BadGeometry with the key that is to blame; those that all
-kinds share stand here, those of a room in its `needs.py`, which the steps load when they are taken.
+kinds share stand here, those of a package in its `needs.py`, which the steps load when they are taken.
 """
 
-import importlib
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from extrados import kinds
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.table import Analysis
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry, Key, NoView
-from extrados.building.geometry.assembly import Assembly
 from extrados.limit.errors import CannotStand
+from extrados.model.errors import BadGeometry, Key, NoView
+from extrados.model.geometry.assembly import Assembly
 from extrados.schema.programs import ffmpeg
+from extrados.views.building import Building
 
 if TYPE_CHECKING:
-    from extrados.building.geometry.solids.assembly import SolidAssembly
+    from extrados.model.geometry.solids.assembly import SolidAssembly
 
 Need = Callable[[], Any]
 #: Keys that ask for solids
 SPATIAL = ("direction", "rose", "pyramids")
-#: Rooms whose kinds need more than all do
-ROOMS = ("limit", "rocking", "statistics", "codes", "motion", "dem", "sla", "shell", "assess")
 
 
 def complaints(context: Context, options: Analysis, building: Building) -> list[str]:
@@ -61,9 +58,7 @@ def _needs(context: Context, options: Analysis) -> Iterator[Need]:
         yield lambda: _bound(building, options)
     elif options.view == "shell":
         yield lambda: building.shell(options.mesh)
-    room = kinds.ANALYSES[options.kind].table.split(".")[1]
-    if room in ROOMS:
-        yield from importlib.import_module(f"extrados.analyses.{room}.needs").needs(context, options)
+    yield from kinds.load(kinds.ANALYSES[options.kind].needs)(context, options)
 
 
 def as_shell(building: Building, options: Analysis) -> bool:

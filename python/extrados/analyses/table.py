@@ -4,11 +4,11 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 from pydantic import model_validator
 
-from extrados.building.properties import Initial, Joints, Material, Supports
+from extrados.model.properties import Initial, Joints, Material, Supports
 from extrados.schema.table import Table, key, override_of
 
 if TYPE_CHECKING:
-    from extrados.building.building import Building
+    from extrados.views.building import Building
 
 MaterialOverride = override_of(Material, __name__)
 JointsOverride = override_of(Joints, __name__)

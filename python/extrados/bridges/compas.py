@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from extrados.building.errors import NoView
-from extrados.building.geometry.solids.contacts import GROUND
 from extrados.decks.reader import Deck
+from extrados.model.errors import NoView
+from extrados.model.geometry.solids.contacts import GROUND
 
 THIN = 0.05  # of the size of the structure: thickness of the supports
 

@@ -5,10 +5,10 @@ from collections.abc import Callable
 from typing import Any
 
 from extrados.bridges import compas, itasca, opensees
-from extrados.building.errors import BadGeometry, NoView
-from extrados.building.geometry.assembly import Assembly
-from extrados.building.geometry.solids.assembly import SolidAssembly
 from extrados.decks.reader import Deck, DeckError
+from extrados.model.errors import BadGeometry, NoView
+from extrados.model.geometry.assembly import Assembly
+from extrados.model.geometry.solids.assembly import SolidAssembly
 
 log = logging.getLogger(__name__)
 

@@ -10,12 +10,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from extrados._build_info import VERSION
-from extrados.building.errors import BadGeometry
-from extrados.building.mesh.mesh import ElementGroup, Mesh
-from extrados.building.mesh.options import MeshOptions
-from extrados.building.rockers.block import BlockModel
 from extrados.decks.reader import Deck
+from extrados.model.errors import BadGeometry
 from extrados.schema.constants import GRAVITY
+from extrados.views.mesh.mesh import ElementGroup, Mesh
+from extrados.views.mesh.options import MeshOptions
+from extrados.views.rockers.block import BlockModel
 
 #: Coefficient that stands for "no-sliding", and stiffness of the toes of a block over its weight per metre
 NO_SLIDING, HARD = 1e3, 1e6
@@ -133,7 +133,7 @@ def _held(mesh: Mesh) -> dict[int, set[str]]:
 
 def _weights(mesh: Mesh, group: ElementGroup) -> np.ndarray:
     """Weight at the nodes [N]: of each element evenly at its corners."""
-    from extrados.building.mesh.mesh import element_areas
+    from extrados.views.mesh.mesh import element_areas
 
     density = np.array([material.density for material in mesh.materials])[group.material]
     each = (

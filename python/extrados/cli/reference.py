@@ -101,7 +101,7 @@ def new(
 
 def cases(
     folder: Annotated[
-        Path | None, typer.Argument(help="where to look; default ./cases, else the cases that are shipped")
+        Path | None, typer.Argument(help="folder; default ./cases, else the cases that are shipped")
     ] = None,
 ) -> None:
     """List the decks below a folder with their titles."""

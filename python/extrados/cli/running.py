@@ -136,7 +136,7 @@ def assess(
             out_console.print(table)
             out_console.say(f"Ranking: {place / 'ranking.html'}")
     if len(rows) < total:
-        err_console.say(f"{total - len(rows)} of {total} buildings are missing; --resume goes on from here")
+        err_console.say(f"{total - len(rows)} of {total} buildings are missing; --resume continues from here")
         raise typer.Exit(interrupts.exit_code())
     raise typer.Exit(0 if all(one.status == "ok" for one in rows) else NOT_DONE)
 
@@ -160,7 +160,7 @@ def _draw(folder: Path, figures: bool, quiet: bool) -> None:
     report = None
     if figures:
         try:
-            from extrados.plots.report import write_report
+            from extrados.show.report import write_report
 
             report = write_report(folder)[0]
         except KeyboardInterrupt:

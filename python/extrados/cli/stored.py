@@ -15,7 +15,7 @@ def report(
     pdf: Annotated[bool | None, typer.Option(help="also report.pdf; default where the run holds an assessment")] = None,
 ) -> None:
     """Draw the figures and the report of stored results anew, as HTML and on A4 paper as PDF."""
-    from extrados.plots.report import write_report
+    from extrados.show.report import write_report
 
     with errors():
         out_console.say(f"Report:  {write_report(folder, pdf)[0]}")
@@ -29,7 +29,7 @@ def plot(
     ] = None,
 ) -> None:
     """Draw the figures and the report anew, and list the figures; or the capacity curves of several runs in one picture."""
-    from extrados.plots.report import write_report
+    from extrados.show.report import write_report
 
     with errors():
         if together is not None:
@@ -46,8 +46,8 @@ def _together(folders: list[Path], picture: Path) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    from extrados.plots.together import draw, pushes
     from extrados.results.store import read
+    from extrados.show.together import draw, pushes
 
     curves = pushes([(str(folder), read(folder)) for folder in folders])
     table = Table(box=None, pad_edge=False)
@@ -78,9 +78,9 @@ def compare(
 
     from rich.table import Table
 
-    from extrados.plots.comparing import MOST, document, row
     from extrados.results.compare import compare as compared
     from extrados.results.store import StoreError, read
+    from extrados.show.comparing import MOST, document, row
 
     with errors(as_json):
         found = compared(read(old), read(new), tolerance)
@@ -104,8 +104,8 @@ def compare(
             for line in lines if not as_json else ():
                 out_console.say(f"warning {words}: {line}")
         if page is not None:
-            from extrados.plots import html
             from extrados.results import written
+            from extrados.show import html
 
             try:
                 text = html.page(document((str(old), str(new)), found), page.parent)

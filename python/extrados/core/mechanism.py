@@ -63,7 +63,7 @@ class Table:
     energy: float
 
 
-def _links(linkage: Links) -> tuple[Any, ...]:
+def core_links(linkage: Links) -> tuple[Any, ...]:
     """The arguments by which the facades describe a linkage."""
     n, h = len(linkage.mass), len(linkage.joined)
     return (
@@ -81,7 +81,7 @@ def _links(linkage: Links) -> tuple[Any, ...]:
 def table(linkage: Links) -> Table:
     """Tabulate the mechanism from rest to past its collapse; CoreError where gravity does not hold it shut."""
     numbers, facts, status = _core.api_mechanism.tabulate(
-        *_links(linkage), int(linkage.side), int(_core.api_mechanism.table_length())
+        *core_links(linkage), int(linkage.side), int(_core.api_mechanism.table_length())
     )
     check(status, "motion of the mechanism")
     return Table(numbers, *(float(x) for x in facts))
@@ -110,7 +110,7 @@ def follow(linkage: Links, q: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray, np
     by q; NaN where the hinges cannot be closed."""
     rotations = real("q", np.atleast_1d(q), (None,))
     order = np.argsort(rotations, kind="stable")
-    *arrays, reached, status = _core.api_mechanism.follow(*_links(linkage), rotations[order])
+    *arrays, reached, status = _core.api_mechanism.follow(*core_links(linkage), rotations[order])
     check(status, "motion of the mechanism")
     out = []
     for array in arrays:

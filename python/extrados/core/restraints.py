@@ -10,7 +10,7 @@ from extrados import _core
 from extrados.core import lists
 from extrados.core.calls import real
 from extrados.core.errors import check
-from extrados.core.mechanism import Links, _links
+from extrados.core.mechanism import Links, core_links
 from extrados.core.rocking import Body
 
 #: What a path measures, by the numbers of fortran/mechanism/path: the length of a line, the turn of one part against another
@@ -52,7 +52,7 @@ def paths(
     """
     n = np.size(sort)
     length = _core.api_mechanism.path_length(n)
-    mass, centroid, inertia, *links = _links(linkage)
+    mass, centroid, inertia, *links = core_links(linkage)
     table, status = _core.api_mechanism.paths(
         np.asfortranarray(np.vstack([mass, centroid, inertia])),
         *links,

@@ -6,9 +6,9 @@ from typing import Any
 
 from extrados import kinds
 from extrados.analyses.table import OVERRIDES
-from extrados.building.properties import Initial, Joints, Material, Supports
 from extrados.decks.manual import KeyFacts, TableFacts
 from extrados.decks.plural import PLURAL
+from extrados.model.properties import Initial, Joints, Material, Supports
 from extrados.schema import quantities
 from extrados.schema.table import Table
 

@@ -1,7 +1,7 @@
 """Sections of a deck that are many tables, [[ties]] and their like."""
 
-from extrados.building.devices import AddedHinge, Damper
-from extrados.building.ties import Tie
+from extrados.model.devices import AddedHinge, Damper
+from extrados.model.ties import Tie
 from extrados.schema.table import Table
 
 #: Tables of a section

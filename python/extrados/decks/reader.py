@@ -16,17 +16,17 @@ from pydantic_core import ErrorDetails
 
 from extrados import kinds
 from extrados.analyses.table import OVERRIDES, Analysis
-from extrados.building.building import Building
-from extrados.building.properties import Initial, Joints, Material, Supports
-from extrados.building.structure import Structure
 from extrados.decks.moved import MOVED
 from extrados.decks.plural import MOST, PLURAL
 from extrados.decks.positions import Path as Key
 from extrados.decks.positions import Positions, key_lines
 from extrados.decks.toml import loads
+from extrados.model.properties import Initial, Joints, Material, Supports
+from extrados.model.structure import Structure
 from extrados.schema import files
 from extrados.schema.table import Motion, Table
 from extrados.schema.text import printable
+from extrados.views.building import Building
 
 LARGEST = 1_000_000  # bytes
 MOST_COMPLAINTS = 50
@@ -377,7 +377,7 @@ class _Checker:
         elif isinstance(structure, dict) and isinstance(structure.get("kind"), str):
             shape = structure["kind"]
             known = shape in kinds.STRUCTURES
-            lacks = kinds.table("structure", shape).lacks if known else {}
+            lacks = kinds.STRUCTURES[shape].lacks if known else {}
             if known and wanted is not None and shape not in wanted:
                 self.complain(path, f"{kind} does not take a structure of kind '{shape}'; expected {_words(wanted)}")
             elif (

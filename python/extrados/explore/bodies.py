@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.limit.solids import scene_arrays
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry, NoView
-from extrados.building.geometry.solids.assembly import SolidAssembly
-from extrados.building.mesh.mesh import EDGES, Mesh
-from extrados.building.mesh.options import MeshOptions
-from extrados.building.mesh.shells import ShellMesh, ShellOptions
+from extrados.model.errors import BadGeometry, NoView
+from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
+from extrados.views.mesh.mesh import EDGES, Mesh
+from extrados.views.mesh.options import MeshOptions
+from extrados.views.shell.mesh import ShellMesh
+from extrados.views.shell.options import ShellOptions
 
 #: Elements of a wall beyond which its drawing would be all lines
 MOST_ELEMENTS = 60_000

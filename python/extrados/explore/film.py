@@ -60,7 +60,7 @@ def _size(picture: bytes) -> tuple[int, int]:
 def _gif(pictures: list[bytes], rate: int) -> bytes:
     from PIL import Image
 
-    from extrados.plots.animation import gif  # and with it what draws figures, which pages do not need
+    from extrados.show.film import gif  # and with it what draws figures, which pages do not need
 
     first, *_ = {_size(p) for p in pictures}
 

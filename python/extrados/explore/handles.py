@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.structure import Structure
+from extrados import kinds
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.structure import Structure
 
 #: More vertices than these are not for hands
 MOST_VERTICES = 400
@@ -43,20 +44,40 @@ class Handle:
     step: float | None = field(default=None)
 
 
+@dataclass(frozen=True)
+class Hands:
+    """What hands take hold of on the drawings of a kind of structure: handles (table, stones), and the place that stays when
+    the sizes change (table, stones) [m]; None for the origin."""
+
+    handles: Callable[[Any, Assembly], Iterator[Handle]]
+    anchor: Callable[[Any, Assembly], np.ndarray] | None = None
+
+
+def hands_of(structure: Structure) -> Hands | None:
+    """The hands of the kind of a structure; None where no key is for them."""
+    place = kinds.STRUCTURES[structure.kind].hands
+    return None if place is None else kinds.load(place)
+
+
 def anchor_of(structure: Structure, assembly: Assembly) -> np.ndarray:
     """The place of the building that stays in the drawing when its sizes change [m]."""
-    if structure.kind == "arch":
-        return np.array([0.0, structure.radius * math.cos(0.5 * math.radians(structure.embrace))])
-    if structure.kind == "vault":
-        grounded = np.flatnonzero((assembly.a == GROUND) | (assembly.b == GROUND))
-        return np.array([0.0, float(assembly.middle[grounded, 1].min())])
-    return np.zeros(2)
+    hands = hands_of(structure)
+    return np.zeros(2) if hands is None or hands.anchor is None else hands.anchor(structure, assembly)
 
 
 def handles_of(structure: Structure, assembly: Assembly | None) -> list[Handle]:
     """The handles of a building, in the order in which the keyboard passes them; assembly: its stones, where it has any."""
-    made = _KINDS.get(structure.kind)
-    return list(made(structure, assembly)) if made else []
+    hands = hands_of(structure)
+    return [] if hands is None else list(hands.handles(structure, assembly))
+
+
+def _centre_of_springings(arch: Any, _: Assembly) -> np.ndarray:
+    return np.array([0.0, arch.radius * math.cos(0.5 * math.radians(arch.embrace))])
+
+
+def _ground(_: Any, assembly: Assembly) -> np.ndarray:
+    grounded = np.flatnonzero((assembly.a == GROUND) | (assembly.b == GROUND))
+    return np.array([0.0, float(assembly.middle[grounded, 1].min())])
 
 
 def _key(name: str) -> Callable[[Any], Changes]:
@@ -121,7 +142,7 @@ def _arch(s: Any, _: Assembly) -> Iterator[Handle]:
 def _vault(s: Any, assembly: Assembly) -> Iterator[Handle]:
     r, t, half = s.radius, s.thickness, 0.5 * math.radians(s.embrace)
     outer = r + 0.5 * t
-    base = float(anchor_of(s, assembly)[1])
+    base = float(_ground(s, assembly)[1])
     start = s.face if s.width_from == "face" else outer * math.sin(half)
     yield _length(
         "buttress_width", "Width of the buttresses", start + s.buttress_width, base, s.buttress_width,
@@ -368,11 +389,22 @@ def _vertices(s: Any, _: Assembly) -> Iterator[Handle]:
         )  # fmt: skip
 
 
-_KINDS: dict[str, Callable[[Any, Assembly], Iterator[Handle]]] = {
-    "arch": _arch, "vault": _vault, "aisled-vault": _church, "block": _block, "column": _column, "pointed-arch": _pointed,
-    "elliptical-arch": _elliptical, "bridge": _bridge, "blocks": _vertices,
-    "panel": _panel, "brickwork": _brickwork, "stack": _stack, "frame": _frame,
-}  # fmt: skip
+ARCH, VAULT = Hands(_arch, _centre_of_springings), Hands(_vault, _ground)
+AISLED_VAULT, BLOCK, COLUMN, POINTED, ELLIPTICAL = (
+    Hands(_church),
+    Hands(_block),
+    Hands(_column),
+    Hands(_pointed),
+    Hands(_elliptical),
+)
+BRIDGE, BLOCKS, PANEL, BRICKWORK, STACK, FRAME = (
+    Hands(_bridge),
+    Hands(_vertices),
+    Hands(_panel),
+    Hands(_brickwork),
+    Hands(_stack),
+    Hands(_frame),
+)
 
 
 def load_handles(loads: list[Any], name: str, surfaces: list[tuple[float, float]], scale: float) -> Iterator[Handle]:

@@ -4,13 +4,13 @@ import re
 from typing import Any
 
 from extrados.analyses.context import Refused
-from extrados.building.errors import BadGeometry, NoView
 from extrados.core.errors import CoreError
 from extrados.decks.reader import DeckError
 from extrados.explore.folder import NotThere
 from extrados.explore.stored import StoreError
 from extrados.limit.errors import CannotStand
 from extrados.limit.programme import NoAnswer, NoEquilibrium
+from extrados.model.errors import BadGeometry, NoView
 from extrados.schema import quantities
 
 #: What may go wrong with a building or a question that a hand asks for: told, not raised

@@ -6,17 +6,18 @@ from typing import Any
 
 import numpy as np
 
+from extrados.analyses.conclude import MotionDemand
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking.conditions import Counted, astray_of, of_many, of_one, told
 from extrados.analyses.rocking.failure_domain import MODE_I, Mapper, natural_durations
 from extrados.analyses.rocking.history import answer, rest_time, run_history
 from extrados.analyses.rocking.shapes import States, shapes
 from extrados.analyses.rocking.tables import Assessment, FailureDomain, Rocking
-from extrados.analyses.run import run_one
-from extrados.building.building import Building
-from extrados.building.geometry.assembly import Assembly
+from extrados.analyses.sequence import run_one
+from extrados.model.geometry.assembly import Assembly
 from extrados.motions.motion import Motion
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
 
 #: Pictures of a history, and points of its curves
 MOST_PICTURES, MOST_POINTS = 600, 1600
@@ -44,6 +45,7 @@ def history(
     end = options.end_time or motion.end + rest_time(rocker)
     fine = options.model_copy(update={"output_step": max(options.output_step, end / MOST_OUTPUTS)})
     response = run_history(context, fine, rocker.body, end, 12, rocker.start_rotation)
+    conditions = of_one(rocker, response)["conditions"]
     words: dict[str, Any] = {
         "outcome": response.outcome, "settled": response.settled, "half_cycles": response.half_cycles,
         "impacts": response.impacts, "impact_times_s": [t for kind, t, _ in response.events if kind == "impact"][:400],
@@ -51,7 +53,7 @@ def history(
         "critical_rad": list(rocker.critical), "uplift_g": rocker.uplift, "restitution": rocker.restitution,
         "peak_ground_g": motion.peak / GRAVITY, "stop_time_s": response.stop_time, "end_time_s": end, "word": rocker.word,
         "answer": answer(context, response, f"The {rocker.word}", "comes down", rocker.uplift),
-        "warnings": [*told(of_one(rocker, response)["conditions"]), *rocker.warnings, *motion.notes],
+        "violated": conditions.violated, "warnings": [*told(conditions), *rocker.warnings, *motion.notes],
     }  # fmt: skip
     moving = np.flatnonzero(response.rotation)
     last = float(response.time[moving[-1]]) if len(moving) else 0.0
@@ -113,8 +115,8 @@ def _in_two(
         "impact_times_s": get["impact_time"].tolist()[:400], "peak_rotation_rad": r.peak_rotation_rad,
         "peak_rotation_ratio": r.peak_rotation_ratio, "critical_rad": [r.critical_rotation_rad] * 2,
         "uplift_g": r.uplift_acceleration_g, "restitution": r.restitution, "peak_ground_g": r.peak_ground_acceleration_g,
-        "stop_time_s": end, "end_time_s": end, "word": building._structure().word, "answer": result.answer,
-        "warnings": result.warnings, "active_s": min(1.05 * float(time[moving[-1]]), end) if len(moving) else end,
+        "stop_time_s": end, "end_time_s": end, "word": building.require_structure().word, "answer": result.answer,
+        "violated": r.judged(MotionDemand(context)).violated, "warnings": result.warnings, "active_s": min(1.05 * float(time[moving[-1]]), end) if len(moving) else end,
     }  # fmt: skip
     keep = slice(0, None, max(1, -(-len(time) // MOST_POINTS)))
     arrays = {name: get[name][keep] for name in ("time", "rotation", "kinetic", "potential", "ledger")}

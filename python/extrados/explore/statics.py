@@ -11,18 +11,18 @@ import numpy as np
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.common import limit_of, tie_rows
 from extrados.analyses.limit.tables import LimitAnalysisTable
-from extrados.building.building import Building
-from extrados.building.errors import NoView
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.chains import is_stack
 from extrados.limit.answer import assess, cannot_stand
 from extrados.limit.errors import CannotStand
+from extrados.limit.finite_motion import finite_motion
 from extrados.limit.graphic import force_polygon, thrust_joint, thrust_of
 from extrados.limit.lines import thrust_paths
-from extrados.limit.motion import finite_motion
 from extrados.limit.places import place_of
 from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State
 from extrados.limit.states import blended
+from extrados.model.errors import NoView
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.chains import is_stack
+from extrados.views.building import Building
 
 #: Of a joint: so near to its end the line makes a hinge
 TOUCHES = 1e-4

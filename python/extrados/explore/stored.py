@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from extrados.decks.reader import Deck
-from extrados.kinds import STRUCTURES, table
+from extrados.kinds import ANALYSES, STRUCTURES, load, table
 from extrados.results.store import Stored, StoreError
 from extrados.results.verdict import SelfWeight
 from extrados.schema.constants import GRAVITY
@@ -114,10 +114,10 @@ def shown(run: Stored, name: str | None) -> tuple[dict[str, Any], Arrays]:
         raise StoreError(f"the run has no analysis {name[:60]!r} with arrays")
     kind = run.analysis(name)["kind"]
     arrays = {key: array.data for key, array in run.arrays[name].items()}
-    made = _Maker(run, name, arrays)
-    draw = made.self_weight if isinstance(run[name], SelfWeight) else getattr(made, kind.replace("-", "_"), made.others)
+    made = Shown(run, name, arrays)
+    draw = Shown.self_weight if isinstance(run[name], SelfWeight) else load(ANALYSES[kind].page)
     try:
-        draw()
+        draw(made)
     except KeyError as error:
         raise StoreError(f"the results of {name} lack the array {error}") from None
     results = run.analysis(name)["results"]
@@ -148,7 +148,7 @@ def _rows(name: str, value: Any) -> dict[str, Any] | None:
     }
 
 
-class _Maker:
+class Shown:
     """Collects what the page is sent of one analysis."""
 
     def __init__(self, run: Stored, name: str, arrays: Arrays):
@@ -265,7 +265,7 @@ class _Maker:
 
     def _cracked(self, parts: list[np.ndarray], bends: list[bool], width: np.ndarray) -> np.ndarray:
         """Tones (states, faces) of elements: of floors 1, of walls and vaults, which bend, 0, or 2 to 5 by quarters of the widest crack."""
-        from extrados.plots.shell import LEAST_WIDTH
+        from extrados.show.shell import LEAST_WIDTH
 
         counts = [len(part) for part in parts]
         wall = np.repeat(np.array(bends, dtype=bool), counts)
@@ -405,7 +405,7 @@ class _Maker:
             )
 
     def sla(self) -> None:
-        from extrados.plots.sla import CORNERS
+        from extrados.show.cracked import CORNERS
 
         self._curve()
         if "state_event" not in self.arrays:

@@ -7,8 +7,6 @@ from typing import TypeVar
 
 import numpy as np
 
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.chains import inner_stones
 from extrados.limit.equilibrium import hanging_stones
 from extrados.limit.errors import CannotStand
 from extrados.limit.graphic import force_polygon, funicular
@@ -16,6 +14,8 @@ from extrados.limit.lines import ThrustPath, thrust_paths
 from extrados.limit.loads import Loads
 from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State
 from extrados.limit.systems import Sparse
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.chains import inner_stones
 
 Found = TypeVar("Found")
 TOUCH = 1e-6  # of a joint's length: the thrust line touches its end
@@ -131,7 +131,7 @@ def assess(
         try:
             return find()
         except gives_up as error:
-            warnings.append(f"{what} is left out: {error}")
+            warnings.append(f"{what} is not given: {error}")
             return None
 
     try:
@@ -204,15 +204,15 @@ def why_not(limit: LimitAnalysis) -> str:
         names = [assembly.block_names[i] for i in hanging]
         told = ", ".join(names[:4]) + (f" and {len(names) - 4} more" if len(names) > 4 else "")
         if not LimitAnalysis(assembly, loads=limit.loads).stands():
-            return f"nothing bears {told} from below"
-        return f"nothing but friction bears {told}, and {_slides(limit)}"
+            return f"nothing carries {told} from below"
+        return f"only friction carries {told}, and {_slides(limit)}"
     try:
         interval = sorted(limit.collapse(d)[0].gamma for d in (1, -1))
     except NoEquilibrium:
         interval = []
     if interval and (interval[0] > 0.0 or interval[1] < 0.0):
         return (
-            f"it stands only when pushed sideways by {interval[0]:.4f} to {interval[1]:.4f} g "
+            f"the structure stands only under a horizontal load of {interval[0]:.4f} to {interval[1]:.4f} g "
             f"(tilted by {np.degrees(np.arctan(interval[0])):.2f} to {np.degrees(np.arctan(interval[1])):.2f} degrees)"
         )
     try:
@@ -249,4 +249,4 @@ def _slides(limit: LimitAnalysis) -> str:
     while high - low > 1e-4:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if stands(middle) else (middle, high)
-    return f"it slides apart: a coefficient of friction of at least {high:.3f} is needed"
+    return f"the structure slides apart: a coefficient of friction of at least {high:.3f} is needed"

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.loads import Loads
 from extrados.limit.states import NO_WORK, Mechanism, State
+from extrados.model.geometry.assembly import GROUND, Assembly
 
 ROUNDING, CLOSING, GAP = 1e-7, 1e-6, 1e-4  # of the total load, of the fastest joint, of gamma: more certifies nothing
 

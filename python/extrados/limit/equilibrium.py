@@ -10,8 +10,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.loads import Loads
+from extrados.model.geometry.assembly import GROUND, Assembly
 
 LEVEL = 1e-6  # of a unit normal: a joint that leans this little bears nothing
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from extrados.building.geometry.earth import BESIDE, Earth
 from extrados.limit.resistance import Resistance
+from extrados.model.geometry.earth import BESIDE, Earth
 from extrados.schema.constants import GRAVITY
 
 

@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.polygons import crossings, cut, properties
 from extrados.limit.graphic import section_forces
 from extrados.limit.loads import Loads, tilt_loads
 from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.polygons import crossings, cut, properties
 
 THIRD = 1.0 / 3.0
 HEIGHT = 1e-10  # of the greatest crack height: how closely it is found
@@ -130,7 +130,7 @@ def _base(assembly: Assembly, block: int) -> int:
     grounded = [j for j in assembly.joints_of(block).tolist() if GROUND in (assembly.a[j], assembly.b[j])]
     name = assembly.block_names[block]
     if len(grounded) != 1:
-        raise NoCrack(f"{name}: it stands on {len(grounded)} ground joints; the crack is sought from one")
+        raise NoCrack(f"{name}: the buttress has {len(grounded)} ground joints; the crack is sought from one")
     return grounded[0]
 
 

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.chains import inner_stones, is_stack
-from extrados.building.geometry.polygons import below
 from extrados.limit.loads import Loads
 from extrados.limit.states import State
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.chains import inner_stones, is_stack
+from extrados.model.geometry.polygons import below
 from extrados.schema.constants import GRAVITY
 
 ROUNDING = 1e-12  # of the greatest compression

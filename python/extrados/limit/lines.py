@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.building.geometry.assembly import Assembly
-from extrados.building.geometry.chains import inner_stones
-from extrados.building.geometry.polygons import reach
 from extrados.limit.graphic import section_forces
 from extrados.limit.loads import Loads
 from extrados.limit.states import State
+from extrados.model.geometry.assembly import Assembly
+from extrados.model.geometry.chains import inner_stones
+from extrados.model.geometry.polygons import reach
 
 #: Of the greatest compression of a stone: joints pressed by less carry nothing.
 CARRIES = 1e-4

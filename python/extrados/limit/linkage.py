@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.limit.motion import rigid_parts
+from extrados.limit.finite_motion import rigid_parts
 from extrados.limit.states import Mechanism
+from extrados.model.geometry.assembly import GROUND, Assembly
 
 # Of the fastest speed of the mechanism: slip, or crushing, that is more than rounding.
 SLIPS = 1e-5
@@ -86,7 +86,7 @@ def linkage(assembly: Assembly, mechanism: Mechanism, side: int) -> Linkage:
     slides = [j for j in _moving(mechanism) if abs(mechanism.slip[j]) > SLIPS * fastest]
     if slides:
         raise CannotRock(
-            f"it slides along {_listed(names, slides)}: a mechanism that rocks turns about hinges without sliding"
+            f"the mechanism slides along {_listed(names, slides)}: a mechanism that rocks turns about hinges without sliding"
         )
     crushes = [j for j in _moving(mechanism) if ends[:2, j].min() < -SLIPS * fastest]
     if crushes:
@@ -217,6 +217,4 @@ def _same_motion(made: Linkage, assembly: Assembly, mechanism: Mechanism, spin: 
     field[:, :2] /= assembly.size
     error = rows @ field.ravel() if len(rows) else np.zeros(1)
     if np.abs(error).max() * assembly.size > SAME * fastest:
-        raise CannotRock(
-            "the hinges alone do not give the motion found: the mechanism gives way at more places than it turns about"
-        )
+        raise CannotRock("the hinges alone do not give the motion found: the mechanism also moves at other joints")

@@ -5,9 +5,9 @@ from functools import cached_property
 
 import numpy as np
 
-from extrados.building.geometry.assembly import Assembly
 from extrados.limit.fill import passive_pressure
 from extrados.limit.resistance import Resistance
+from extrados.model.geometry.assembly import Assembly
 from extrados.schema.constants import GRAVITY
 
 

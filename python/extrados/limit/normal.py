@@ -6,9 +6,9 @@ from typing import Protocol
 import numpy as np
 from scipy import sparse
 
-from extrados.building.geometry.assembly import GROUND
 from extrados.core.limit import BandFactor
 from extrados.limit.systems import Sparse
+from extrados.model.geometry.assembly import GROUND
 
 WIDEST = 300  # equations from the diagonal to which a symmetric matrix is factored as a band: beyond, sparse is faster
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.chains import is_stack
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.chains import is_stack
 
 CROWN = 0.1  # of the span to either side of its middle
 LEVEL = 0.7  # least vertical part of the normal of a bed joint

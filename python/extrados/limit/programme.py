@@ -6,7 +6,6 @@ from functools import cached_property
 import numpy as np
 from scipy import sparse
 
-from extrados.building.geometry.assembly import Assembly
 from extrados.limit.coulomb import CoulombProblem, CoulombState
 from extrados.limit.equilibrium import hanging_stones, spanning_tree
 from extrados.limit.graphic import senses, thrust_joint
@@ -25,6 +24,7 @@ from extrados.limit.solver import (
 )
 from extrados.limit.states import Mechanism, State, read_mechanism, read_state
 from extrados.limit.systems import LOOPS_REDUCED, Constraints, Reduced, Sparse
+from extrados.model.geometry.assembly import Assembly
 
 __all__ = ["Immovable", "LimitAnalysis", "Mechanism", "NoAnswer", "NoEquilibrium", "State"]
 
@@ -215,7 +215,7 @@ class LimitAnalysis:
         """Collapse by linear programmes."""
         solution, rows, corners = self.optimise(self._gamma_cost(-float(direction)), (-BOUND, BOUND))
         if abs(solution.x[-1]) > 0.99 * BOUND or solution.made_up > MADE_UP * max(1.0, abs(solution.value)):
-            raise Immovable("no such load brings it down: the joints hold it from all sides")
+            raise Immovable("no such load causes collapse: the joints restrain the blocks from all sides")
         motion = rows.openings(np.maximum(solution.rows, 0.0), len(self.assembly.a))
         if isinstance(self.system, Reduced):
             twist, defect = self.system.velocities(motion)
@@ -269,7 +269,7 @@ class LimitAnalysis:
             )
             raise NoAnswer(
                 f"no state of collapse without dilatancy was found; the load lies between that without friction ({lower}) and "
-                f"that with dilatancy ({upper}); stones that friction alone holds between their neighbours may have none"
+                f"that with dilatancy ({upper}); blocks that friction alone holds between their neighbours may have none"
             )
         self.coulomb[direction] = found
         taken = -float((found.corners * found.motion).sum())
@@ -316,7 +316,7 @@ class LimitAnalysis:
         """Immovable where not even joints without friction let the load do work."""
         # However much soil and ties take, a greater load overcomes it.
         if self._certificate(direction * self.loads.live, np.zeros(len(self._mu)), taking=False) is None:
-            raise Immovable("no such load brings it down: the joints hold it from all sides")
+            raise Immovable("no such load causes collapse: the joints restrain the blocks from all sides")
 
     def _read(
         self, gamma: float, corners: np.ndarray, share: np.ndarray, twist: np.ndarray, motion: np.ndarray, taken: float

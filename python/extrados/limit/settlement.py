@@ -10,14 +10,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.building.geometry.assembly import GROUND
 from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium, State
 from extrados.limit.solver import BOUND, MADE_UP
 from extrados.limit.states import read_state
+from extrados.model.geometry.assembly import GROUND
 
 SLIGHT = 1e-6  # cost of pressing beside that of the work on the supports
 SAME = 1e-8  # of the total load: states that do this little more work are as good
-CANNOT_FOLLOW = "the stones cannot follow: they are wedged, and would have to be crushed"
+CANNOT_FOLLOW = "the blocks are wedged, and would have to be crushed"
 
 
 @dataclass(frozen=True)

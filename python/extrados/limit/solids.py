@@ -17,10 +17,10 @@ import highspy
 import numpy as np
 from scipy import sparse
 
-from extrados.building.geometry.assembly import GROUND
-from extrados.building.geometry.solids.assembly import SolidAssembly
 from extrados.core.threads import Worker
 from extrados.limit.errors import Immovable, NoAnswer
+from extrados.model.geometry.assembly import GROUND
+from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.schema.constants import GRAVITY
 
 Found = TypeVar("Found")
@@ -189,7 +189,7 @@ class SolidLimit:
         if "DualInfeasible" in status:
             return self._proven(x, dead)
         if "PrimalInfeasible" in status:
-            raise Immovable("no push of its weight brings it down: its contacts hold it from all sides")
+            raise Immovable("no horizontal load causes collapse: the contacts restrain the blocks from all sides")
         power = float(live @ x)
         if not np.isfinite(x).all() or power <= 0.0:
             raise NoAnswer(f"the conic solver gave up: {status}")

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.building.geometry.assembly import Assembly
 from extrados.limit.loads import Loads
 from extrados.limit.systems import Constraints
+from extrados.model.geometry.assembly import Assembly
 
 # A joint whose motion at one end is this much smaller than at the other turns about the former.
 HINGE = 1e-4

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
 from extrados.limit.solver import MADE_UP
+from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.schema.constants import GRAVITY
 
 ROOM = 1e-9  # of a joint's length: how far outside the line may lie by rounding
@@ -60,7 +60,7 @@ class _Chain:
         cost[j] = a.normal[j] @ self.direction, a.normal[j] @ self.direction, a.tangent[j] @ self.direction
         solution, rows, _ = limit.optimise(limit.system.cost(cost), (0.0, 0.0))
         if solution.made_up > MADE_UP * max(1.0, abs(solution.value)):
-            raise NoEquilibrium("the stones cannot follow: they are wedged, and would have to be crushed")
+            raise NoEquilibrium("the blocks are wedged, and would have to be crushed")
         motion = rows.openings(np.maximum(solution.rows, 0.0), len(a.a))[self.joints]
         active = np.flatnonzero(np.abs(motion).max(axis=1) > 1e-9 * np.abs(motion).max())
         hinges = tuple((int(k), "intrados" if motion[k, 0] < motion[k, 1] else "extrados") for k in active)

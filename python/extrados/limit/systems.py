@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.equilibrium import Tree, joint_forces
 from extrados.limit.loads import Loads
+from extrados.model.geometry.assembly import GROUND, Assembly
 
 # More loops than this and the dense rows of the reduced form cost more than the equations they save.
 LOOPS_REDUCED = 40

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from extrados.building.geometry.anchors import Anchored
-from extrados.building.geometry.assembly import GROUND
 from extrados.limit.resistance import Resistance
+from extrados.model.geometry.anchors import Anchored
+from extrados.model.geometry.assembly import GROUND
 
 
 def pulls(anchored: Anchored, least: Sequence[float], most: Sequence[float], scale: float) -> Resistance:

@@ -19,33 +19,33 @@ class AssessHazard(ResultModel):
     member: int = maybe("of a set: the motion that strategies of one motion take, from 1")
     chosen_by: str = maybe("of a set: the rule by which it was taken")
     peak_ground_acceleration_g: float = fact("demand of strategies that take a constant acceleration", "g")
-    peak_told: str = fact("where that peak comes from")
+    peak_told: str = fact("source of that peak")
     pulse_amplitude_g: float | None = fact("amplitude of the primary impulse; null: none", "g")
     pulse_period_s: float | None = fact("its period; null: none", "s")
 
 
 class StrategyVerdict(ResultModel):
-    """What one strategy says."""
+    """Verdict of one strategy."""
 
     strategy: str = fact("kind of analysis; `probability` is `fragility` with uncertain sizes or many motions")
     label: str = fact("its name in words")
-    part: str | None = fact("name of the analysis of this run that holds it; null where it has no result")
+    part: str | None = fact("name of the analysis of this run with its results; null without a result")
     status: Literal["ok", "refused", "failed", "left out"] = fact("whether it has a result")
     reason: str = fact("why it has none; empty where it has")
-    axis: Axis = fact("what is compared")
-    demand: float | None = fact("what is asked, in `unit`")
-    capacity: float | None = fact("what is borne, in `unit`")
+    axis: Axis = fact("quantity that is compared")
+    demand: float | None = fact("demand, in `unit`")
+    capacity: float | None = fact("capacity, in `unit`")
     unit: str = fact("unit of both")
     outcome: Outcome = fact("stands, collapses, cannot-stand, open or not-applicable")
     bound: Bound | None = fact("capacity as a bound: exact, upper or lower; null: an estimate")
     violated: list[str] = fact(
         "assumptions of the strategy that were checked and do not hold; the outcome is then open"
     )
-    margin: float | None = fact("factor on the hazard at which the verdict turns; null: not known")
-    margin_at_least: float | None = fact("greatest factor at which it was seen to stand; null: none")
-    margin_below: float | None = fact("least factor at which it was seen to fall; null: none")
-    parameters: str = fact("how it was asked, and by which rule")
-    assumes: str = fact("what the strategy takes for granted")
+    margin: float | None = fact("critical scale factor of the hazard; null: not known")
+    margin_at_least: float | None = fact("greatest factor on the hazard that was run without collapse; null: none")
+    margin_below: float | None = fact("least factor on the hazard that was run with collapse; null: none")
+    parameters: str = fact("settings of the strategy, and the rule that gave them")
+    assumes: str = fact("assumptions of the strategy")
     statement: str = fact("its verdict in one sentence")
 
     def margin_told(self, nothing: str = "not known") -> str:
@@ -70,10 +70,10 @@ class Reason(ResultModel):
 
 
 class Probe(ResultModel):
-    """A further run that was asked to learn why, or how far."""
+    """A further run that shows why strategies differ, or how large a margin is."""
 
     strategy: str = fact("kind of analysis")
-    changed: str = fact("what was other than in the deck")
+    changed: str = fact("difference from the deck")
     outcome: Outcome = fact("its verdict")
     value: float | None = fact("its demand over its capacity; null: not known")
 
@@ -87,21 +87,21 @@ class TurningValue(ResultModel):
     unit: str = fact("unit of the value")
     low: float = fact("a value below")
     high: float = fact("a value above")
-    tilt_base: float | None = fact("margin of limit analysis at the value as it is; null: none")
-    rocking_base: float | None = fact("margin of rocking at the value as it is; null: none")
+    tilt_base: float | None = fact("margin of limit analysis at the value of the deck; null: none")
+    rocking_base: float | None = fact("margin of rocking at the value of the deck; null: none")
     tilt_low: float | None = fact("margin of limit analysis at the value below; null: none")
     tilt_high: float | None = fact("margin of limit analysis at the value above")
     rocking_low: float | None = fact("margin of rocking at the value below")
     rocking_high: float | None = fact("margin of rocking at the value above")
-    tilt_turns: float | None = fact("value at which the verdict of limit analysis turns; null: at none that was tried")
-    rocking_turns: float | None = fact("value at which the verdict of rocking turns; null: at none that was tried")
+    tilt_turns: float | None = fact("value at which the verdict of limit analysis changes; null: at none that was run")
+    rocking_turns: float | None = fact("value at which the verdict of rocking changes; null: at none that was run")
     dem_base: float | None = fact(
-        "movement of discrete elements over that which counts as collapse, at the value as it is; null: not tried"
+        "displacement of discrete elements over that which counts as collapse, at the value of the deck; null: not run"
     )
     dem_low: float | None = fact("the same at the value below")
     dem_high: float | None = fact("the same at the value above")
     dem_turns: float | None = fact(
-        "value at which discrete elements turn; null: at none that was tried, or decided by last digits"
+        "value at which the verdict of discrete elements changes; null: at none that was run, or the response is chaotic"
     )
 
 
@@ -119,10 +119,10 @@ class Assess(KindResults):
     )
     reasons: list[Reason] = fact("why strategies differ")
     unexplained: list[list[str]] = fact("pairs that differ without a reason that any rule has found")
-    parts: dict[str, str] = fact("analyses of this run that it has asked for: name -> what they are, in words")
+    parts: dict[str, str] = fact("analyses of this run that the assessment requested: name -> description")
     probes: list[Probe] = fact("further runs")
-    sensitivity: list[TurningValue] = maybe("what the verdicts hang on, the most decisive first")
-    not_done: list[str] = fact("what the budget did not allow, and further runs that decided nothing")
+    sensitivity: list[TurningValue] = maybe("sensitivity of the verdicts, the most decisive value first")
+    not_done: list[str] = fact("steps that the budget did not allow, and further runs that decided nothing")
     least_margin: float | None = fact(
         "least critical scale factor of the hazard of all strategies; 0 where the building cannot stand; null: none known"
     )

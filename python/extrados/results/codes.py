@@ -3,8 +3,9 @@
 from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
+from extrados.results.limit import DILATANT
 from extrados.results.rocking import RockingOutcome
-from extrados.results.verdict import Bound, Demand, KindResults, Verdict, judge
+from extrados.results.verdict import Bound, Demand, KindResults, Outcome, Verdict, judge
 
 Applied = Literal["holds", "fails", "not-applicable", ""]
 
@@ -36,8 +37,12 @@ class Checked(KindResults):
     confidence_factor: float = maybe("FC by which the capacity of the checks of NTC is divided")
     behaviour_factor: float = maybe("q of the linear check of NTC")
     bound: Bound = maybe("which side of the exact capacity the checks lie on")
+    margin_associated: float | None = maybe(
+        "joints slide: capacity / demand of the governing check by associated (dilatant) friction; a check that fails without dilatancy is "
+        "open where this is at least 1; null without a demand"
+    )
     violated: list[str] = maybe(
-        "assumptions on the unsafe side that were checked and do not hold: what holds is then open"
+        "assumptions on the unsafe side that were checked and do not hold: a check that holds is then open"
     )
 
     def judged(self, demand: Demand) -> Verdict:
@@ -80,10 +85,17 @@ class Checked(KindResults):
                 worst.verdict == "holds"
             )  # what is violated errs on the unsafe side: a check that fails, fails all the same
             unit = f" {worst.unit}" if worst.unit else ""
+            outcome: Outcome | None = "stands" if holds and self.bound != "upper" else None
+            if not holds and (self.margin_associated or 0.0) >= 1.0:
+                outcome = "open"
+                remarks = (
+                    f" Joints slide: by the {DILATANT} the check holds with a margin of {self.margin_associated:.3g}, so collapse is possible "
+                    f"and not proved.{remarks}"
+                )
             return judge(
                 f"{worst.code} governs and {worst.verdict}, by {name}: demand {worst.demand:.3g}, capacity {worst.capacity:.3g}{unit}."
                 f"{remarks}",
-                worst.demand, worst.capacity, worst.unit, "stands" if holds and self.bound != "upper" else None, self.bound,
+                worst.demand, worst.capacity, worst.unit, outcome, self.bound,
                 (self.violated or ()) if holds else (),
             )  # fmt: skip
         strengths = {name: c.capacity for name, c in self.checks.items() if c.unit == "N" and c.capacity is not None}
@@ -105,7 +117,7 @@ class Checked(KindResults):
 class CodeChecks(Checked):
     """code-checks: rules for rocking bodies and wall piers, beside the computed rocking."""
 
-    dynamic_outcome: RockingOutcome = maybe("of a block under a motion: what the computed rocking gives")
+    dynamic_outcome: RockingOutcome = maybe("of a block under a motion: outcome of the computed rocking")
     dynamic_peak_rotation_ratio: float = maybe("its greatest rotation over the critical one")
     peak_ground_acceleration_g: float | None = maybe("of a block: a_g S, the demand of the rules", "g")
     peak_ground_velocity_m_s: float | None = maybe("of a block: demand of Ishiyama's rule", "m/s")
@@ -136,7 +148,7 @@ class LocalMechanism(Checked):
     )
     activation_acceleration_g: float = fact("a_0* = alpha_0 g/(e* FC)", "g", source="Circ. 7/2019 C8.7.1.2.1")
     zero_displacement_m: float | None = fact(
-        "d_0*, at which the multiplier vanishes, by the horizontal displacement of the centre of what moves; null: at none",
+        "d_0*, at which the multiplier vanishes, by the horizontal displacement of the centre of the moving blocks; null: none",
         "m",
         source="Circ. 7/2019 [C8.7.1.4]",
     )
@@ -146,7 +158,7 @@ class LocalMechanism(Checked):
         "T_SLV = 1.68 pi sqrt(d_SLV/a(d_SLV)) on the straight capacity curve", "s", source="Circ. 7/2019 C8.7.1.2.1.8"
     )
     swaying_weight_N: float = fact(
-        "weight of the kinematic chain: what moves in the mechanism, with what rests on it and sways, and what pushes it",
+        "weight of the kinematic chain: moving blocks, the loads that rest on them and sway, and the masses that push them",
         "N",
     )
     base_height_m: float = fact(
@@ -158,7 +170,28 @@ class LocalMechanism(Checked):
         "g",
         source="Circ. 7/2019 C7.2.3",
     )
+    multiplier_associated: float = maybe(
+        "joints slide: alpha_0 by associated (dilatant) friction, the upper end of the interval whose least state found is `multiplier`",
+        source="Drucker 1954",
+    )
     walls: list[WallMechanism] = maybe(
         "of a building on a plan: every wall above the foot of each storey, the worst first; the other "
         "numbers are those of the worst"
     )
+
+
+class NoLocalMechanism(KindResults):
+    """local-mechanism: no local mechanism of the kind that is checked."""
+
+    reason: str = fact("why the building has none")
+
+    def statement(self) -> str:
+        """The result in words."""
+        return f"No local mechanism applies. {self.reason[:1].upper()}{self.reason[1:]}."
+
+    def judged(self, demand: Demand) -> Verdict:
+        """not-applicable: nothing is compared with the demand."""
+        return judge(self.statement())
+
+
+LocalMechanisms = LocalMechanism | NoLocalMechanism

@@ -15,7 +15,7 @@ DemOutcome = Literal["at-rest", "slid", "rocked", "collapse"]
 CollapseCriterion = Literal["rotation", "loss of height", "loss of support", "separation"]
 #: Of the length of a joint: it may slide so far without a doubt on the support that is left
 SLIP_LIMIT = 0.25
-INTERVAL = "whether blocks slide as it goes on joints whose forces statics does not fix: the accelerations are then one state of an interval"
+INTERVAL = "whether blocks slide, on the way to collapse, on statically indeterminate joints: the accelerations are then one state of an interval"
 #: What a contact of solids does, in the stored array `state`: CLOSED, open at some corners, APART
 ROCKS = 1
 
@@ -23,7 +23,7 @@ ROCKS = 1
 class Variation(ResultModel):
     """A run with another damping, stiffness or friction."""
 
-    varied: Literal["damping", "stiffness", "friction"] = fact("what was varied")
+    varied: Literal["damping", "stiffness", "friction"] = fact("value that was varied")
     value: float = fact("factor on damping or stiffness, or the coefficient of friction")
     beta_s: float = fact("stiffness-proportional damping", "s")
     stiffness_Pa_per_m: float = fact("greatest normal stiffness of the joints", "Pa/m")
@@ -116,7 +116,7 @@ class DemRun(KindResults):
 
 #: What the capacity of a tilt test is where blocks slide on joints whose forces statics does not fix
 ONE_PATH = (
-    "Blocks slide as it goes: the value is one state, of this load path. Without dilatancy such states form an interval, and a lower one may "
+    "Blocks slide on the way to collapse: the value is one state, of this load path. Without dilatancy such states form an interval, and a lower one may "
     "exist."
 )
 
@@ -132,16 +132,16 @@ class DemTilt(KindResults):
     """dem: the constant acceleration that brings the blocks down."""
 
     test: Literal["tilt"] = fact("the test")
-    outcome: DemOutcome = fact("it comes down, at these accelerations")
-    collapse_acceleration_g: float = fact("constant acceleration that brings it down, pushed to +x", "g")
-    collapse_acceleration_opposite_g: float = fact("constant acceleration that brings it down, pushed to -x", "g")
+    outcome: DemOutcome = fact("collapse occurs, at these accelerations")
+    collapse_acceleration_g: float = fact("constant acceleration that causes collapse, applied to +x", "g")
+    collapse_acceleration_opposite_g: float = fact("constant acceleration that causes collapse, applied to -x", "g")
     tilt_angle_deg: float = fact("tilt of the ground that pushes alike, to +x", "deg")
     tilt_angle_opposite_deg: float = fact("tilt of the ground that pushes alike, to -x", "deg")
     load_direction: Literal["+x"] = fact("sense of the push that the hinges belong to")
-    hinges: list[NamedHinge] = fact("hinges as it goes")
-    hinges_opposite: list[NamedHinge] = fact("hinges as it goes to -x")
+    hinges: list[NamedHinge] = fact("hinges of the mechanism")
+    hinges_opposite: list[NamedHinge] = fact("hinges of the mechanism to -x")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block, positive to +x", "rad")
-    peak_slip_m: float = fact("greatest slip as it goes", "m")
+    peak_slip_m: float = fact("greatest slip in the mechanism", "m")
     interval: bool = fact(INTERVAL)
     energy_residual_ratio: float = fact("error of the energy ledger over the energy that went round")
     time_step_s: float = fact("time step", "s")
@@ -223,8 +223,10 @@ class SolidDemTilt(KindResults):
     """dem: the constant acceleration along a direction that brings blocks in space down."""
 
     test: Literal["tilt"] = fact("the test")
-    outcome: DemOutcome = fact("it comes down, at these accelerations")
-    collapse_acceleration_g: float = fact("constant acceleration that brings it down, pushed along the direction", "g")
+    outcome: DemOutcome = fact("collapse occurs, at these accelerations")
+    collapse_acceleration_g: float = fact(
+        "constant acceleration that causes collapse, applied along the direction", "g"
+    )
     collapse_acceleration_opposite_g: float = fact("the same, pushed the opposite way", "g")
     tilt_angle_deg: float = fact("tilt of the ground that pushes alike, along the direction", "deg")
     tilt_angle_opposite_deg: float = fact("tilt of the ground that pushes alike, the opposite way", "deg")
@@ -275,7 +277,7 @@ Dem = DemRun | DemTilt | SolidDemRun | SolidDemTilt
 class DemCurve(ResultModel):
     """Shortest failing durations with one set of joints, by one solver."""
 
-    label: str = fact("what was varied, or the other solver")
+    label: str = fact("value that was varied, or the other solver")
     solver: Literal["compliant", "nonsmooth"] = fact(
         "springs at the joints, or rigid contacts; these have no stiffness"
     )
@@ -293,8 +295,8 @@ class CellApart(ResultModel):
 
     amplitude_g: float = fact("amplitude", "g")
     duration_s: float = fact("duration", "s")
-    fails_as_given: bool = fact("whether it comes down by the solver of the deck")
-    fails_by_the_other: bool = fact("whether it comes down by the other solver")
+    fails_as_given: bool = fact("whether collapse occurs by the solver of the deck")
+    fails_by_the_other: bool = fact("whether collapse occurs by the other solver")
 
 
 class CrossCheck(ResultModel):
@@ -314,7 +316,8 @@ class DemDomain(KindResults):
     shortest_durations_s: list[float | None] = fact("at each amplitude; null where none of those tried fails", "s")
     curves: list[DemCurve] = fact("failure curves with other damping, stiffness or friction; the first is as given")
     mode_II_durations_s: list[float | None] | None = maybe(
-        "shortest durations that bring it down in its first swing; null where none of those tried does", "s"
+        "shortest durations that cause collapse in the first half cycle; null without collapse at any duration that was run",
+        "s",
     )
     convergence: Convergence | None = maybe("of rigid contacts, in all runs")
     cross_check: CrossCheck | None = maybe("by both solvers")
@@ -341,9 +344,9 @@ class DemDomain(KindResults):
                 )  # fmt: skip
         failing = [t for t in self.shortest_durations_s if t is not None]
         if not failing:
-            return judge("None of the pulses tried brings it down.", None, None, "s")
+            return judge("No pulse that was run causes collapse.", None, None, "s")
         return judge(
-            f"Of the {self.pulse} pulses tried the shortest that brings it down lasts {min(failing):.3g} s.",
+            f"Of the {self.pulse} pulses that were run the shortest that causes collapse lasts {min(failing):.3g} s.",
             None, min(failing), "s",
         )  # fmt: skip
 
@@ -370,4 +373,4 @@ class DemParameters(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """Nothing is asked of the building."""
-        return judge("Parameters of the joints; nothing is asked of the building.")
+        return judge("Parameters of the joints; the analysis gives no verdict on the building.")

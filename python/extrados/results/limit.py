@@ -14,7 +14,7 @@ class JointHinge(ResultModel):
     """A joint that hinges."""
 
     joint: int = fact("number of the joint")
-    side: Side = fact("where the stones touch")
+    side: Side = fact("side on which the blocks touch")
 
 
 class NamedHinge(JointHinge):
@@ -26,7 +26,7 @@ class NamedHinge(JointHinge):
 class Hinge(NamedHinge):
     """A hinge of a mechanism, and its place."""
 
-    place: str = fact("where it is, in words: springing, haunch or crown of an arch, foot of a pier, bed or head joint")
+    place: str = fact("place in words: springing, haunch or crown of an arch, foot of a pier, bed or head joint")
     x_m: float = fact("x of the hinge", "m")
     y_m: float = fact("y of the hinge", "m")
 
@@ -63,7 +63,7 @@ class Fracture(ResultModel):
     """Collapse to +x with the leeward buttress cracked."""
 
     stands: bool = maybe("false where the cracked structure cannot stand upright; nothing else is given then")
-    cracks: bool = maybe("whether the buttress cracks before the structure falls")
+    cracks: bool = maybe("whether the buttress cracks before the structure collapses")
     buttress: str = maybe("name of the cracked buttress")
     collapse_acceleration_g: float = maybe("collapse acceleration with the crack", "g")
     tilt_angle_deg: float = maybe("tilt of the ground that pushes alike", "deg", source="thesis Eq. 3.1")
@@ -94,7 +94,7 @@ class NonDilatant(ResultModel):
     """
 
     associated_g: float | None = fact(
-        "upper bound: the same with sliding that dilates; null where that cannot be brought down",
+        "upper bound: the same with sliding that dilates; null without a collapse mechanism",
         "g",
         source="Drucker 1954",
     )
@@ -125,8 +125,8 @@ class NonDilatant(ResultModel):
 class Tilt(KindResults):
     """tilt: the constant horizontal acceleration at which a structure becomes a mechanism."""
 
-    collapse_acceleration_g: float = fact("greatest constant acceleration that is borne, pushed to +x", "g")
-    collapse_acceleration_opposite_g: float = fact("greatest constant acceleration that is borne, pushed to -x", "g")
+    collapse_acceleration_g: float = fact("collapse acceleration (horizontal, constant), towards +x", "g")
+    collapse_acceleration_opposite_g: float = fact("collapse acceleration (horizontal, constant), towards -x", "g")
     tilt_angle_deg: float = fact("tilt of the ground that pushes alike, to +x", "deg", source="thesis Eq. 3.1")
     tilt_angle_opposite_deg: float = fact("tilt of the ground that pushes alike, to -x", "deg")
     admissible_interval_g: list[float] = fact("accelerations between which a thrust line is admissible", "g")
@@ -157,10 +157,10 @@ class Tilt(KindResults):
     ties: list[TieForce] = maybe("forces of the ties at collapse")
     ties_opposite: list[TieForce] = maybe("forces of the ties at collapse to -x")
     thrust_min_N: float = maybe(
-        "least horizontal thrust upright, of the first arch; where ties hold it that at its crown", "N"
+        "least horizontal thrust upright, of the first arch; at the crown of an arch restrained by ties", "N"
     )
     thrust_max_N: float = maybe(
-        "greatest horizontal thrust upright, of the first arch; where ties hold it that at its crown", "N"
+        "greatest horizontal thrust upright, of the first arch; at the crown of an arch restrained by ties", "N"
     )
     thrusts: dict[str, ChainThrust] = maybe("least and greatest thrust upright of each arch, by its name")
     clear_span_m: float = maybe("clear span", "m")
@@ -173,8 +173,10 @@ class Tilt(KindResults):
     right_aisle_span_m: float = maybe("clear span of the right aisle", "m")
     duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
     fracture: Fracture = maybe("collapse with the leeward buttress cracked")
-    non_dilatant: NonDilatant = maybe("sliding without dilatancy: what the collapse to +x rests on")
-    non_dilatant_opposite: NonDilatant = maybe("sliding without dilatancy: what the collapse to -x rests on")
+    non_dilatant: NonDilatant = maybe("sliding without dilatancy: bounds and certificate of the collapse to +x")
+    non_dilatant_opposite: NonDilatant = maybe(
+        "sliding without dilatancy: bounds and certificate of the collapse to -x"
+    )
 
     def interval(self, opposite: bool = False) -> tuple[float | None, float]:
         """Least and greatest collapse acceleration [g] to +x, or to -x: equal where no pressed joint slides, the least None
@@ -222,16 +224,16 @@ def judge_dilatant(capacity: float, demand: Demand, reason: str | None = None) -
 def judge_interval(least: float, most: float, demand: Demand) -> Verdict:
     """A collapse acceleration between the least state found without dilatancy and the upper bound [g]."""
     peak = demand.peak_g
-    upper = (
-        f"the {DILATANT} is {most:.3g} g" if most < inf else "with dilatant friction nothing brings the structure down"
-    )
+    upper = f"the {DILATANT} is {most:.3g} g" if most < inf else "with dilatant friction no collapse mechanism exists"
     text = f"Collapse acceleration (horizontal, constant) in an interval: joints slide; least state found {least:.3g} g, {upper}"
     if peak is None:
         return judge(f"{text}; the deck holds no single motion to compare with.", None, least, "g")
     outcome: Outcome = "stands" if peak < least else "collapses" if peak >= most else "open"
-    place = {"stands": "below", "collapses": "above", "open": "within"}[outcome]
+    place = {
+        "stands": "below the least state found", "collapses": "at or above the upper bound", "open": "between both",
+    }[outcome]  # fmt: skip
     return judge(
-        f"{text}; the peak of the motion, {peak:.3g} g, applied as a sustained load, is {place} the interval.", peak, least, "g",
+        f"{text}; the peak of the motion, {peak:.3g} g, applied as a sustained load, is {place}.", peak, least, "g",
         outcome,
     )  # fmt: skip
 
@@ -262,7 +264,7 @@ class Thrust(KindResults):
     """thrust: admissible thrust lines at a given horizontal acceleration."""
 
     gamma_g: float = fact("acceleration to +x at which the lines are drawn", "g")
-    chain: str | None = fact("the arch or stack whose thrust is least and greatest; null where there is none")
+    chain: str | None = fact("arch or stack to which least and greatest thrust belong; null without one")
     admissible_interval_g: list[float] = fact("accelerations between which a thrust line is admissible", "g")
     geometric_safety_factor: float | None = fact(
         "one over the least part of the joints that holds a thrust line; null where one runs through all middles"
@@ -277,7 +279,7 @@ class Thrust(KindResults):
     duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
     least: ThrustLine = maybe("the line of least thrust")
     most: ThrustLine = maybe("the line of greatest thrust")
-    central: ThrustLine = maybe("the most central line; a warning says why where it is missing")
+    central: ThrustLine = maybe("the most central line; a warning gives the reason where it is missing")
 
     def judged(self, demand: Demand) -> Verdict:
         """The part of the joints that the most central line needs against the whole; the ratio is the safety factor."""
@@ -294,14 +296,14 @@ CHARACTERISTIC = "All partial factors are 1.0: characteristic loads and strength
 
 
 class MovingLoad(KindResults):
-    """moving-load: the load or train that brings an arch or a bridge down, at every place along it."""
+    """moving-load: collapse load, or adequacy factor of a train, at every place along an arch or a bridge."""
 
     chain: str | None = fact("the arch that the load crosses; null where it crosses the whole top")
-    collapse_load_N: float = fact("least load that brings it down; of a train, what then stands on the structure", "N")
+    collapse_load_N: float = fact("least collapse load; of a train, the load then on the structure", "N")
     collapse_load_kN_per_m: float = fact("least load per metre of depth", "kN/m")
     worst_place_m: float = fact("x of the first axle where that is", "m")
     worst_place_over_span: float = fact("x of the first axle where that is, from the left springing, over the span")
-    worst_way: Literal["+x", "-x"] = fact("where the train heads there")
+    worst_way: Literal["+x", "-x"] = fact("heading of the train there")
     hinges: list[NamedHinge] = fact("hinges of the mechanism there")
     sliding_joints: list[int] = fact("joints that slide or part in the mechanism there")
     dilating_joints: list[int] = maybe(
@@ -309,13 +311,13 @@ class MovingLoad(KindResults):
         "(dilatant friction)"
     )
     greatest_compression_N: float = fact("greatest compression across a joint there at collapse", "N")
-    places_without_limit: int = fact("places where no load of the kind brings it down")
+    places_without_limit: int = fact("places at which no load of the kind causes collapse")
     ties: list[TieForce] = maybe("forces of the ties there at collapse")
     duality_gap: float = fact("greatest difference between the bounds, in multiples of the weight")
     load_N: float = maybe("the load that the deck gives", "N")
     safety_factor: float = maybe("collapse load over that load")
     train: str = maybe("name of the train; load for axles that share a force, train for the axle loads of the deck")
-    adequacy_factor: float = maybe("multiple of the factored train, or load, that brings it down")
+    adequacy_factor: float = maybe("multiple of the factored train, or load, that causes collapse")
     live_load_factor: float = maybe("partial factor times dynamic factor by which the train is multiplied before")
 
     characteristic: bool = maybe("whether all partial factors are 1.0: loads and strengths are characteristic")
@@ -336,8 +338,9 @@ class MovingLoad(KindResults):
             )  # fmt: skip
         if self.load_N is None:
             return judge(
-                f"{text}; the deck gives no load to compare with.{more}", None, self.collapse_load_N, "N", bound=bound
-            )
+                f"{text}; the deck gives no load to compare with.{more}", None, self.collapse_load_N, "N", bound=bound,
+                violated=violated,
+            )  # fmt: skip
         return judge(
             f"{text}, {self.safety_factor:.3g} times the load of {self.load_N / 1e3:.4g} kN.{judged}",
             self.load_N, self.collapse_load_N, "N", bound=bound, violated=violated,
@@ -352,7 +355,7 @@ class Stage(ResultModel):
 
 
 class JointOpening(ResultModel):
-    """A joint that opens or slides while supports give way."""
+    """A joint that opens or slides under moving supports."""
 
     joint: int = fact("number of the joint")
     name: str = fact("its name")
@@ -362,31 +365,33 @@ class JointOpening(ResultModel):
 
 
 class MovingSupports(KindResults):
-    """supports: what opens where supports give way; of an arch, until it falls."""
+    """supports: openings under moving supports; of an arch, until it collapses."""
 
-    movement_at_fall_m: float = maybe("movement of the support at which the arch falls", "m")
-    movement_at_fall_over_span: float = maybe("movement at the fall over the span")
-    span_change_at_fall_ratio: float = maybe("growth of the span at the fall, over the span")
+    movement_at_fall_m: float = maybe("movement of the support at which the arch collapses", "m")
+    movement_at_fall_over_span: float = maybe("movement at collapse over the span")
+    span_change_at_fall_ratio: float = maybe("growth of the span at collapse, over the span")
     thrust_at_rest_N: float = maybe("horizontal thrust at the start", "N")
-    thrust_at_fall_N: float = maybe("horizontal thrust at the fall", "N")
+    thrust_at_fall_N: float = maybe("horizontal thrust at collapse", "N")
     hinges_at_rest: list[JointHinge] = maybe("the three hinges at the start")
-    hinges_at_fall: list[JointHinge] = maybe("the three hinges at the fall")
-    joints_touched_at_fall: list[int] = maybe("joints where the thrust line touches a further end at the fall")
+    hinges_at_fall: list[JointHinge] = maybe("the three hinges at collapse")
+    joints_touched_at_fall: list[int] = maybe("joints where the thrust line touches a further end at collapse")
     stages: list[Stage] = maybe("from the start on, each change of hinges")
     openings: list[JointOpening] = maybe("joints that open or slide under [[initial.movements]], the widest first")
     work_J: float = maybe("work of the weight in the movements of [[initial.movements]]", "J")
     work_gap_J: float = maybe("difference between that and the work on the supports, which should be none", "J")
-    reactions: list[Reaction] = maybe("forces of the ground while its supports give way")
-    ties: list[TieForce] = maybe("forces of the ties while its supports give way")
+    reactions: list[Reaction] = maybe("forces of the ground under moving supports")
+    ties: list[TieForce] = maybe("forces of the ties under moving supports")
 
     def judged(self, demand: Demand) -> Verdict:
         """The movement that the arch can follow [m]; the deck asks for none."""
         move = self.movement_at_fall_m
         if move is None:
-            return judge("Under the given movements it stands and cracks; no limit is sought.", None, None, "m")
+            return judge(
+                "Under the given movements the structure stands with open joints; no limit is sought.", None, None, "m"
+            )
         return judge(
             f"The arch follows its support by {move:.4g} m, {100.0 * self.movement_at_fall_over_span:.3g} % of the span, "
-            "before it falls.", None, move, "m",
+            "before it collapses.", None, move, "m",
         )  # fmt: skip
 
 
@@ -402,9 +407,9 @@ class Change(ResultModel):
 
     value: float = fact("the value of the key, in its unit")
     before: int | Literal["locked"] = fact(
-        "number of the mechanism below it; 0 where it cannot stand, locked where nothing brings it down", name="from"
+        "number of the mechanism below the value; 0: cannot stand, locked: no collapse mechanism", name="from"
     )
-    after: int | Literal["locked"] = fact("number of the mechanism above it; 0 or locked as below", name="to")
+    after: int | Literal["locked"] = fact("number of the mechanism above the value; 0 or locked as below", name="to")
     collapse_acceleration_g: float | None = fact("collapse acceleration there", "g")
 
 
@@ -427,9 +432,9 @@ class Sweep(KindResults):
     vary: str = fact("the key that varies")
     unit: str = fact("its unit")
     mechanisms: list[GoverningMechanism] = fact("the mechanisms that govern somewhere")
-    changes: list[Change] = fact("where another begins to govern")
+    changes: list[Change] = fact("values at which another mechanism begins to govern")
     stable_limits: list[float] = fact("values at which the range ends in which it stands, in the unit of the key")
-    locked_limits: list[float] = fact("values past which no load of the kind brings it down")
+    locked_limits: list[float] = fact("values beyond which no load of the kind causes collapse")
     optimum_value: float = fact("value of the greatest capacity, in the unit of the key")
     optimum_collapse_acceleration_g: float = fact("the greatest capacity", "g")
     optimum_tilt_angle_deg: float = fact("tilt of the ground that pushes alike", "deg")
@@ -454,7 +459,7 @@ class Sweep(KindResults):
         """The greatest capacity [g]; a sweep compares, it asks for no demand."""
         best = self.optimum_collapse_acceleration_g
         unit = f" {self.unit}" if self.unit else ""
-        text = f"Of the values tried, {self.vary} = {self.optimum_value:.4g}{unit} carries most, {best:.3g} g."
+        text = f"Of the values tried, {self.vary} = {self.optimum_value:.4g}{unit} has the greatest capacity, {best:.3g} g."
         if not self.upper_bound_values:
             return judge(text, None, best, "g")
         text += f" At {len(self.upper_bound_values)} of {len(self.values)} values joints slide: {DILATANT}."
@@ -493,7 +498,7 @@ class Survey(KindResults):
         if self.weakest is None:
             return judge(f"{text}.", None, None, "g")
         least = self.weakest_collapse_acceleration_g
-        text += f"; the weakest, {self.weakest}, carries {least:.3g} g."
+        text += f"; the weakest, {self.weakest}, has a capacity of {least:.3g} g."
         if not self.upper_bounds:
             return judge(text, None, least, "g")
         return judge(
@@ -513,7 +518,7 @@ class Imperfections(KindResults):
     least_collapse_acceleration_g: float = fact("least capacity; 0 where a survey cannot stand", "g")
     greatest_collapse_acceleration_g: float = fact("greatest capacity", "g")
     cannot_stand: int = fact("surveys that a certificate proves to collapse under their own weight; they count as 0 g")
-    without_answer: int = fact("surveys whose programmes gave no answer; they are left out")
+    without_answer: int = fact("surveys whose programmes gave no result; they are not counted")
     upper_bounds: int = fact(
         "surveys in whose mechanism pressed joints slide: their capacity is an upper bound (dilatant friction)"
     )

@@ -29,8 +29,8 @@ class WaveletPulse(ResultModel):
 class OneMotion(KindResults):
     """motion: one ground motion in depth."""
 
-    title: str = maybe("of a record: the event, as its file says")
-    station: str = maybe("of a record: where it was recorded and which component, as its file says")
+    title: str = maybe("of a record: the event, from its file")
+    station: str = maybe("of a record: station and component, from its file")
     pga_g: float = fact("greatest horizontal acceleration", "g")
     pga_time_s: float = fact("when it comes", "s")
     pgv_m_s: float = fact("greatest velocity", "m/s")
@@ -126,7 +126,7 @@ class ShakeTable(KindResults):
     peak_velocity_m_s: float = maybe("greatest velocity of the drive", "m/s")
     peak_acceleration_g: float = maybe("greatest acceleration of the drive", "g")
     motion_peak_acceleration_g: float = maybe("greatest acceleration of the motion as given", "g")
-    rms_taken_out_ratio: float = maybe("what the high-pass takes out, over the motion, root mean squares")
+    rms_taken_out_ratio: float = maybe("removed by the high-pass, over the motion, root mean squares")
     use_of_limits: list[UseOfLimits] = maybe("share of the limits that the motion needs, for each mass")
     time_scale: float = maybe("factor on time with which it fits")
     amplitude_factor: float = maybe("factor on the acceleration with which it fits")
@@ -140,5 +140,5 @@ class ShakeTable(KindResults):
         if self.use_of_limits is None:
             return judge("The deck holds no motion for the table to play.")
         most = max(max(u.stroke, u.flow, u.force) for u in self.use_of_limits)
-        text = "fits the table" if self.fits else "does not fit the table as it is"
+        text = "fits the table" if self.fits else "does not fit the table"
         return judge(f"The motion {text}: it needs {most:.3g} of a limit.", most, 1.0, "", "not-applicable")

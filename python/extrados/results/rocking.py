@@ -35,9 +35,9 @@ class Conditions(ResultModel):
     required_friction: float | None = maybe(
         "greatest coefficient of friction that the joints need while it rocks; null where a joint comes under tension"
     )
-    slides_first: JointTime = maybe("of one run: where and when the joints first lack friction")
+    slides_first: JointTime = maybe("of one run: place and time at which joints first lack friction")
     leaves_first: JointTime = maybe(
-        "of one run: where and when the thrust line first leaves a joint by more than 1 % of it"
+        "of one run: place and time at which the thrust line first leaves a joint by more than 1 % of it"
     )
     thrust_line_outside: float | None = maybe(
         "of one run: how far the thrust line leaves a joint, over its length; below 0 inside; null under tension"
@@ -59,7 +59,7 @@ class RuleOutcome(ResultModel):
 
     rule: str = fact("word of [joints] restitution, or a number that discrete elements may keep")
     restitution: float = fact("rate after over before an impact, held between 0 and 1; of a mechanism to +x")
-    outcome: RockingOutcome = fact("does not rock, rocks and stays up, or comes down")
+    outcome: RockingOutcome = fact("no rocking, rocking and recovery, or collapse")
 
 
 class RestraintForces(ResultModel):
@@ -68,12 +68,12 @@ class RestraintForces(ResultModel):
     name: str = fact("as the deck calls it")
     least_force_N: float = maybe("least force, tension positive; of a tie or damper", "N")
     greatest_force_N: float = maybe("greatest force, tension positive; of a tie or damper", "N")
-    permanent_elongation_m: float = maybe("what it has yielded or slid in the end; of a tie or damper", "m")
+    permanent_elongation_m: float = maybe("residual yield or slip at the end; of a tie or damper", "m")
     least_moment_Nm: float = maybe(
         "least moment, counter-clockwise turn of the first stone positive; of an added hinge", "N*m"
     )
     greatest_moment_Nm: float = maybe("greatest moment; of an added hinge", "N*m")
-    permanent_turn_rad: float = maybe("what it has yielded in the end; of an added hinge", "rad")
+    permanent_turn_rad: float = maybe("residual yield at the end; of an added hinge", "rad")
 
 
 class ModeShare(ResultModel):
@@ -101,26 +101,26 @@ class SoftBaseRocking(ResultModel):
     foundation: Literal["winkler", "two-spring"] = fact("springs all along the base, or under both edges")
     rocking_period_s: float = fact("natural period of small rocking on the whole base, undamped", "s")
     vertical_period_s: float = fact("natural period of its motion up and down, undamped", "s")
-    sinking_at_rest_m: float = fact("how far it sinks under its weight, at the foot of its centre", "m")
+    sinking_at_rest_m: float = fact("settlement under its weight, below its centre of mass", "m")
     lift_rotation_rad: float = fact("rotation at which an edge lifts, in equilibrium", "rad")
-    capacity_g: float = fact("greatest constant horizontal acceleration that it bears, partly lifted", "g")
-    peak_sinking_m: float = fact("greatest sinking; of either sign", "m")
+    capacity_g: float = fact("collapse acceleration (horizontal, constant), partly uplifted", "g")
+    peak_sinking_m: float = fact("greatest settlement; of either sign", "m")
     greatest_pressure_Pa: float = maybe("of a Winkler base: greatest pressure at an edge", "Pa")
     greatest_edge_force_N: float = maybe("of springs under the edges: greatest force of one", "N")
     lifted_share: float = fact("share of the time in which part of the base is lifted")
     free_share: float = fact("share of the time in which the base does not press at all")
     energy_taken_up_J: float = fact("energy that the dashpots of the base have taken up", "J")
-    rigid_outcome: RockingOutcome | None = fact("what it does on a rigid base, with Housner's impact; null: no answer")
+    rigid_outcome: RockingOutcome | None = fact("outcome on a rigid base, with Housner's impact; null: no result")
     rigid_peak_rotation_rad: float | None = fact("greatest rotation on a rigid base; null: no answer", "rad")
 
 
 class Rocking(KindResults):
     """rocking: the response of the single-degree-of-freedom mechanism to a motion."""
 
-    rotation_of: str = fact("whose rotation is told")
-    outcome: RockingOutcome = fact("does not rock, rocks and stays up, or comes down")
+    rotation_of: str = fact("body to which the rotation belongs")
+    outcome: RockingOutcome = fact("no rocking, rocking and recovery, or collapse")
     settled: bool = fact("whether it came to rest, or down, before the run ended; false leaves the outcome open")
-    collapse_half_cycle: int | None = fact("half cycle in which it comes down")
+    collapse_half_cycle: int | None = fact("half cycle of the collapse")
     collapse_time_s: float | None = fact("when it turned past recall", "s")
     half_cycles: int = fact("half cycles of rocking")
     impacts: int = fact("number of impacts")
@@ -130,35 +130,35 @@ class Rocking(KindResults):
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
     energy_supplied_J: float = fact("work of the ground", "J")
     energy_lost_at_impacts_J: float = fact("energy lost at impacts", "J")
-    energy_taken_up_J: float = maybe("what dampers and yielding have taken up, where something holds it", "J")
-    restraints: list[RestraintForces] = maybe("what holds it besides its weight")
+    energy_taken_up_J: float = maybe("energy dissipated by dampers and yielding restraints", "J")
+    restraints: list[RestraintForces] = maybe("restraints besides self-weight")
     rebound: float = maybe("against a wall: rate after over before it is thrown back, as given or by three impacts")
-    energy_residual_ratio: float = fact("greatest error of the energy ledger over the energy that went round")
+    energy_residual_ratio: float = fact("greatest error of the energy ledger over the energy in motion")
     steps: int = fact("steps of the integrator")
-    rejected_steps: int = fact("steps that it tried and refused")
+    rejected_steps: int = fact("rejected steps")
     restitution: float | None = fact(
-        "rate after over before an impact; of a block or a mechanism that after which it rocks to +x; null on a base that "
-        "gives way, from which it follows"
+        "coefficient of restitution: angular velocity after / before an impact, of blocks and mechanisms the impact that starts rocking "
+        "to +x; null on a compliant base"
     )
-    restitution_to_left: float = maybe("of a block or a mechanism: that after which it rocks to -x")
+    restitution_to_left: float = maybe("of a block or a mechanism: coefficient of the impact that starts rocking to -x")
     energy_ratio: float = maybe("of a block: kinetic energy after over before an impact", source="thesis Eq. 6.2")
-    critical_rotation_rad: float = fact("rotation to +x from which gravity takes it down", "rad")
+    critical_rotation_rad: float = fact("critical rotation to +x, beyond which self-weight overturns it", "rad")
     critical_rotation_left_rad: float = maybe("of a block or a mechanism: the critical rotation to -x", "rad")
     frequency_parameter_rad_s: float = maybe("of a block or a frame: p", "rad/s", source="Housner 1963")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     required_friction: float | None = fact(
         "greatest coefficient of friction needed; null where a joint comes under tension"
     )
-    hinges: list[RockingHinge] = maybe("of a mechanism: where it turns, rocking to +x")
-    hinges_opposite: list[RockingHinge] = maybe("of a mechanism: where it turns, rocking to -x")
+    hinges: list[RockingHinge] = maybe("of a mechanism: hinges, rocking to +x")
+    hinges_opposite: list[RockingHinge] = maybe("of a mechanism: hinges, rocking to -x")
     restitution_thesis: float = maybe("of an arch: by the momentum balance of the thesis", source="thesis Eq. 5.3")
     restitution_energy_safe: float = maybe("of an arch: by the energy-safe projection")
-    restitution_inelastic: float = maybe("of an arch: by a blow without rebound at all joints", source="Moreau 1988")
+    restitution_inelastic: float = maybe("of an arch: by a plastic impact at all joints", source="Moreau 1988")
     outcomes_by_rule: list[RuleOutcome] = maybe(
-        "under each impact rule, where their c_v differ by more than 1.3, and by what discrete elements keep where the blow is unsafe"
+        "under each impact rule, where their c_v differ by more than 1.3, and by the energy that discrete elements keep where the plastic impact is unsafe"
     )
     decided_by_last_digits: bool = fact(
-        "whether last digits decide: a perturbation of the motion by 1e-6 grows beyond 1e4, or one of 1e-6 to 1e-4 ends in another outcome"
+        "whether the response is chaotic: a perturbation of the motion by 1e-6 grows beyond 1e4, or one of 1e-6 to 1e-4 ends in another outcome"
     )
     perturbation_growth: float = fact(
         "greatest separation of histories, over the critical rotation, under a motion scaled by 1 +- 1e-6, over that perturbation"
@@ -168,17 +168,17 @@ class Rocking(KindResults):
         "further assumptions that were checked and do not hold: chaos, impact rules, a sentence each"
     )
     stack: StackRocking = maybe("of two stacked blocks")
-    soft_base: SoftBaseRocking = maybe("on a base that gives way ([supports] stiffness)")
+    soft_base: SoftBaseRocking = maybe("on a compliant base ([supports] stiffness)")
     thrust_line_residual_m: float = maybe("of an arch: greatest error of the closing thrust line", "m")
 
     def judged(self, demand: Demand) -> Verdict:
         """The greatest rotation against the critical one; open where the run ended before it settled."""
         outcome: Outcome = "collapses" if self.outcome == "collapse" else "stands" if self.settled else "open"
         text = {
-            "collapses": "Under the motion it comes down",
-            "stands": f"Under the motion it turns by {100.0 * self.peak_rotation_ratio:.3g} % of the critical rotation "
-            "and stays up",
-            "open": "The run ended before it came to rest",
+            "collapses": "Collapse under the motion",
+            "stands": f"No collapse under the motion: the greatest rotation is {100.0 * self.peak_rotation_ratio:.3g} % of the critical "
+            "rotation",
+            "open": "The run ended before the structure came to rest",
         }[outcome]
         broken = [] if self.conditions is None else self.conditions.violated
         return judge(f"{text}.", self.peak_rotation_ratio, 1.0, "", outcome, violated=[*broken, *self.violated])
@@ -199,7 +199,7 @@ class AtAmplitudes(ResultModel):
 
     amplitudes_g: list[float] = fact("amplitudes of the pulses", "g")
     mode_I_durations_s: list[float | None] = fact(
-        "shortest that brings it down in either mode; null: none up to the longest of `durations`", "s"
+        "shortest that causes collapse in either mode; null: none up to the longest of `durations`", "s"
     )
     mode_II_durations_s: list[float | None] = fact(
         "shortest that does without an impact; null: none up to the longest of `durations`", "s"
@@ -231,14 +231,18 @@ class FailureDomain(KindResults):
         "greatest ratio of the failing amplitudes of two impact rules at one duration; null: no duration at which two fail"
     )
     pulse: Pulse = fact("shape of the pulses")
-    mode_I: ModeCurve = fact("lowest amplitudes that bring it down in either mode, Mode I after an impact")
-    mode_II: ModeCurve = fact("lowest amplitudes that bring it down in the first half cycle, without an impact")
-    pocket_begins_g: list[float | None] = fact("where the first safe pocket above the curve begins; null: none", "g")
+    mode_I: ModeCurve = fact("lowest amplitudes that cause collapse in either mode, Mode I after an impact")
+    mode_II: ModeCurve = fact("lowest amplitudes that cause collapse in the first half cycle, without an impact")
+    pocket_begins_g: list[float | None] = fact(
+        "amplitude at which the first safe region above the curve begins; null: none", "g"
+    )
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
-    restitution: float | None = fact("rate after over before an impact; null on a base that gives way")
+    restitution: float | None = fact(
+        "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
+    )
     natural_time_s: float = fact("time by which the curves scale: sqrt(R/g) of an arch, 1/p of a block", "s")
     safe_pockets: int = fact("durations with safe amplitudes above a failing one")
-    at_amplitudes: AtAmplitudes = maybe("shortest failing durations at the amplitudes that the deck asks for")
+    at_amplitudes: AtAmplitudes = maybe("shortest failing durations at the amplitudes that the deck requests")
     frequency_ratio: list[float] = maybe("of a block: omega/p of the pulses")
     pocket_begins_ratio: list[float | None] = maybe(
         "of a block: pocket_begins over the uplift acceleration, that on rigid ground"
@@ -277,9 +281,9 @@ class FailureDomain(KindResults):
                 )  # fmt: skip
         failing = [a for a in curve if a is not None]
         if not failing:
-            return judge("None of the pulses tried brings it down.", None, None, "g", violated=self.conditions.violated)
+            return judge("No pulse that was run causes collapse.", None, None, "g", violated=self.conditions.violated)
         return judge(
-            f"Over the {self.pulse} pulses tried the lowest amplitude that brings it down is {min(failing):.3g} g.",
+            f"Over the {self.pulse} pulses that were run the lowest amplitude that causes collapse is {min(failing):.3g} g.",
             None, min(failing), "g", violated=self.conditions.violated,
         )  # fmt: skip
 
@@ -315,18 +319,20 @@ class MotionImpulse(ResultModel):
 class FailureCurve(ResultModel):
     """The failure curve of one structure, and what the motions do to it."""
 
-    label: str = fact("what sets it apart from the others")
+    label: str = fact("difference from the other curves")
     durations_s: list[float] = fact("durations or periods of the pulses", "s")
-    amplitudes_g: list[float | None] = fact("lowest amplitude that brings it down; null: none below the cap", "g")
+    amplitudes_g: list[float | None] = fact("lowest amplitude that causes collapse; null: none below the cap", "g")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
-    restitution: float | None = fact("rate after over before an impact; null on a base that gives way")
+    restitution: float | None = fact(
+        "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
+    )
     natural_time_s: float = fact("time by which its curve scales: sqrt(R/g) of an arch, 1/p of a block", "s")
     cycles: int = fact("cycles of a train of sines; 1 for all other pulses")
     static_verdicts: list[Literal["stands", "fails"]] = fact("of each motion: its peak against the uplift acceleration")
     curve_verdicts: list[Literal["stands", "fails"] | None] = fact(
         "of each motion: its primary impulse against the curve; null: its period lies outside the curve"
     )
-    run_outcomes: list[RockingOutcome | None] = fact("of each motion: what it does, run through; null: no answer")
+    run_outcomes: list[RockingOutcome | None] = fact("of each motion: outcome of the whole motion; null: no result")
     sliding_from_g: list[float | None] = fact(
         "at each duration: lowest amplitude tried up to the curve at which blocks slide; null: at none", "g"
     )
@@ -365,11 +371,11 @@ class FailureCurves(KindResults):
         ]
         if not lowest:
             every = [f"{c.label}: {text}" for c in self.curves for text in c.conditions.violated]
-            return judge("None of the pulses tried brings any of them down.", None, None, "g", violated=every)
+            return judge("No pulse that was run causes collapse of any of them.", None, None, "g", violated=every)
         least, label = min(lowest)
         violated = next(c.conditions.violated for c in self.curves if c.label == label)
         return judge(
-            f"Of the {len(self.curves)} curves that of {label} goes lowest: {least:.3g} g.", None, least, "g", violated=violated
+            f"Of the {len(self.curves)} curves that of {label} has the lowest amplitude: {least:.3g} g.", None, least, "g", violated=violated
         )  # fmt: skip
 
 
@@ -399,7 +405,7 @@ class AssessedImpulse(PrimaryImpulse):
     failing_amplitude_g: float | None = fact("failing amplitude at its period; null: too short to do harm", "g")
     failing_amplitude_own_g: float | None = fact("failing amplitude by the curve fitted to this structure", "g")
     margin: float | None = fact("failing amplitude over its amplitude; null: too short to do harm")
-    verdict: Literal["stands", "fails"] = fact("whether it brings the structure down by the criterion")
+    verdict: Literal["stands", "fails"] = fact("whether it causes collapse by the criterion")
 
 
 class Assessment(KindResults):
@@ -407,14 +413,16 @@ class Assessment(KindResults):
 
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which it starts to rock", "g")
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
-    static_verdict: Literal["stands", "fails"] = fact("what the peak acceleration, taken as constant, would do")
+    static_verdict: Literal["stands", "fails"] = fact("outcome of the peak acceleration applied as a sustained load")
     coefficients: Coefficients = fact("the failure curve that is used")
-    coefficients_source: str = fact("where it comes from")
+    coefficients_source: str = fact("source of the impulse")
     coefficients_of_this_arch: Coefficients = fact("the failure curve fitted to this structure")
-    restitution: float | None = fact("rate after over before an impact; null on a base that gives way")
+    restitution: float | None = fact(
+        "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
+    )
     impulses: list[AssessedImpulse] = fact("the strongest impulses of the motion")
-    verdict: Literal["stands", "fails"] = fact("whether one of them brings it down by the criterion")
-    run_outcome: RockingOutcome | None = fact("what the whole motion does by the equation of motion")
+    verdict: Literal["stands", "fails"] = fact("whether one of them causes collapse by the criterion")
+    run_outcome: RockingOutcome | None = fact("outcome of the whole motion by the equation of motion")
     margin: float | None = fact("least failing amplitude over amplitude; null where no impulse can do harm")
     conditions: Conditions = fact("under the whole motion: whether blocks slide or hinges form elsewhere")
     margins_by_rule: dict[str, float | None] = maybe(

@@ -35,11 +35,11 @@ class JointMotion(ResultModel):
 
     joint: str = fact("its name")
     wall: str = fact("the wall that it is in, or that abuts there")
-    opening_m: float = fact("where it is widest, at the greatest load", "m")
-    slip_m: float = fact("where it has slid most along its wall, at the greatest load", "m")
-    last_opening_m: float = fact("where it is widest, in the last state in equilibrium", "m")
-    last_slip_m: float = fact("where it has slid most, in the last state in equilibrium", "m")
-    first_base_shear_N: float | None = fact("base shear under which its bond first gives way; null where it holds", "N")
+    opening_m: float = fact("place of greatest width, at the greatest load", "m")
+    slip_m: float = fact("place of greatest sliding along its wall, at the greatest load", "m")
+    last_opening_m: float = fact("place of greatest width, in the last state in equilibrium", "m")
+    last_slip_m: float = fact("place of greatest sliding, in the last state in equilibrium", "m")
+    first_base_shear_N: float | None = fact("base shear at which its bond first fails; null without failure", "N")
     broken_share: float = fact("part of its area that has lost some of its bond, in the last state in equilibrium")
 
 
@@ -87,11 +87,11 @@ class PushCurve(SlaCurve):
     base_shear_coefficient: float | None = fact("capacity over the weight")
     roof_drift: float | None = fact("control displacement there over its height")
     storey_drifts: list[float | None] = fact("drift of each storey there")
-    walls: list[WallShare] = fact("what each wall carries there")
+    walls: list[WallShare] = fact("base shear of each wall there")
     flanges: Flanges = maybe("whether walls across the push work with them")
-    first_crack: FirstCrack = maybe("where it cracks first; absent where it never does")
+    first_crack: FirstCrack = maybe("place of its first crack; absent without cracks")
     joints: list[JointMotion] = maybe("how far its joints have come apart")
-    feet: list[FootForce] = maybe("of a vault or dome: what its feet press on the ground with")
+    feet: list[FootForce] = maybe("of a vault or dome: forces of its feet on the ground")
     cracked_points_by_storey: list[int] = fact("places in the planes of the walls that have cracked there, by storey")
 
 
@@ -159,7 +159,7 @@ class Pushover(PushCurve, KindResults):
         if slides:
             text = f"Sliding on {least.sliding_level} limits the base shear to {told}, by Coulomb's law."
             violated = [
-                f"The model excludes that sliding: it carries {load / 1e3:.4g} kN, "
+                f"The model excludes that sliding and carries {load / 1e3:.4g} kN, "
                 f"{load / capacity:.3g} times the sliding limit."
             ]
             return capacity_alone(text, value, unit, "upper", violated)

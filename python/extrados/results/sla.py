@@ -53,7 +53,7 @@ class SlaCurve(ResultModel):
 
     sense: Literal["+", "-"] = fact("sense of the reference loads")
     peak_load_N: float | None = fact(
-        "greatest load in equilibrium, where the load fell after it or the wall became a mechanism under it; else null",
+        "greatest load in equilibrium, followed by a drop of the load or a mechanism; else null",
         "N",
     )
     peak_displacement_m: float | None = fact("control displacement at the peak", "m")
@@ -64,7 +64,7 @@ class SlaCurve(ResultModel):
     greatest_load_event: int | None = fact("event of the greatest load, from 1")
     first_event_load_N: float | None = fact("load of the first event", "N")
     events: int = fact("events of this run")
-    events_before_resume: int = fact("events of the runs that this one goes on from")
+    events_before_resume: int = fact("events of the runs that this one continues")
     events_without_equilibrium: int = fact("events at which no multiplier of the load suits all points")
     events_out_of_reach: int = fact(
         "events that are no states: beyond a displacement of a tenth of the structure's size, or ten times the peak load"
@@ -83,7 +83,7 @@ class SlaCurve(ResultModel):
     )
     stored_energy_J: float | None = fact("elastic energy at that event", "J")
     dissipated_energy_J: float | None = fact(
-        "energy dissipated up to that event, from state to state; never negative, and never falls", "J"
+        "energy dissipated up to that event, from state to state; never negative, never decreasing", "J"
     )
     crack_energy_J: float = fact("area of all teeth passed, in the planes of elements", "J")
     residual_ratio: float | None = fact("greatest residual of the equations that was measured; null where none was")
@@ -145,15 +145,15 @@ class Sla(SlaCurve, KindResults):
     elements: int = fact("elements of the mesh")
     equations: int = fact("equations")
     points: int = fact("integration points, those of bars too")
-    makeup: Makeup = maybe("what resume_from compares")
+    makeup: Makeup = maybe("values that resume_from compares")
     minus: SlaCurve = maybe("the curve of the second sense")
     stages: list[SlaStage] = maybe(
         "of a run in stages, each; without a name, the numbers are those of the last or main one"
     )
     measured: Comparison = maybe("the measured curve of the deck beside the first sense's")
     scatter: Scatter = maybe("repetitions with other seeds")
-    stones: bool = fact("whether it is of stones with joints, whose peak acceleration is a static limit load")
-    hinges: list[str] = maybe("of stones: joints that are open but for an edge at the peak")
+    stones: bool = fact("whether the model is of blocks with joints, whose peak acceleration is a static limit load")
+    hinges: list[str] = maybe("of blocks: joints that are open but for an edge at the peak")
 
     def judged(self, demand: Demand) -> Verdict:
         """The lesser peak of the two senses: an acceleration [g], or a load [N] that the deck does not ask for."""
@@ -168,15 +168,15 @@ class Sla(SlaCurve, KindResults):
             text = f"The wall {'carries' if peaks else 'has carried, without a peak,'} {load} ({abs(reached):.3g} g times its masses)."
             return capacity_alone(text, abs(reached), "g", None if peaks else "lower")
         if any(c.peak_load_N is None for c in curves):
-            text = f"The load has reached {load} without a peak; what the building bears is not known"
+            text = f"The load has reached {load} without a peak; the capacity of the building is not known"
             if reached is None or demand.peak_g is None:
                 return judge(f"{text}.", None, None, "N" if reached is None else "g")
             if demand.peak_g < reached:
                 return judge_acceleration(reached, demand)
             return judge(
-                f"{text}; the motion asks for {demand.peak_g:.3g} g, {reached:.3g} g were reached.",
+                f"{text}; the demand of the motion is {demand.peak_g:.3g} g, {reached:.3g} g were reached.",
                 demand.peak_g, None, "g", "open",
             )  # fmt: skip
         if reached is not None:
             return judge_acceleration(abs(reached), demand)
-        return judge(f"The building bears {load} of the growing load.", None, least.greatest_load_N, "N")
+        return judge(f"The capacity of the building is {load} of the growing load.", None, least.greatest_load_N, "N")

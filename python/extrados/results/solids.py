@@ -26,16 +26,14 @@ class Pyramids(ResultModel):
         "with pyramids within the cones: a bound from below; null where nothing stands so", "g"
     )
     upper_g: float | None = fact(
-        "with pyramids around the cones: a bound from above; null where nothing brings it down", "g"
+        "with pyramids around the cones: a bound from above; null without a collapse mechanism", "g"
     )
 
 
 class SolidTilt(KindResults):
     """tilt of solids: the constant horizontal acceleration, in a direction in plan, at which they become a mechanism."""
 
-    collapse_acceleration_g: float = fact(
-        "greatest constant acceleration that is borne, pushed along the direction", "g"
-    )
+    collapse_acceleration_g: float = fact("collapse acceleration (horizontal, constant) along the direction", "g")
     collapse_acceleration_opposite_g: float = fact("the same, pushed the opposite way", "g")
     tilt_angle_deg: float = fact(
         "tilt of the ground that pushes alike, along the direction", "deg", source="thesis Eq. 3.1"
@@ -46,7 +44,7 @@ class SolidTilt(KindResults):
     least_direction_deg: float = fact("direction of that", "deg")
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
-    moving_blocks: int = fact("stones that move in the mechanism, faster than a thousandth of the fastest")
+    moving_blocks: int = fact("blocks that move in the mechanism, faster than a thousandth of the fastest")
     fastest_block: str = fact("the stone with the fastest centroid")
     opening_contacts: list[OpenContact] = fact("contacts that open or slide most, at most 20 of them")
     weight_N: float = fact("weight of the structure with what rests on it", "N")

@@ -28,7 +28,7 @@ class Annual(KindResults):
         "its interval by what the runs leave open of the curve", "1/year"
     )
     annual_collapse_rate_left_out: float = maybe(
-        "what intensities beyond the ends of the hazard curve may add", "1/year"
+        "possible contribution of intensities beyond the ends of the hazard curve", "1/year"
     )
     collapse_return_period_years: float | None = maybe("its inverse", "year")
     years: float = maybe("time for which the next probability holds", "year")
@@ -69,8 +69,8 @@ class Ensemble(Annual):
 
     count: int = fact("runs with a result")
     failed: int = fact("runs without one")
-    collapsed: int = fact("runs that come down")
-    collapse_probability: float | None = fact("share of the runs that come down")
+    collapsed: int = fact("runs that collapse")
+    collapse_probability: float | None = fact("share of the runs that collapse")
     confidence_interval: list[float] = fact("its score interval", source="Wilson 1927")
     uplifted: int = fact("runs that rock")
     uplift_probability: float | None = fact("share of the runs that rock")
@@ -79,7 +79,9 @@ class Ensemble(Annual):
     deviation_peak_rotation_ratio: float | None = fact("standard deviation of that ratio")
     median_peak_rotation_ratio: float | None = fact("median of that ratio")
     confidence: float = fact("level of all intervals")
-    restitution: float | None = fact("rate after over before an impact; null on a base that gives way")
+    restitution: float | None = fact(
+        "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
+    )
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     critical_rotation_rad: float = fact("rotation from which gravity takes it down", "rad")
     initial_rotation_ratio: float = fact("rotation at the start over the critical one")
@@ -120,7 +122,7 @@ class Ensemble(Annual):
         if (by_rate := self.judged_by_rate(self.conditions.violated)) is not None:
             return by_rate
         outcome: Outcome = "stands" if not self.collapsed else "collapses" if self.collapsed == self.count else "open"
-        text = f"{100.0 * self.collapse_probability:.3g} % of {self.count} motions bring it down."
+        text = f"{100.0 * self.collapse_probability:.3g} % of {self.count} motions cause collapse."
         violated = list(self.conditions.violated)
         if by_rule := self.collapse_probability_by_rule:
             told = ", ".join(f'"{rule}" {100.0 * share:.3g} %' for rule, share in by_rule.items())
@@ -141,7 +143,7 @@ class OverLevels(Annual):
     hinges_elsewhere_share: list[float | None] = fact("share in which hinges form elsewhere, at each level")
     count: list[int] = fact("motions with a result, at each level")
     failed: int = fact("runs without a result")
-    collapsed: list[int] = fact("motions that bring it down, at each level")
+    collapsed: list[int] = fact("motions that cause collapse, at each level")
     collapse_probability: list[float | None] = fact("their share, at each level")
     confidence_interval: list[list[float]] = fact("score intervals of that share", source="Wilson 1927")
     uplifted: list[int] = fact("motions that make it rock, at each level")
@@ -160,7 +162,9 @@ class OverLevels(Annual):
     peak_rotation_ratio_84: list[float | None] = fact("ratio that 84 % of them stay within; null: collapse")
     median_pga_g: list[float | None] = fact("median peak acceleration of the scaled motions, at each level", "g")
     confidence: float = fact("level of all intervals")
-    restitution: float | None = fact("rate after over before an impact; null on a base that gives way")
+    restitution: float | None = fact(
+        "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
+    )
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     critical_rotation_rad: float = fact("rotation from which gravity takes it down", "rad")
     initial_rotation_ratio: float = fact("rotation at the start over the critical one")
@@ -176,7 +180,7 @@ class OverLevels(Annual):
     )
     dispersion_interval: list[float | None] = maybe("bootstrap interval of that dispersion")
     first_collapse_median: float | None = maybe(
-        "median of the lognormal curve of the intensity at which a motion first brings it down, in intensity_unit",
+        "median of the lognormal curve of the intensity at which a motion first causes collapse, in intensity_unit",
         source="interval-censored likelihood: Burridge 1981",
     )
     first_collapse_dispersion: float | None = maybe(
@@ -203,8 +207,8 @@ class OverLevels(Annual):
     overturning_given_uplift_goodness_p_value: float | None = maybe(
         "probability of a worse deviance were that curve true"
     )
-    motions_that_collapse: int = fact("motions that bring it down at some level")
-    resurrections: int = fact("motions that leave it standing at a level above one that brings it down")
+    motions_that_collapse: int = fact("motions that cause collapse at some level")
+    resurrections: int = fact("motions without collapse at a level above one with collapse")
 
     def judged(self, demand: Demand) -> Verdict:
         """The fitted median is the capacity; levels are questions, not a demand."""
@@ -216,11 +220,11 @@ class OverLevels(Annual):
         if self.median is None:
             share = [p for p in self.collapse_probability if p is not None]
             return judge(
-                f"{100.0 * share[-1]:.3g} % of the motions bring it down at the highest level of {self.intensity}; no curve "
+                f"{100.0 * share[-1]:.3g} % of the motions cause collapse at the highest level of {self.intensity}; no curve "
                 "could be fitted.", None, None, self.intensity_unit, "not-applicable", violated=self.conditions.violated,
             )  # fmt: skip
         return judge(
-            f"Half of the motions bring it down at {self.intensity} {self.median:.3g}{unit}.",
+            f"Half of the motions cause collapse at {self.intensity} {self.median:.3g}{unit}.",
             None, self.median, self.intensity_unit, "not-applicable", violated=self.conditions.violated,
         )  # fmt: skip
 
@@ -231,15 +235,17 @@ class OverDurations(KindResults):
     durations_s: list[float] = fact("durations of the motions", "s")
     mean_peak_rotation_ratio: list[float | None] = fact("mean of the greatest rotation over the critical one, at each")
     deviation_peak_rotation_ratio: list[float | None] = fact("standard deviation of that ratio")
-    collapse_probability: list[float | None] = fact("share of the motions that bring it down, at each")
+    collapse_probability: list[float | None] = fact("share of the motions that cause collapse, at each")
     uplift_probability: list[float | None] = fact("share of the motions that make it rock, at each")
     confidence_interval: list[list[float]] = fact("score intervals of the collapse probability", source="Wilson 1927")
     confidence: float = fact("level of these intervals")
     count: list[int] = fact("motions with a result, at each")
     failed: int = fact("runs without a result")
-    collapsed: list[int] = fact("motions that bring it down, at each")
+    collapsed: list[int] = fact("motions that cause collapse, at each")
     uplifted: list[int] = fact("motions that make it rock, at each")
-    restitution: float | None = fact("rate after over before an impact; null on a base that gives way")
+    restitution: float | None = fact(
+        "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
+    )
     critical_rotation_rad: float = fact("rotation from which gravity takes it down", "rad")
     initial_rotation_ratio: float = fact("rotation at the start over the critical one")
     median_pga_g: list[float | None] = fact("median peak acceleration at each duration", "g")
@@ -255,7 +261,7 @@ class OverDurations(KindResults):
         text = f"{100.0 * least:.3g} % of the motions of {short:g} s"
         if len(known) > 1:
             text += f" and {100.0 * most:.3g} % of those of {long:g} s"
-        return judge(f"{text} bring it down.", None, None, "probability", outcome, violated=self.conditions.violated)
+        return judge(f"{text} cause collapse.", None, None, "probability", outcome, violated=self.conditions.violated)
 
 
 Fragility = Ensemble | OverLevels | OverDurations
@@ -264,7 +270,7 @@ Fragility = Ensemble | OverLevels | OverDurations
 class Resonance(KindResults):
     """resonance: the motion under a cap that feeds most energy to a rocking structure."""
 
-    outcome: RockingOutcome = fact("what it does under that motion")
+    outcome: RockingOutcome = fact("outcome under that motion")
     cap_g: float = fact("cap of the ground acceleration", "g")
     cap_ratio: float = fact("cap over the uplift acceleration")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
@@ -276,10 +282,12 @@ class Resonance(KindResults):
     peak_rotation_rad: list[float] = fact("rotation at the start and at each change of sign", "rad")
     energy_supplied_J: float = fact("work of the ground", "J")
     energy_lost_at_impacts_J: float = fact("energy lost at impacts", "J")
-    restitution: float | None = fact("rate after over before an impact; null on a base that gives way")
+    restitution: float | None = fact(
+        "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
+    )
     conditions: Conditions = fact("under that motion: whether blocks slide or hinges form elsewhere")
     cap_ratio_for_collapse_within: dict[str, float] = maybe(
-        "of a block: least cap over uplift that brings it down within so many half cycles"
+        "of a block: least cap over uplift that causes collapse within so many half cycles"
     )
     least_cap_g: float | None = maybe("of a block: cap above which the rotation grows; null where its toes differ", "g")
     least_cap_ratio: float | None = maybe("least cap over the uplift acceleration")
@@ -300,10 +308,10 @@ class Resonance(KindResults):
         outcome: Outcome
         if self.outcome == "collapse":
             outcome = "collapses"
-            does = "brings it down"
+            does = "causes collapse"
         else:
             outcome = "stands" if least is not None and self.cap_g < least else "open"
-            does = f"does not bring it down within {self.half_cycles} half cycles"
+            does = f"does not cause collapse within {self.half_cycles} half cycles"
         known = "" if least is None else f"; above {least:.3g} g its rotation grows"
         return judge(
             f"The worst motion under {self.cap_g:.3g} g {does}{known}.", self.cap_g, least, "g", outcome,
@@ -315,14 +323,14 @@ class RockingSpectrum(KindResults):
     """rocking-spectrum: greatest rotation of blocks or arches of many sizes under a motion."""
 
     family: list[str] = fact("the families: slenderness of blocks, or the shape of the arch")
-    overturned: list[int] = fact("members of each family that come down")
+    overturned: list[int] = fact("members of each family that collapse")
     longest_overturning_period_s: list[float | None] = fact("longest 2 pi/p among them; null: none", "s")
     size_m: list[float] = fact("sizes: half-diagonal of the blocks, radius of the arches", "m")
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
     conditions: list[Conditions] = fact("of each family: in how many sizes blocks slide or hinges form elsewhere")
 
     def judged(self, demand: Demand) -> Verdict:
-        """How many come down; a spectrum is about no one building."""
+        """How many collapse; a spectrum is about no one building."""
         total = len(self.family) * len(self.size_m)
         violated = [
             f"{name}: {text}" for name, one in zip(self.family, self.conditions, strict=True) for text in one.violated
@@ -341,7 +349,9 @@ class HarmonicMap(KindResults):
     frequency_ratios: list[float] = fact("omega/p of the frequencies")
     lowest_overturning_amplitude_g: list[float | None] = fact("at each frequency; null where none overturns", "g")
     safe_pocket_cells: int = fact("cells of the map above a failing amplitude that are safe")
-    restitution: float | None = fact("rate after over before an impact; null on a base that gives way")
+    restitution: float | None = fact(
+        "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
+    )
     conditions: Conditions = fact("over the map: whether blocks slide or hinges form elsewhere")
 
     def judged(self, demand: Demand) -> Verdict:
@@ -349,9 +359,9 @@ class HarmonicMap(KindResults):
         failing = [a for a in self.lowest_overturning_amplitude_g if a is not None]
         if not failing:
             return judge(
-                "No harmonic motion of the map brings it down.", None, None, "g", violated=self.conditions.violated
+                "No harmonic motion of the map causes collapse.", None, None, "g", violated=self.conditions.violated
             )
         return judge(
-            f"The lowest harmonic amplitude that brings it down is {min(failing):.3g} g.", None, min(failing), "g",
+            f"The lowest harmonic amplitude that causes collapse is {min(failing):.3g} g.", None, min(failing), "g",
             violated=self.conditions.violated,
         )  # fmt: skip

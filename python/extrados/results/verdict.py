@@ -66,7 +66,7 @@ class SelfWeight(KindResults):
 
     collapse_acceleration_g: float = fact("0: the building carries no horizontal acceleration", "g")
     safety_factor: float = fact("0: the building collapses before the demand acts")
-    certificate: str = fact("where equilibrium fails, and the proof")
+    certificate: str = fact("joints or blocks at which equilibrium fails, and the certificate")
     neglected: list[str] = fact(
         "strengths, restraints and pressures of the deck that the proof neglects; with any the outcome is open"
     )
@@ -76,9 +76,7 @@ class SelfWeight(KindResults):
         if not self.neglected:
             return f"The structure cannot stand: it collapses under its own weight. {self.certificate}."
         strengths = " and ".join(self.neglected)
-        return (
-            f"The structure stands only by {strengths}. Without: it collapses under its own weight. {self.certificate}."
-        )
+        return f"The structure stands only by {strengths}. Without them it collapses under its own weight. {self.certificate}."
 
     def judged(self, demand: Demand) -> Verdict:
         """cannot-stand; open where the deck gives strengths that the proof neglects."""

@@ -13,14 +13,14 @@ import numpy as np
 from extrados.analyses.context import Context
 from extrados.analyses.left_out import left_out
 from extrados.analyses.needs import as_shell, complaints, stones_of
-from extrados.building.errors import BadGeometry
-from extrados.building.geometry.assembly import Assembly
 from extrados.decks.reader import Deck
+from extrados.model.errors import BadGeometry
+from extrados.model.geometry.assembly import Assembly
 
 if TYPE_CHECKING:
-    from extrados.building.geometry.inspection import Inspection
-    from extrados.building.geometry.solids.assembly import SolidAssembly
-    from extrados.building.mesh.shells import ShellMesh
+    from extrados.model.geometry.inspection import Inspection
+    from extrados.model.geometry.solids.assembly import SolidAssembly
+    from extrados.views.shell.mesh import ShellMesh
 
 
 @dataclass(frozen=True)
@@ -111,8 +111,8 @@ def write_check(checked: Checked, folder: Path) -> tuple[Path, Path]:
 
     A file there that extrados did not write, or that was changed since, stays, and the new one is put beside it.
     """
-    from extrados.plots.geometry import Mark, draw_survey  # matplotlib takes a third of a second to load
     from extrados.results import written
+    from extrados.show.geometry import Mark, draw_survey  # matplotlib takes a third of a second to load
 
     assert checked.inspection is not None
     folder = Path(os.path.abspath(folder))
@@ -138,8 +138,8 @@ def write_check(checked: Checked, folder: Path) -> tuple[Path, Path]:
 def write_plan(mesh: "ShellMesh", folder: Path) -> Path:
     """Plan and elevations of a building with its mesh, or the mesh of a vault in space, into a folder: plan.png (and .svg),
     under the rule of write_check."""
-    from extrados.plots.plan import Elevation, draw_plan, draw_shells
     from extrados.results import written
+    from extrados.show.plan import Elevation, draw_plan, draw_shells
 
     folder = Path(os.path.abspath(folder))
     folder.mkdir(parents=True, exist_ok=True)
@@ -169,8 +169,8 @@ def write_plan(mesh: "ShellMesh", folder: Path) -> Path:
 
 def write_solids(solids: "SolidAssembly", folder: Path) -> Path:
     """The picture of solids into a folder: geometry.png (and .svg). What extrados did not write there stays."""
-    from extrados.plots.geometry import draw_stones
     from extrados.results import written
+    from extrados.show.geometry import draw_stones
 
     folder = Path(os.path.abspath(folder))
     folder.mkdir(parents=True, exist_ok=True)

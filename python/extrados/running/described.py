@@ -2,9 +2,9 @@
 
 from typing import Any
 
-from extrados.building.dimensions import dimensions
-from extrados.building.errors import BadGeometry
 from extrados.decks.reader import Deck
+from extrados.model.dimensions import dimensions
+from extrados.model.errors import BadGeometry
 from extrados.schema.quantities import unit_of
 from extrados.schema.table import Table
 

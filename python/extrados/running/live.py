@@ -9,9 +9,8 @@ import numpy as np
 
 from extrados.analyses.conclude import concluded
 from extrados.analyses.context import Context, default_threads
-from extrados.analyses.run import run_one
+from extrados.analyses.sequence import run_one
 from extrados.analyses.table import Analysis
-from extrados.building.building import Building
 from extrados.decks.reader import WORDS, Deck, DeckError, make_deck
 from extrados.motions.motion import Motion
 from extrados.results import store
@@ -19,6 +18,7 @@ from extrados.results.model import Result
 from extrados.results.verdict import KindResults
 from extrados.running.run import Run
 from extrados.schema.table import Table
+from extrados.views.building import Building
 
 #: Views, motions and, for each analysis, results that are kept: the newest ones
 MOST_VIEWS, MOST_MOTIONS, MOST_RESULTS = 64, 16, 32
@@ -43,8 +43,8 @@ class Live:
         self._take(deck)
 
     def _take(self, deck: Deck) -> None:
-        building = replace(deck.building, _views=self._views)
-        buildings = [replace(b, _views=self._views) for b in deck.buildings]
+        building = replace(deck.building, views=self._views)
+        buildings = [replace(b, views=self._views) for b in deck.buildings]
         self.deck = replace(deck, building=building, buildings=buildings)
         self.names = store.group_names([options.kind for options in deck.analyses])
 

@@ -1,17 +1,15 @@
 """A run as notebooks show it: one line per analysis, and the main figure of the first that has one."""
 
 import html
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from extrados.running.run import Run
+from extrados.results.store import Stored
 
 #: Characters of an answer that are shown
 LONGEST = 400
 STYLE = "text-align:left;vertical-align:top;padding:2px 10px 2px 0"
 
 
-def page_of(run: "Run") -> str:
+def page_of(run: Stored) -> str:
     """HTML of a run."""
     head = html.escape(run.summary["deck"].get("title") or str(run.summary["deck"]["path"]))
     rows = "".join(
@@ -28,9 +26,9 @@ def _told(row: dict) -> str:
     return text + (f" ({warned} warning{'s' if warned > 1 else ''})" if warned else "")
 
 
-def _figure(run: "Run") -> str:
+def _figure(run: Stored) -> str:
     """The first figure of the first analysis that is drawn, as PNG within the page."""
-    from extrados.plots.drawn import draw
+    from extrados.show.drawn import draw
 
     pages = (draw(run, row["name"]).html(1) for row in run.analyses if row["status"] == "ok")
     return next((page for page in pages if page), "")

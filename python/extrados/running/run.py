@@ -10,16 +10,17 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_analyses
+from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import Deck
 from extrados.results import checkpoint, store
 from extrados.results.model import Result, Streamed
 from extrados.results.store import Stored
 from extrados.running.described import described
+from extrados.running.notebook import page_of
 from extrados.running.provenance import computed, provenance
 
 if TYPE_CHECKING:
-    from extrados.plots.drawn import Drawn
+    from extrados.show.drawn import Drawn
 
 
 class Run(Stored):
@@ -54,14 +55,12 @@ class Run(Stored):
 
     def _repr_html_(self) -> str:
         """In a notebook: a short table and the main figure, never the arrays."""
-        from extrados.running.notebook import page_of
-
         return page_of(self)
 
     def plot(self, analysis: str) -> "Drawn":
         """The figures of an analysis by its name, as objects of matplotlib: a notebook shows them, `.save(folder)` writes
         them, `["tilt-mechanism"]` is one of them. KeyError where there is no such analysis."""
-        from extrados.plots.drawn import draw
+        from extrados.show.drawn import draw
 
         return draw(self, analysis)
 
@@ -85,7 +84,7 @@ class Run(Stored):
         if any(isinstance(a.data, Streamed) for arrays in self.arrays.values() for a in arrays.values()):
             self.arrays = store.read(self.folder).arrays  # what lay beside the folder until now lies in it
         if figures:  # the results are safe by now, whatever happens while drawing
-            from extrados.plots.report import write_report
+            from extrados.show.report import write_report
 
             write_report(self.folder)
         return self.folder

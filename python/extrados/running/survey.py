@@ -6,16 +6,16 @@ import io
 import os
 import tempfile
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import tomlkit
 
+from extrados import kinds
 from extrados.analyses.batches import stacked, stop_if_asked, sweep
 from extrados.analyses.context import Context
-from extrados.building.building import Building
 from extrados.decks.reader import LARGEST, Deck, DeckError, make_deck
 from extrados.decks.toml import loads
 from extrados.results import checkpoint, written
@@ -23,6 +23,7 @@ from extrados.results.assess import Assess
 from extrados.results.store import Stored, StoreError, cell, prepare, reason
 from extrados.running.run import Run, compute
 from extrados.schema import files
+from extrados.views.building import Building
 
 #: A deck of this name gives all others of the folder the tables that they lack: the hazard, the budget
 COMMON = "common.toml"
@@ -72,7 +73,7 @@ class SurveyJob:
         row = {"overall": "", "strategy": "", "status": "failed", "statement": "", "folder": str(Path(self.out) / name)}
         margin = np.nan
         try:
-            deck = make_deck(loads(self.texts[k]), Path(self.folder))
+            deck = replace(make_deck(loads(self.texts[k]), Path(self.folder)), path=f"{name}.toml")
             run = compute(Context(deck, threads))
             row["folder"] = str(run.write(Path(self.out) / name, figures=False))  # beside it, where others wrote there
             result = next(r for r in run.results if r.kind == "assess")
@@ -92,7 +93,7 @@ class SurveyJob:
         """Draw the figures of a building whose results are written; what went wrong, as words after its statement."""
         if not self.figures:
             return ""
-        from extrados.plots.report import write_report
+        from extrados.show.report import write_report
 
         try:
             write_report(Path(folder))
@@ -114,14 +115,9 @@ def decks_of(folder: Path) -> dict[str, str]:
     found, complaints = {}, []
     for path in (p for p in paths if p.name != COMMON):
         try:
-            data = {**common, **_read(path)}
-            given = data.get("analysis", [])
-            tables = [
-                t
-                for t in (given if isinstance(given, list) else [given])
-                if isinstance(t, dict) and t.get("kind") == "assess"
-            ]
-            data["analysis"] = tables[:1] or [{"kind": "assess"}]
+            own = _read(path)
+            data = {**common, **own}
+            data["analysis"] = _assessment(own) or _assessment(common) or [{"kind": "assess"}]
             make_deck(data, folder)
             found[path.stem] = tomlkit.dumps(data)
         except DeckError as error:
@@ -131,6 +127,15 @@ def decks_of(folder: Path) -> dict[str, str]:
     if not found:
         raise DeckError([f"{folder}: holds no decks"])
     return found
+
+
+def _assessment(data: dict[str, Any]) -> list[Any]:
+    """The first `assess` among the analyses of a deck; those of no known kind before it, for the complaint about them."""
+    given = data.get("analysis", [])
+    tables = given if isinstance(given, list) else [given]
+    named = [(t, t.get("kind") if isinstance(t, dict) else None) for t in tables]
+    wrong = [t for t, kind in named if kind not in kinds.ANALYSES]
+    return wrong or [t for t, kind in named if kind == "assess"][:1]
 
 
 def _read(path: Path) -> dict[str, Any]:
@@ -179,8 +184,8 @@ def assess_folder(
 
 def _write(rows: list[Assessed], out: Path, figures: bool) -> None:
     """ranking.csv, and the ranking with a page for each building; what is there and was not written by us stays."""
-    from extrados.plots import html, typeset
-    from extrados.plots.ranking import document
+    from extrados.show import html, typeset
+    from extrados.show.ranking import document
 
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

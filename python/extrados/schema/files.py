@@ -15,8 +15,8 @@ PACKAGE = Path(__file__).resolve().parents[1]
 #: Files that come with the program, by the name that follows `extrados:` in a deck; places below the package
 SHIPPED = {
     "el-centro-1940": "motions/library/el-centro-1940.csv",
-    "example-sections": "building/examples/sections.csv",
-    "example-wall": "building/examples/wall.inp",
+    "example-sections": "model/examples/sections.csv",
+    "example-wall": "model/examples/wall.inp",
 }
 # Without O_NONBLOCK the opening of a FIFO waits for its writer, and without O_NOCTTY that of a terminal takes it.
 _FLAGS = os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC

@@ -13,12 +13,13 @@ from extrados.analyses.assess.strategies import Strategy
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import MotionDemand, concluded
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.run import run_one
+from extrados.analyses.limit.self_weight import neglecting
+from extrados.analyses.sequence import run_one
 from extrados.analyses.statistics.summaries import wilson
-from extrados.building.errors import WHOLE
 from extrados.core.calls import within
 from extrados.core.errors import Cancelled
 from extrados.decks.reader import DeckError, make_deck
+from extrados.model.errors import WHOLE
 from extrados.results.assess import StrategyVerdict
 from extrados.results.limit import Tilt, judge_dilatant
 from extrados.results.model import Result
@@ -109,7 +110,7 @@ class Asker:
             if time.passed and len(interrupts.asked) == signals:
                 raise OutOfTime
             raise Interrupted
-        found = concluded(result, options, one, building)
+        found = concluded(neglecting(result, whole.building, without), options, one, building)
         return replace(found, asked=options.model_dump(exclude_none=True)), tomlkit.dumps(data)
 
     def demand(self, peak_g: float) -> Demanded:
@@ -142,9 +143,9 @@ def row_of(
     elif isinstance(r, Sla | Pushover) and any(c.peak_load_N is None for c in (r, r.minus) if c is not None):
         low = verdict.ratio  # it bears so much at least
         if verdict.outcome == "stands":
-            statement = f"The run passed no peak, what it bears in the end is not known. {statement}"
+            statement = f"The run passed no peak: the capacity is not known. {statement}"
     elif strategy.axis in ("acceleration", "pulse", "check") or isinstance(r, SelfWeight):
-        margin = verdict.ratio
+        margin = None if isinstance(r, SelfWeight) and r.neglected else verdict.ratio  # of another building
     if verdict.violated and outcome in ("stands", "collapses"):
         outcome, statement = "open", f"{statement} {' '.join(verdict.violated)}"
     return StrategyVerdict(
@@ -192,7 +193,7 @@ def _probability(r: Ensemble | OverLevels, acceptable: float) -> tuple:
     least, most = wilson(collapsed, count)
     outcome = "stands" if share <= acceptable else "collapses" if share > 0.5 else "open"
     text = (
-        f"{collapsed} of {count} come down: {100 * share:.3g} %, between {100 * float(least):.3g} and {100 * float(most):.3g} % by the count; "
+        f"{collapsed} of {count} collapse: {100 * share:.3g} %, between {100 * float(least):.3g} and {100 * float(most):.3g} % by the count; "
         f"{100 * acceptable:g} % are acceptable."
     )
     return share, acceptable, "probability", outcome, text, low, high

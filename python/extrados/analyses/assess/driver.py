@@ -27,7 +27,7 @@ from extrados.analyses.assess.words import answer, conclusion, table_of
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import faulty
 from extrados.analyses.context import Context, Refused
-from extrados.building.errors import BadGeometry, NoView
+from extrados.model.errors import BadGeometry, NoView
 from extrados.motions.from_deck import is_set
 from extrados.results import assess as out
 from extrados.results.dem import DemRun
@@ -62,7 +62,7 @@ def run(context: Context, options: Assess) -> Result:
         if options.sensitivity or options.vary:
             work.further("sensitivity", work.move)
     except Interrupted:
-        result.status, result.reason = "interrupted", "interrupted; what was asked before is told"
+        result.status, result.reason = "interrupted", "interrupted; the strategies that had run are reported"
     work.conclude(result)
     return result
 
@@ -144,8 +144,10 @@ class _Work:
         try:
             result, deck = self.asker.ask(choice.kind or strategy.kind, choice.keys, motion, None, without)
         except OutOfTime:
-            self.rows[name] = no_row(strategy, "left out", f"was stopped after {STOPPED_AFTER:g} budgets", words)
-            self.not_done.append(f"{strategy.label}: stopped by the clock")
+            self.rows[name] = no_row(
+                strategy, "left out", f"stopped at the time limit of {STOPPED_AFTER:g} budgets", words
+            )
+            self.not_done.append(f"{strategy.label}: stopped at the time limit")
             return None
         except Refused as error:
             self.rows[name] = no_row(strategy, "refused", str(error), words)
@@ -189,7 +191,7 @@ class _Work:
             return True
         if "strategies" in self.options.model_fields_set:
             kind = self.context.building.structure.kind
-            self.rows[name] = no_row(strategy, "left out", f"it cannot analyse a structure of kind '{kind}'")
+            self.rows[name] = no_row(strategy, "left out", f"this strategy cannot analyse a structure of kind '{kind}'")
         return False
 
     # ----- the three rounds
@@ -210,7 +212,7 @@ class _Work:
             if not self.wants(name) or name in self.rows:
                 continue
             if name == "probability" and "rocking" in self.rows and self.rows["rocking"].status == "refused":
-                text = "it counts collapses by rocking, and this building does not rock as one mechanism"
+                text = "the strategy counts collapses by rocking, and this building does not rock as one mechanism"
                 self.rows[name] = no_row(strategies.of(name), "left out", text)
             else:
                 self.ask(strategies.of(name))
@@ -235,7 +237,7 @@ class _Work:
         self.rows["rocking"] = self.rows["rocking"].model_copy(update={"parameters": words})
         if found.results.resurrections:
             self.context.warnings.append(
-                "at some factors above the first that brings it down it rocks and stays up: these are not to be relied on"
+                "Rocking recovers at some factors above the least one that causes collapse. Do not rely on these safe regions."
             )
 
     def _scaled_set(self) -> None:
@@ -321,7 +323,7 @@ class _Work:
             self._keep("tilt-no-sliding", self._probe("tilt", "no joint slides", "tilt", keys))
 
         if "[[ties]]" in self.bare.get("sla", ()) and {"sla", "tilt"} <= set(results):
-            self._keep("tilt-without", self._probe("tilt", "without what the elements leave out", "tilt", {},
+            self._keep("tilt-without", self._probe("tilt", "without the restraints that the elements neglect", "tilt", {},
                                                    without=self.bare["sla"]))  # fmt: skip
         if self.bare and "rocking" in results and any(n in names for n in self.bare):
             every = tuple(sorted({w for there in self.bare.values() for w in there}))
@@ -412,7 +414,7 @@ class _Work:
         try:
             result, _ = self.asker.ask(kind, keys, motion, changes, without)
         except OutOfTime:
-            self.not_done.append(f"{changed}: stopped by the clock")
+            self.not_done.append(f"{changed}: stopped at the time limit")
             return None
         except Refused as error:
             self.not_done.append(f"{changed}: {error}")

@@ -7,8 +7,7 @@ import numpy as np
 
 from extrados.analyses.assess.asking import ENDING
 from extrados.analyses.assess.hazard import above, passages
-from extrados.building.building import Building
-from extrados.building.templates.plan import Plan
+from extrados.model.structures.plan import Plan
 from extrados.motions.motion import Motion
 from extrados.results.assess import Reason, StrategyVerdict
 from extrados.results.codes import Check, Checked, LocalMechanism
@@ -17,6 +16,7 @@ from extrados.results.limit import Tilt
 from extrados.results.model import Result
 from extrados.results.rocking import Assessment, Rocking
 from extrados.results.verdict import KindResults, SelfWeight
+from extrados.views.building import Building
 
 #: Strategies that push for ever, and those that follow the motion or a part of it
 STATIC, DYNAMIC = ("tilt", "sla", "push-x", "push-y"), ("rocking", "assessment", "probability", "dem")
@@ -99,12 +99,12 @@ class Facts:
 
 #: Reasons in a few words
 HEADLINES = {
-    "static-peak": "how long the peak lasts", "impact-rule": "the energy loss at impacts", "last-digits": "a chaotic response",
-    "sine-for-record": "what the motion holds beside its strongest sine", "sliding": "sliding of the stones",
-    "drums": "stones that move by themselves", "hinges-elsewhere": "hinges that form elsewhere",
-    "membrane-without-sliding": "elements that cannot slide", "tension": "tension that elements bear",
+    "violated": "assumptions that do not hold", "static-peak": "how long the peak lasts", "impact-rule": "the energy loss at impacts", "last-digits": "a chaotic response",
+    "sine-for-record": "the rest of the motion beside its strongest sine", "sliding": "sliding of blocks",
+    "drums": "blocks that move separately", "hinges-elsewhere": "hinges that form elsewhere",
+    "membrane-without-sliding": "elements that cannot slide", "tension": "tensile strength of the elements",
     "mortar": "mortar", "code-factors": "the factors of codes", "code-check": "which check of the codes governs", "torn-off": "whether corners and floors hold the walls",
-    "weaker-direction": "the walls along each axis", "crack": "a crack in the buttress", "left-out": "what holds the building", "chance": "sizes that nobody knows to 5 %",
+    "weaker-direction": "the walls along each axis", "crack": "a crack in the buttress", "left-out": "restraints that some strategies neglect", "chance": "uncertain sizes (5 %)",
 }  # fmt: skip
 
 
@@ -167,7 +167,7 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
         return reason(
             "static-peak",
             mine,
-            f"{text}, while a constant push of that peak needs {needed:.3g} s to bring it down.",
+            f"{text}, while a constant push of that peak needs {needed:.3g} s to cause collapse.",
             **numbers,
         )
     if needed is not None:
@@ -180,7 +180,7 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
         return None
     return reason(
         "static-peak", [p for p in mine if "dem" in p],
-        f"{text}: in that time the stones move by {100 * moved:.2g} % of what counts as collapse.", displacement_ratio=moved,
+        f"{text}: in that time the blocks move by {100 * moved:.2g} % of what counts as collapse.", displacement_ratio=moved,
         **numbers,
     )  # fmt: skip
 
@@ -206,14 +206,15 @@ def _by_passages(
     return reason(
         "static-peak", mine,
         f"{text}. None of these times lasts long enough: the most dangerous averages {mean:.3g} g for {length:.3g} s, and a constant "
-        f"push of {mean:.3g} g needs {needed:.3g} s to bring it down.",
+        f"push of {mean:.3g} g needs {needed:.3g} s to cause collapse.",
         **{**numbers, "passage_g": mean, "passage_s": length, "passage_needed_s": needed},
     )  # fmt: skip
 
 
 def _unstopped(facts: Facts, r: Tilt) -> float:
-    """What limit analysis bears [g] in the weaker of the senses that no wall stops."""
-    right, left = r.collapse_acceleration_g, r.collapse_acceleration_opposite_g
+    """Collapse acceleration by limit analysis [g] in the weaker of the senses that no wall stops; the least state found where joints
+    slide, as in the row of `tilt`."""
+    right, left = (most if least is None else least for least, most in (r.interval(), r.interval(opposite=True)))
     return {"left": right, "right": left}.get(facts.building.supports.abutting_wall or "", min(right, left))
 
 
@@ -229,14 +230,14 @@ def crack(facts: Facts, pairs: list[Pair]) -> Reason | None:
         return None
     return reason(
         "crack", mine,
-        f"Limit analysis lets the leeward buttress crack: {cracked:.3g} g instead of {whole:.3g} g with buttresses in one piece, which "
-        f"would bear the peak of {facts.peak_g:.3g} g. The other strategies know no such crack.",
+        f"Limit analysis considers a crack in the leeward buttress: {cracked:.3g} g instead of {whole:.3g} g with monolithic buttresses, which "
+        f"exceeds the peak of {facts.peak_g:.3g} g. The other strategies do not consider this crack.",
         cracked=cracked, whole=whole, peak=facts.peak_g,
     )  # fmt: skip
 
 
 def left_out(facts: Facts, pairs: list[Pair]) -> Reason | None:
-    """One of them leaves out what holds the building; without it the other says the same."""
+    """One of them leaves out restraints that some strategies neglect; without it the other says the same."""
     without = facts.probes.get("without-restraints")
     every = {w for there in facts.bare.values() for w in there}  # what the probe was asked without
     bare = [n for n, there in facts.bare.items() if set(there) == every]
@@ -249,9 +250,9 @@ def left_out(facts: Facts, pairs: list[Pair]) -> Reason | None:
         return None
     return reason(
         "left-out", mine,
-        f"What rocks is held by {' and '.join(sorted(every))}, left out by "
-        f"{' and '.join(facts.rows[n].label for n in bare if any(n in p for p in mine))}. Without them rocking turns by "
-        f"{100 * other.peak_rotation_ratio:.3g} % of the critical rotation, with them by {100 * r.peak_rotation_ratio:.3g} %.",
+        f"The restraints of the mechanism are {' and '.join(sorted(every))}, neglected by "
+        f"{' and '.join(facts.rows[n].label for n in bare if any(n in p for p in mine))}. Without them the greatest rotation is "
+        f"{100 * other.peak_rotation_ratio:.3g} % of the critical rotation, with them {100 * r.peak_rotation_ratio:.3g} %.",
         rotation_ratio_without=other.peak_rotation_ratio, rotation_ratio=r.peak_rotation_ratio,
     )  # fmt: skip
 
@@ -311,8 +312,8 @@ def sine_for_record(facts: Facts, pairs: list[Pair]) -> Reason | None:
         "sine-for-record", mine,
         f"The criterion replaces the motion by its strongest sine, {abs(a.primary_impulse.amplitude_g):.3g} g over "
         f"{a.primary_impulse.period_s:.3g} s ({100 * a.primary_impulse.goodness_of_fit:.0f} % of the squared acceleration there): "
-        f"under that sine alone it turns by {100 * sine.peak_rotation_ratio:.0f} % of the critical rotation, under the whole "
-        f"motion by {100 * whole.peak_rotation_ratio:.0f} %.",
+        f"under that sine alone the greatest rotation is {100 * sine.peak_rotation_ratio:.0f} % of the critical rotation, under the whole "
+        f"motion {100 * whole.peak_rotation_ratio:.0f} %.",
         sine_rotation_ratio=sine.peak_rotation_ratio, motion_rotation_ratio=whole.peak_rotation_ratio,
         goodness_of_fit=a.primary_impulse.goodness_of_fit,
     )  # fmt: skip
@@ -364,12 +365,23 @@ def _moves_alike(one: DemRun, other: DemRun) -> bool:
     return (one.outcome == "collapse") == (other.outcome == "collapse") and abs(far - near) < 0.2 * max(far, near)
 
 
+def violated(facts: Facts, pairs: list[Pair]) -> list[Reason]:
+    """A strategy that leaves the outcome open since an assumption of it does not hold: the other does not rest on that."""
+    found = []
+    for name in facts.judged():
+        row = facts.rows[name]
+        mine = [p for p in pairs if name in p and facts.relation(*p) == "open"]
+        if mine and row.outcome == "open" and row.violated:
+            text = f"The outcome by {row.label} is open: an assumption does not hold. {' '.join(row.violated)}"
+            found.append(reason("violated", mine, text))
+    return found
+
+
 def sliding(facts: Facts, pairs: list[Pair]) -> Reason | None:
     """Stones slide, which rocking and the criterion rule out."""
     dem, without = facts.of("dem"), facts.probes.get("no-sliding")
-    mine = [
-        p for p in pairs if "dem" in p and ("rocking" in p or "assessment" in p or "probability" in p or "tilt" in p)
-    ]
+    others = {"rocking", "assessment", "probability", "tilt", *(("sla",) if facts.building.meshed_by_stones else ())}
+    mine = [p for p in pairs if "dem" in p and others & set(p)]
     if not mine or not isinstance(dem, DemRun) or "dem-nudged" in facts.probes:
         return None  # of one draw of many nothing can be compared
     shortest = float(facts.building.blocks().length.min())
@@ -385,9 +397,36 @@ def sliding(facts: Facts, pairs: list[Pair]) -> Reason | None:
     numbers["displacement_without_sliding_m"] = other.peak_displacement_m
     numbers["displacement_m"] = dem.peak_displacement_m
     return reason(
-        "sliding", mine, f"{text}, which a mechanism of rocking rules out: without sliding the elements "
-        f"{'come down' if other.outcome == 'collapse' else 'stay up'} and move by {other.peak_displacement_m:.3g} m, with it "
-        f"{'they come down' if dem.outcome == 'collapse' else f'by {dem.peak_displacement_m:.3g} m'}.", **numbers,
+        "sliding", mine, f"{text}, which a rocking mechanism excludes. Without sliding the elements "
+        f"{'collapse' if other.outcome == 'collapse' else 'stand'} and move by {other.peak_displacement_m:.3g} m, with it "
+        f"{'they collapse' if dem.outcome == 'collapse' else f'by {dem.peak_displacement_m:.3g} m'}.", **numbers,
+    )  # fmt: skip
+
+
+def sliding_as_collapse(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """Statics counts sliding as collapse; under the motion the blocks slide by a distance that is finite, and stop."""
+    dem, tilt = facts.of("dem"), facts.of("tilt")
+    static = ("tilt", "sla") if facts.building.meshed_by_stones else ("tilt",)
+    mine = [p for p in pairs if "dem" in p and facts.split(p)[0] in static]
+    if not mine or not isinstance(dem, DemRun) or not isinstance(tilt, Tilt) or "dem-nudged" in facts.probes:
+        return None
+    least = _unstopped(facts, tilt)
+    forth, back = (
+        (tilt.interval(way)[0], joints)
+        for way, joints in ((False, tilt.dilating_joints), (True, tilt.dilating_joints_opposite))
+    )
+    slides = any(capacity == least and joints for capacity, joints in (forth, back))
+    if (
+        not slides
+        or dem.outcome == "collapse"
+        or dem.peak_slip_m < FAR * dem.peak_displacement_m
+        or dem.peak_slip_m <= 0.0
+    ):
+        return None
+    return reason(
+        "sliding", mine,
+        f"Limit analysis counts sliding as collapse, from {least:.3g} g on. Under the motion the blocks slide by {1e3 * dem.peak_slip_m:.3g} mm "
+        "and do not collapse.", static_capacity=least, slip_m=dem.peak_slip_m,
     )  # fmt: skip
 
 
@@ -407,7 +446,7 @@ def hinges_elsewhere(facts: Facts, pairs: list[Pair]) -> Reason | None:
         return None
     return reason(
         "hinges-elsewhere", mine,
-        f"The thrust line of the assumed mechanism leaves the stones in {100 * share:.0f} % of the rocking time, by up to "
+        f"The thrust line of the assumed mechanism leaves the blocks in {100 * share:.0f} % of the rocking time, by up to "
         f"{100 * float(out.max()):.0f} % of their thickness: hinges form elsewhere too, which only discrete elements follow.",
         share_of_time=share, farthest_ratio=float(out.max()),
     )  # fmt: skip
@@ -428,9 +467,9 @@ def drums(facts: Facts, pairs: list[Pair]) -> Reason | None:
     stones = len(facts.building.blocks().mass)
     return reason(
         "drums", mine,
-        f"Rocking takes the {stones} stones as one body. As one body the elements "
-        f"{'come down' if one.results.outcome == 'collapse' else 'stay up'} too, moving by "
-        f"{one.results.peak_displacement_m:.3g} m; apart the stones move by {dem.peak_displacement_m:.3g} m.",
+        f"Rocking takes the {stones} blocks as one body. As one body the elements "
+        f"{'collapse' if one.results.outcome == 'collapse' else 'stand'} too, moving by "
+        f"{one.results.peak_displacement_m:.3g} m; apart the blocks move by {dem.peak_displacement_m:.3g} m.",
         displacement_of_one_body_m=one.results.peak_displacement_m, displacement_m=dem.peak_displacement_m,
     )  # fmt: skip
 
@@ -449,15 +488,15 @@ def membrane(facts: Facts, pairs: list[Pair]) -> Reason | None:
         if stuck > 1.05 * least and abs(sla.capacity - stuck) < abs(sla.capacity - least):
             return reason(
                 "membrane-without-sliding", mine,
-                f"The wall of finite elements cannot slide along its joints: its stones bear {least:.3g} g with friction "
+                f"The wall of finite elements cannot slide along its joints: limit analysis gives {least:.3g} g with friction "
                 f"{facts.building.joints.friction} and {stuck:.3g} g without sliding, the elements {sla.capacity:.3g} g"
-                f"{', which bear tension besides' if strength and sla.capacity > 1.05 * stuck else ''}.",
+                f"{', which have a tensile strength besides' if strength and sla.capacity > 1.05 * stuck else ''}.",
                 with_sliding=least, without_sliding=stuck, elements=sla.capacity,
             )  # fmt: skip
     if strength and sla.capacity > least:
         return reason(
             "tension", mine,
-            f"The elements bear tension up to {strength / 1e6:.3g} MPa before they crack, dry stones none: {sla.capacity:.3g} g "
+            f"The elements have a tensile strength of {strength / 1e6:.3g} MPa, dry joints none: {sla.capacity:.3g} g "
             f"against {least:.3g} g.", tensile_strength=strength, elements=sla.capacity, stones=least,
         )  # fmt: skip
     return None
@@ -471,8 +510,8 @@ def mortar(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if not mine or not (joints.tension or joints.cohesion):
         return None
     return reason(
-        "mortar", mine, f"The mortar bears {joints.tension / 1e6:.3g} MPa of tension and {joints.cohesion / 1e6:.3g} MPa of cohesion "
-        "until it breaks, which limit analysis and rocking leave out.", tension=joints.tension, cohesion=joints.cohesion,
+        "mortar", mine, f"The mortar has a tensile strength of {joints.tension / 1e6:.3g} MPa and a cohesion of {joints.cohesion / 1e6:.3g} MPa "
+        "until it breaks, which limit analysis and rocking neglect.", tension=joints.tension, cohesion=joints.cohesion,
     )  # fmt: skip
 
 
@@ -534,10 +573,10 @@ def code_check(facts: Facts, pairs: list[Pair]) -> Reason | None:
         mine = [p for p in mine if facts.relation(*p) != "disagree"]
         if not mine or max(other, margin) < facts.apart * min(other, margin):
             return None
-    moves = ", a displacement, which statics does not know" if check.unit == "m" else ""
+    moves = ", a displacement, which statics does not give" if check.unit == "m" else ""
     return reason(
         "code-check", mine,
-        f"What governs the codes is {name} of {check.code}, {check.demand:.3g} against {check.capacity:.3g} {check.unit}{moves}: a margin of "
+        f"The governing check of the codes is {name} of {check.code}, {check.demand:.3g} against {check.capacity:.3g} {check.unit}{moves}: a margin of "
         f"{margin:.3g}. By {what} it would be {other:.3g}.",
         governing_margin=margin, demand=check.demand, capacity=check.capacity, other_margin=other,
     )  # fmt: skip
@@ -556,9 +595,9 @@ def torn_off(facts: Facts, pairs: list[Pair]) -> Reason | None:
     weakest = min(bears, key=lambda n: bears[n])
     return reason(
         "torn-off", mine,
-        f"The codes take each wall apart from those across it: wall {wall.wall} turns out of its plane about the foot of storey "
-        f"{wall.storey} at alpha_0 = {wall.multiplier:.3g}. In the {facts.rows[weakest].label} corners and floors hold the walls together, and all "
-        f"of it bears {bears[weakest]:.3g} g: that holds as far as they are bonded and anchored.",
+        f"The codes consider each wall apart from those across it: wall {wall.wall} overturns out of its plane about the foot of storey "
+        f"{wall.storey} at alpha_0 = {wall.multiplier:.3g}. In the {facts.rows[weakest].label} corners and floors hold the walls together, and the "
+        f"whole carries {bears[weakest]:.3g} g, as far as the walls are bonded and anchored.",
         multiplier=wall.multiplier, whole_g=bears[weakest],
     )  # fmt: skip
 
@@ -575,8 +614,8 @@ def weaker_direction(facts: Facts, pairs: list[Pair]) -> Reason | None:
         return None
     return reason(
         "weaker-direction", mine,
-        f"Along the {facts.rows[weak].label.removeprefix('push along ')} axis walls stand on {area[weak]:.3g} m^2, along the "
-        f"{facts.rows[strong].label.removeprefix('push along ')} axis on {area[strong]:.3g} m^2.",
+        f"Along the {facts.rows[weak].label.removeprefix('push along ')} axis the area of the walls is {area[weak]:.3g} m^2, along the "
+        f"{facts.rows[strong].label.removeprefix('push along ')} axis {area[strong]:.3g} m^2.",
         weak_m2=area[weak], strong_m2=area[strong],
     )  # fmt: skip
 
@@ -599,7 +638,7 @@ def _governing(facts: Facts, pairs: list[Pair]) -> tuple[Checked, list[tuple[flo
 
 Rule = Callable[[Facts, list[Pair]], Reason | list[Reason] | None]
 RULES: tuple[Rule, ...] = (
-    static_peak, crack, left_out, ties_of_statics, impact_rule, last_digits, elements_of_last_digits, sine_for_record, sliding, drums, hinges_elsewhere, membrane, mortar, code_factors, code_check, torn_off, weaker_direction,
+    static_peak, crack, left_out, ties_of_statics, impact_rule, last_digits, elements_of_last_digits, violated, sine_for_record, sliding, sliding_as_collapse, drums, hinges_elsewhere, membrane, mortar, code_factors, code_check, torn_off, weaker_direction,
     chance,
 )  # fmt: skip
 

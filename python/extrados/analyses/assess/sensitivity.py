@@ -11,12 +11,12 @@ import numpy as np
 from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.batches import stacked, sweep
 from extrados.analyses.context import Context
-from extrados.analyses.run import run_one
-from extrados.building.building import Building
+from extrados.analyses.sequence import run_one
 from extrados.decks.reader import DeckError, make_deck
 from extrados.results.limit import Tilt
 from extrados.results.statistics import OverLevels
 from extrados.schema.quantities import unit_of
+from extrados.views.building import Building
 
 #: How far each value is moved, as a share of it, by the last part of its key; others by ELSE
 SHARES = {"friction": 0.2, "density": 0.1, "restitution": 0.1, "thickness_factor": 0.1}

@@ -10,12 +10,12 @@ from extrados import kinds
 from extrados.analyses.assess.hazard import STRONG, strong_end
 from extrados.analyses.assess.tables import Assess
 from extrados.analyses.context import Context
-from extrados.building.building import Building
-from extrados.building.errors import NoView
-from extrados.building.templates.plan import Plan
+from extrados.model.errors import NoView
+from extrados.model.structures.plan import Plan
 from extrados.motions.tables import Compatible
-from extrados.results.limits import LIMITS
+from extrados.results import validity
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
 
 #: Shares of the budget that a strategy may take
 SHARES = {"probability": 0.15, "sla": 0.2, "push-x": 0.3, "push-y": 0.3, "dem": 0.15}
@@ -206,14 +206,14 @@ def _sla(asked: Asked) -> Choice:
         needed = 2.0 * STONE_SECONDS * stones
         if needed > asked.share("sla"):
             raise LeftOut(
-                f"{stones} stones take about {needed:.0f} s, its share of the budget is {asked.share('sla'):.0f} s"
+                f"{stones} blocks take about {needed:.0f} s, its share of the budget is {asked.share('sla'):.0f} s"
             )
         wall = building.supports.abutting_wall
         if wall is not None:
             return Choice(
-                {"directions": ["+" if wall == "left" else "-"]}, "stones with joints, pushed away from the wall"
+                {"directions": ["+" if wall == "left" else "-"]}, "blocks with joints, pushed away from the wall"
             )
-        return Choice({"directions": ["+", "-"]}, "stones with joints that open and slide, pushed to both sides")
+        return Choice({"directions": ["+", "-"]}, "blocks with joints that open and slide, pushed to both sides")
     if building.material.tensile_strength is None:
         raise LeftOut("the wall cracks only with [material] tensile_strength and fracture_energy, which the deck lacks")
     size = getattr(building.structure, "size", None)
@@ -230,7 +230,7 @@ def _sla(asked: Asked) -> Choice:
 
 
 def _dem(asked: Asked) -> Choice:
-    from extrados.analyses.dem.model import joint_values
+    from extrados.analyses.dem.from_deck import joint_values
 
     building = asked.building
     try:
@@ -290,17 +290,17 @@ def _too_long(seconds: float, share: float, how: str) -> str:
 
 
 ALL = tuple(
-    Strategy(name, kind, label, axis, LIMITS[kind][0], choose)
-    for name, kind, label, axis, choose in (
-        ("tilt", "tilt", "limit analysis", "acceleration", _as_it_is),
-        ("rocking", "rocking", "rocking", "displacement", _as_it_is),
-        ("assessment", "assessment", "primary impulse", "pulse", _as_it_is),
-        ("code-checks", "code-checks", "codes", "check", _codes),
-        ("probability", "fragility", "probability", "probability", _probability),
-        ("sla", "sla", "sequentially linear analysis", "acceleration", _sla),
-        ("push-x", "pushover", "push along x", "acceleration", lambda asked: _push(asked, 0.0)),
-        ("push-y", "pushover", "push along y", "acceleration", lambda asked: _push(asked, 90.0)),
-        ("dem", "dem", "discrete elements", "displacement", _dem),
+    Strategy(name, kind, label, axis, assumed.assumes, choose)
+    for name, kind, label, axis, assumed, choose in (
+        ("tilt", "tilt", "limit analysis", "acceleration", validity.Tilt, _as_it_is),
+        ("rocking", "rocking", "rocking", "displacement", validity.Rocking, _as_it_is),
+        ("assessment", "assessment", "primary impulse", "pulse", validity.Assessment, _as_it_is),
+        ("code-checks", "code-checks", "codes", "check", validity.CodeChecks, _codes),
+        ("probability", "fragility", "probability", "probability", validity.Fragility, _probability),
+        ("sla", "sla", "sequentially linear analysis", "acceleration", validity.Sla, _sla),
+        ("push-x", "pushover", "push along x", "acceleration", validity.Pushover, lambda asked: _push(asked, 0.0)),
+        ("push-y", "pushover", "push along y", "acceleration", validity.Pushover, lambda asked: _push(asked, 90.0)),
+        ("dem", "dem", "discrete elements", "displacement", validity.Dem, _dem),
     )
 )
 #: Rocking at many factors on the hazard: the margin of `rocking`, and of a set the share of its motions

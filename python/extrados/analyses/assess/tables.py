@@ -29,24 +29,25 @@ class Assess(Analysis):
     bears: ClassVar = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
     starter: ClassVar = {"budget": "20"}
     budget: float = key(
-        90.0, "time that it may take, in s on two cores of 2024: sizes of the costly strategies follow from counted work, not from "
-        "the clock; what still runs when the time is over twice is stopped and told", ge=5, le=1e6,
+        90.0, "time limit, in s on two cores of 2024: sizes of the costly strategies follow from counted work. A strategy "
+        "that still runs after twice this time is stopped and reported", ge=5, le=1e6,
     )  # fmt: skip
     strategies: list[Strategy] = key(
-        list(STRATEGIES), "those that are asked, where they apply; `probability` is `fragility` with uncertain sizes, or with the motions of a set; `push-x` and `push-y` are `pushover` of a building on a plan", min_length=1, max_length=len(STRATEGIES),
+        list(STRATEGIES), "strategies that are run, where they apply; `probability` is `fragility` with uncertain sizes, or with the motions of a set; `push-x` and `push-y` are `pushover` of a building on a plan", min_length=1, max_length=len(STRATEGIES),
     )  # fmt: skip
-    thin: float = key(
-        1.5, "a margin below this, or above its inverse, is thin: what is near it is looked at again", gt=1, le=10
-    )
+    thin: float = key(1.5, "a margin below this, or above its inverse, is thin: further runs follow", gt=1, le=10)
     apart: float = key(
-        1.5, "margins that differ by more than this factor are told apart, with the reasons", gt=1, le=10
+        1.5, "margins that differ by more than this factor are reported as different, with the reasons", gt=1, le=10
     )
     acceptable_probability: float = key(
-        0.05, "probability of collapse up to which `probability` says stands; above a half it says falls", gt=0, lt=0.5
+        0.05,
+        "probability of collapse up to which `probability` says stands; above a half it says collapses",
+        gt=0,
+        lt=0.5,
     )
     uncertain: dict[str, float] | None = key(
         None, "coefficients of variation for `probability`, as in `fragility`; default 0.05 of the sizes and of restitution that "
-        "the kind of structure knows"
+        "the kind of structure"
     )  # fmt: skip
     motions: Annotated[int, Field(ge=2, le=10000)] | None = key(
         None, "motions of a set; default the whole suite, 40 generated or 10 compatible ones"

@@ -58,7 +58,9 @@ def conclusion(
         first = next(facts.rows[n] for n in facts.judged() if facts.outcome(n) == "cannot-stand")
         said.append(f"The {word} cannot stand: collapse under self-weight is proved by {first.label}.")
         if others := proven[1:]:
-            said.append(f"The conclusion of {_list(others)} is the same. Strategies share this proof: it counts once.")
+            said.append(
+                f"The conclusion of {_list(others)} is the same. Strategies share this proof, which counts once."
+            )
         said.append(first.statement)
         if stands:
             said.append(f"The proof overrules the opposite result of {_list(stands)}.")
@@ -97,8 +99,7 @@ def conclusion(
     if none:
         said.append(f"No answer from {_list(none)}.")
     idle = [row for row in rows if row.status == "ok" and row.outcome == "not-applicable"]
-    if silent := [row.label for row in idle if row.capacity is None]:
-        said.append(f"No verdict from {_list(silent)}.")
+    said += [f"No verdict from {row.label}: {row.statement}" for row in idle if row.capacity is None]
     if able := [f"{row.label} {_capacity(row)}" for row in idle if row.capacity is not None]:
         said.append(f"Capacity without a verdict: {_list(able)}.")
     return overall, " ".join(s for s in said if s)

@@ -10,9 +10,9 @@ from extrados.analyses.codes.code_rules import Line, asce43, housner, ishiyama, 
 from extrados.analyses.codes.tables import CodeChecks
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking.conditions import of_one, told
-from extrados.building.templates.block import BlockAssembly
 from extrados.core import motion as core_motion
 from extrados.core import rocking as core_rocking
+from extrados.model.structures.block import BlockAssembly
 from extrados.motions.code_spectra import damping_factor
 from extrados.motions.from_deck import code_spectrum
 from extrados.motions.motion import Motion
@@ -51,7 +51,7 @@ def run(context: Context, options: CodeChecks) -> Result:
     words = [r.overall().statement, f"In detail: {'; '.join(said)}."] if said else []
     if r.dynamic_outcome:
         ratio = r.dynamic_peak_rotation_ratio
-        spoken = {"collapse": "overturns", "recovery": f"rocks to {100 * ratio:.0f} % of its critical rotation and stays up",
+        spoken = {"collapse": "overturns", "recovery": f"rocks to {100 * ratio:.0f} % of its critical rotation and recovers",
                   "no-hinging": "does not rock"}[r.dynamic_outcome]  # fmt: skip
         words.append(f"Computed under the motion itself, the block {spoken}.")
     strengths = {x.rule: x.capacity for x in lines if x.unit == "N" and x.capacity is not None}

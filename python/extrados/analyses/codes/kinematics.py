@@ -11,6 +11,10 @@ from extrados.schema.constants import GRAVITY
 MOVES = 1e-5
 
 
+class NoMechanism(Exception):
+    """The building has no local mechanism of the kind that is checked; the text says why."""
+
+
 @dataclass(frozen=True)
 class Weight:
     """A weight [N] at a body that turns about the hinge: arm, how far [m] its centre lies behind the hinge, height [m]

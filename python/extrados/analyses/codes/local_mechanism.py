@@ -7,45 +7,46 @@ import numpy as np
 from extrados.analyses.codes import ntc
 from extrados.analyses.codes.code_checks import demanded_spectrum, spectrum_of
 from extrados.analyses.codes.code_rules import Line, table
-from extrados.analyses.codes.kinematics import Capacity, Overturning, capacity, in_chain, spectral
+from extrados.analyses.codes.kinematics import Capacity, NoMechanism, Overturning, capacity, in_chain, spectral
 from extrados.analyses.codes.mechanisms import overturning
 from extrados.analyses.codes.parts import Part, asce41, en1998, nzsee
 from extrados.analyses.codes.tables import LocalMechanism
 from extrados.analyses.codes.walls import WallPart, wall_parts
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.limit.common import limit_of
+from extrados.analyses.limit.common import collapse_beside, limit_of
 from extrados.analyses.limit.tables import Tilt
-from extrados.building.building import Building
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.rockers.mechanism import MechanismModel, NoMotion
-from extrados.building.rockers.restraints import Restraints, members_of
-from extrados.building.templates.plan import Plan
-from extrados.building.ties import Tie
 from extrados.core import mechanism as core_mechanism
 from extrados.core.restraints import FREE
 from extrados.limit.answer import cannot_stand
-from extrados.limit.errors import CannotStand, Immovable, NoEquilibrium
+from extrados.limit.certificate import certify
+from extrados.limit.errors import CannotStand, Immovable, NoAnswer, NoEquilibrium
 from extrados.limit.linkage import laden
+from extrados.limit.programme import LimitAnalysis, Mechanism
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.structures.plan import Plan
+from extrados.model.ties import Tie
 from extrados.results import codes as out
+from extrados.results.limit import DILATANT, SAME
 from extrados.results.model import Array, Result, TableData
 from extrados.results.verdict import Bound
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
+from extrados.views.rockers.mechanism import MechanismModel, NoMotion
+from extrados.views.rockers.restraints import Restraints, members_of
 
 STEPS = 61
 #: Limit analysis with friction, strength and ties finds another mechanism where its multiplier is less than this share
 WEAKER = 0.99
 #: e* by stones and by rigid links that differ by less than this share are alike
 ALIKE = 0.02
-DILATES = (
-    "The multiplier of a mechanism that slides is an upper bound: by the flow rule its joints dilate by their friction."
-)
 
 
 @dataclass(frozen=True)
 class _Turning:
     """A mechanism: its capacity, its curve (displacement d* [m], multiplier), in words, its place z and H [m] (None: at the
     ground), and what of its multiplier is known to be above the exact one; links: its capacity with one weight for each rigid link of the
-    chain [C8.7.1.1], where that differs from the one by stones."""
+    chain [C8.7.1.1], where that differs from the one by stones; slides: whether pressed joints slide; associated: where they do and `found` is of the least state without
+    dilatancy, the capacity by dilatant friction, an upper bound."""
 
     found: Capacity
     curve: tuple[np.ndarray, np.ndarray]
@@ -55,6 +56,8 @@ class _Turning:
     part: WallPart | None = None
     body: Overturning | None = None
     links: Capacity | None = None
+    slides: bool = False
+    associated: Capacity | None = None
 
 
 @dataclass(frozen=True)
@@ -74,14 +77,19 @@ class _Judged:
 
 def run(context: Context, options: LocalMechanism) -> Result:
     """Multiplier, M*, a_0*, capacity curve, and the checks of the codes that apply, of the mechanism of least margin."""
-    building = context.building
+    building, on_plan = context.building, False
     if options.mechanism == "building":
         on_plan = isinstance(building.structure, Plan)
-        turnings = _of_plan(context) if on_plan else _of_stones(context, options)
+        try:
+            turnings = _of_plan(context) if on_plan else _of_stones(context, options)
+        except (NoMechanism, Immovable) as error:
+            none = out.NoLocalMechanism(reason=str(error))
+            return Result("local-mechanism", results=none, answer=none.statement())
     else:
-        on_plan = False
         if options.mechanism == "corner" and building.material.compressive_strength is not None:
-            context.warnings.append("a corner turns about its outer edge, as if the stone did not crush there")
+            context.warnings.append(
+                "The corner is assumed to overturn about its outer edge: crushing there is neglected."
+            )
         body = overturning(options, building.material.density, building.material.compressive_strength)
         z = options.hinge_height if options.base_height is None else options.base_height
         turnings = [
@@ -158,12 +166,12 @@ def _of_walls(context: Context, judged: list[_Judged]) -> Result:
         }
     )
     result.answer += (
-        f" It is the weakest of {len(judged)} parts of {len(plan.walls)} walls, each taken apart from the walls across it; flexible floors, "
-        "joists and rods hold none, rigid floors and props do."
+        f" This part is the weakest of {len(judged)} parts of {len(plan.walls)} walls, each considered apart from the walls across it; flexible floors, "
+        "joists and rods restrain none, rigid floors and props do."
     )
     if plan.rods:
         context.warnings.append(
-            "rods are left out: the deck does not say what their anchorage bears; give it to a `facade` of its own as `ties`"
+            "Rods are neglected: the deck does not give the strength of their anchorage. Give the strength as `ties` of a `facade` of its own."
         )
     return result
 
@@ -174,7 +182,7 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
     d0, fc = found.d0, options.confidence_factor
     if d0 is None and found.alone <= 0.0:
         context.warnings.append(
-            "without its ties it would not stand at rest: the nonlinear check, which does not count on them, is left out"
+            "Without its ties the body would not stand at rest: the nonlinear check, which neglects them, is not made."
         )
     storeys = len(structure.storeys) if isinstance(structure := context.building.structure, Plan) else options.storeys
     lines, more = _checks(context, options, turning, storeys)
@@ -183,7 +191,7 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
         violated.append(ntc.below_lc1(fc))
     if options.mechanism in ("parapet", "gable") and not z:
         violated.append(
-            f"The demand is that of the ground, but a {options.mechanism} stands on a building, which amplifies it. Give base_height and "
+            f"The demand is that of the ground, but a {options.mechanism} is part of a building, which amplifies the motion. Give base_height and "
             "building_height."
         )
     made = out.LocalMechanism(
@@ -195,15 +203,27 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
         behaviour_factor=options.behaviour_factor, **({} if turning.bound is None else {"bound": turning.bound}),
         **({"violated": violated} if violated else {}), checks={x.rule: x.check() for x in lines}, **more,
     )  # fmt: skip
-    if turning.links is not None and made.overall().outcome == "stands":
+
+    def by(other: Capacity) -> out.LocalMechanism:
+        """The results by the checks of another capacity."""
         told = list(context.warnings)
-        other, _ = _checks(context, options, replace(turning, found=turning.links), storeys)
+        rows, _ = _checks(context, options, replace(turning, found=other), storeys)
         context.warnings = told
-        by_links = made.model_copy(update={"checks": {x.rule: x.check() for x in other}})
-        if by_links.overall().outcome != "stands":
+        return made.model_copy(update={"checks": {x.rule: x.check() for x in rows}})
+
+    if turning.associated is not None:
+        governing = by(turning.associated).governing()
+        made = made.model_copy(
+            update={
+                "multiplier_associated": turning.associated.alpha0,
+                "margin_associated": governing[0][0] if governing else None,
+            }
+        )
+    if turning.links is not None and made.overall().outcome == "stands":
+        if by(turning.links).overall().outcome != "stands":
             violated.append(
                 f"With one weight for each rigid link [C8.7.1.1], e* {turning.links.part:.3g}, the check fails: the verdict depends on "
-                "how the links are divided into stones."
+                "how the links are divided into blocks."
             )
             made = made.model_copy(update={"violated": violated})
     return _Judged(turning, lines, made)
@@ -223,7 +243,7 @@ def _result(judged: _Judged) -> Result:
     limit = "" if d0 is None else f", and vanishes at d_0* = {d0:.3g} m"
     result.answer = (
         f"{words[:1].upper()}{words[1:]} starts at alpha_0 = {found.alpha0:.4g}; {100 * found.part:.3g} % of the {found.weight / 1e3:.4g} kN "
-        f"that move take part (M* = {found.mass:.4g} kg), a_0* = {r.activation_acceleration_g:.4g} g with FC {fc:g}{limit}. "
+        f"of the kinematic chain participate (M* = {found.mass:.4g} kg), a_0* = {r.activation_acceleration_g:.4g} g with FC {fc:g}{limit}. "
         f"{r.overall().statement}"
     )
     return result
@@ -243,11 +263,22 @@ def _of_stones(context: Context, options: LocalMechanism) -> list[_Turning]:
         if not all(isinstance(r, Tie) for r in building.restraints):
             raise
         context.warnings.append(f"d_0* and the nonlinear checks are not given: {error}")
-        found = [_at_rest(context, options, side) for side in sides]
-        context.warnings += [DILATES] if any(turning.bound for turning in found) else []
-        return found
+        return _at_rest_to(context, options, sides)
     held = Restraints(members_of(building, stones, model.linkages), model.linkages, (reach[0], reach[1]))
     return [_side(context, options, model, held, side) for side in sides]
+
+
+def _at_rest_to(context: Context, options: LocalMechanism, sides: list[int]) -> list[_Turning]:
+    """The mechanisms at rest to those sides to which one exists; Immovable where to none."""
+    found, locked = [], []
+    for side in sides:
+        try:
+            found.append(_at_rest(context, options, side))
+        except Immovable as error:
+            locked.append(error)
+    if not found:
+        raise locked[0]
+    return found
 
 
 def _side(context: Context, options: LocalMechanism, model: MechanismModel, held: Restraints, side: int) -> _Turning:
@@ -273,7 +304,7 @@ def _side(context: Context, options: LocalMechanism, model: MechanismModel, held
     apart = abs(links.part / found.part - 1.0) > ALIKE
     if apart:
         context.warnings.append(
-            f"e* takes each stone as a weight of its own: {found.part:.3g}. With one weight for each of the {len(one.mass)} rigid links of "
+            f"e* takes each block as a weight of its own: {found.part:.3g}. With one weight for each of the {len(one.mass)} rigid links of "
             f"the chain, as [C8.7.1.1] defines P_k, e* is {links.part:.3g}, and a_0* {100.0 * (found.part / links.part - 1.0):+.0f} %."
         )
     # only limit analysis looks for the mechanism that ties leave; dampers and added hinges it does not know
@@ -295,33 +326,35 @@ def _words(building: Building) -> str:
 
 def _weaker(context: Context, options: LocalMechanism, side: int, turning: float) -> _Turning | None:
     """The mechanism that limit analysis finds, None where its multiplier is not less than `turning`, that of the one which turns."""
+    told = list(context.warnings)
     try:
         found = _at_rest(context, options, side)
     except Immovable:
         return None
     if found.found.alpha0 > WEAKER * turning:
+        context.warnings = told
         return None
     building = context.building
-    why, without = "limit analysis finds a weaker mechanism", "it"
-    if found.bound:
-        why, without = f"its joints slide, at a friction of {building.joints.friction},", "sliding"
+    why, without = "Limit analysis finds a weaker mechanism", "that mechanism"
+    if found.slides:
+        why, without = f"Joints slide at a friction of {building.joints.friction}", "sliding"
     elif building.material.compressive_strength is not None:
-        why, without = "its stones crush at the hinges", "crushing"
+        why, without = "Blocks crush at the hinges", "crushing"
         found = replace(found, words=f"{found.words}, which crushes,")
     context.warnings.append(
-        f"{why} before it turns (multiplier {turning:.4g} without {without}): the displacement that it bears is not known"
+        f"{why} before the rigid-body mechanism starts (multiplier {turning:.4g} without {without}): the displacement capacity is not known."
     )
-    if found.bound:
-        context.warnings.append(DILATES)
     return found
 
 
 def _at_rest(context: Context, options: LocalMechanism, side: int) -> _Turning:
     """The mechanism to side 0 (+x) or 1 (-x) by limit analysis with the deck's friction, compressive strength and ties, as it
-    begins: its finite motion is not known. CannotStand where the building collapses under its own weight."""
+    begins: its finite motion is not known. CannotStand where the building collapses under its own weight.
+
+    Where joints slide: the least certified state without dilatancy, with the capacity by dilatant friction beside it; where no such
+    state is known the latter alone, an upper bound."""
     building = context.building
     stones: Assembly = building.blocks()
-    mass, place, _ = laden(stones)
     limit, sense = limit_of(building, Tilt(kind="tilt")), (1, -1)[side]
     try:
         state, mechanism = limit.collapse(sense)
@@ -332,17 +365,55 @@ def _at_rest(context: Context, options: LocalMechanism, side: int) -> _Turning:
     multiplier = sense * state.gamma
     if multiplier <= 0.0:
         raise cannot_stand(limit)
-    field = mechanism.velocity.copy()
-    arm = place - stones.centroid
+    found, chain = _capacity_at_rest(stones, multiplier, mechanism)
+    bound: Bound | None = None
+    associated, words = None, _words(building)
+    slides = bool(limit.dilating(mechanism))
+    if slides:
+        words = f"{words}, which slides,"
+        try:
+            least, motion = _without_dilatancy(limit, sense)
+        except (NoAnswer, NoEquilibrium) as error:
+            bound = "upper"
+            context.warnings.append(
+                f"Joints slide: the multiplier is an {DILATANT}. No state without dilatancy is given: {error}."
+            )
+        else:
+            associated = found
+            found, chain = _capacity_at_rest(stones, least, motion)
+            if least > (1.0 - SAME) * multiplier:
+                associated = None
+            else:
+                context.warnings.append(
+                    f"Joints slide: the multiplier lies between {least:.4g}, the least state found without dilatancy, and {multiplier:.4g}, "
+                    f"the {DILATANT}. The checks use the lower value."
+                )
+    return _Turning(
+        found, (np.zeros(1), np.array([found.alpha0])), words, _place(stones, chain, options), bound, slides=slides, associated=associated,
+    )  # fmt: skip
+
+
+def _capacity_at_rest(stones: Assembly, multiplier: float, mechanism: Mechanism) -> tuple[Capacity, np.ndarray]:
+    """The capacity of a mechanism that begins at a multiplier, and which blocks move in it (blocks)."""
+    mass, place, _ = laden(stones)
+    field, arm = mechanism.velocity.copy(), place - stones.centroid
     field[:, :2] += field[:, 2, None] * np.column_stack([-arm[:, 1], arm[:, 0]])
     field *= np.sign(mass @ field[:, 0])
     chain = in_chain(field, stones.size)
-    found = capacity(multiplier, mass[chain] * GRAVITY, field[chain, 0], None)
-    slides = bool(limit.dilating(mechanism))
-    return _Turning(
-        found, (np.zeros(1), np.array([multiplier])), f"{_words(building)}{', which slides,' if slides else ''}",
-        _place(stones, chain, options), "upper" if slides else None,
-    )  # fmt: skip
+    return capacity(multiplier, mass[chain] * GRAVITY, field[chain, 0], None), chain
+
+
+def _without_dilatancy(limit: LimitAnalysis, sense: int) -> tuple[float, Mechanism]:
+    """The least multiplier found to side `sense` by sliding that does not dilate, above 0 and certified, and its mechanism; NoAnswer
+    where none is known."""
+    state, mechanism = collapse_beside(limit.without_dilatancy(), sense)
+    least = sense * state.gamma
+    if least <= 0.0:
+        raise NoAnswer("a block that friction alone holds between its neighbours slides out of them at any load")
+    proof = certify(limit.assembly, limit.loads, limit.friction, state, mechanism, limit.strength)
+    if not proof.holds(state.gamma):
+        raise NoAnswer(f"the state found is not certified (zero gap {proof.zero_gap:.1e} g)")
+    return least, mechanism
 
 
 def _place(stones: Assembly, chain: np.ndarray, options: LocalMechanism) -> tuple[float, float | None]:
@@ -371,7 +442,7 @@ def _held(held: Restraints, side: int, rotation: np.ndarray) -> np.ndarray:
         law = member.law
         bound = np.where(slope[:, k] > 0.0, law.most, -law.least) if law.stiffness > 0.0 else np.zeros(len(rotation))
         if (bound >= FREE).any():
-            raise Refused(f"{member.name} never yields: give the force that its anchorage bears", ("ties",))
+            raise Refused(f"{member.name} never yields: give the strength of its anchorage", ("ties",))
         moment += bound * np.abs(slope[:, k])
     return moment
 
@@ -392,7 +463,7 @@ def _checks(
             at_height = ntc.floor(spectrum, z, height, storeys, options.building_period)
         elif a_g is not None:
             context.warnings.append(
-                f"at {z:.3g} m above the foundation the checks of NTC ask how the building answers at its period: without a spectrum they "
+                f"at {z:.3g} m above the foundation the checks of NTC require the response of the building at its period: without a spectrum they "
                 "have no demand"
             )
     fc, raised = options.confidence_factor, height is not None

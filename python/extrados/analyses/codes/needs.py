@@ -1,17 +1,19 @@
 """What the rules of codes need of a deck: a motion and a spectrum that can be read, of a wall what makes it a pier, of a
 mechanism its sizes."""
 
+import contextlib
 from collections.abc import Iterator
 
+from extrados.analyses.codes.kinematics import NoMechanism
 from extrados.analyses.codes.mechanisms import overturning
 from extrados.analyses.codes.tables import CodeChecks, LocalMechanism
 from extrados.analyses.codes.walls import wall_parts
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.needs import Need
 from extrados.analyses.table import Analysis
-from extrados.building.building import Building
-from extrados.building.errors import Key
-from extrados.building.templates.plan import Plan
+from extrados.model.errors import Key
+from extrados.model.structures.plan import Plan
+from extrados.views.building import Building
 
 #: What of the table describes a body by itself; and where on a building it stands, which a plan says of each of its walls
 OF_A_BODY = (
@@ -42,7 +44,7 @@ def needs(context: Context, options: Analysis) -> Iterator[Need]:
             ):
                 yield lambda name=name: _refuse_given(name)
             if isinstance(structure, Plan):
-                yield lambda: wall_parts(building)
+                yield lambda: _read_walls(building)
         else:
             yield lambda: overturning(options, building.material.density, building.material.compressive_strength)
     if not isinstance(options, CodeChecks):
@@ -62,16 +64,21 @@ def needs(context: Context, options: Analysis) -> Iterator[Need]:
         yield lambda: _refuse_weak()
 
 
+def _read_walls(building: Building) -> None:
+    with contextlib.suppress(NoMechanism):  # the answer of the analysis, no fault of the deck
+        wall_parts(building)
+
+
 def _refuse_unheld(what: str, key: Key) -> None:
     raise Refused(
-        f"local-mechanism takes {what} into account only where the stones of the deck turn: leave it out, or give what holds a wall as "
+        f"local-mechanism takes {what} into account only for the mechanism of the blocks of the deck: remove it, or give the restraint of a wall as "
         "`ties` of this table",
         key,
     )
 
 
 def _refuse_given(name: str) -> None:
-    raise Refused(f'mechanism = "building" takes it from [structure]: leave {name} out', ("analysis", name))
+    raise Refused(f'mechanism = "building" takes this value from [structure]: remove {name}', ("analysis", name))
 
 
 def _refuse_nothing(building: Building) -> None:

@@ -45,7 +45,7 @@ def en1998(part: Part, peak: float | None) -> Line:
     if q_a is None:
         barred = f"Table 4.4 gives no q_a for this element ({part.element})"
     elif part.loaded:
-        barred = "the wall carries floors: it is no non-structural element"
+        barred = "the wall carries floors: a wall with floors is no non-structural element"
     elif not part.elevated:
         barred = "the part does not stand on a building, above the ground"
     elif peak is not None:

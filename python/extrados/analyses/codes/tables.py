@@ -10,7 +10,7 @@ from extrados.schema.spectrum import CodeSpectrum
 from extrados.schema.table import Table, key
 
 if TYPE_CHECKING:
-    from extrados.building.building import Building
+    from extrados.views.building import Building
 
 
 class CodeChecks(BuildingAnalysis):
@@ -76,7 +76,7 @@ class Floor(Table):
     load: Force = key(0.0, "weight that rests on the wall (P)", ge=0, source="Circ. 7/2019 [C8.7.1.1]")
     pushing: Force = key(
         0.0,
-        "weight that does not rest on the wall and whose mass pushes it (Q): it drives the mechanism and does not hold it down",
+        "weight that does not rest on the wall and whose mass pushes it (Q): this mass drives the mechanism and does not stabilise it",
         ge=0,
         source="Circ. 7/2019 [C8.7.1.1]",
     )
@@ -89,7 +89,7 @@ class WallTie(Table):
     """A tie that holds the wall."""
 
     height: Length = key(about="its height above the foot of the wall", gt=0)
-    force: Force = key(about="what it bears: the least of steel, anchorage and masonry", gt=0)
+    force: Force = key(about="strength: the least of steel, anchorage and masonry", gt=0)
 
 
 class SideWalls(Table):
@@ -125,9 +125,9 @@ class LocalMechanism(BuildingAnalysis):
         about="facade, corner of two walls, gable, parapet on a building, free-standing wall, tower as one body; or `building`, "
         "the collapse mechanism of the deck's [structure] (triumphal arches, bridges, vaults), of a building on a plan its walls"
     )
-    height: Length | None = key(None, "top of what turns, above the foot of the wall", gt=0)
+    height: Length | None = key(None, "top of the body that overturns, above the foot of the wall", gt=0)
     thickness: Length | None = key(None, "thickness at the hinge", gt=0)
-    width: Length | None = key(None, "length of wall that turns; default 1 m, of a tower its thickness", gt=0)
+    width: Length | None = key(None, "length of wall that overturns; default 1 m, of a tower its thickness", gt=0)
     hinge_height: Length = key(0.0, "height of the hinge, the crack about which it turns", ge=0)
     crack_angle: Angle | None = key(None, "of a corner: of the cracks in both walls from the vertical", gt=0, lt=80)
     floors: list[Floor] = key([], "floors, roofs and vaults on it", max_length=50)
@@ -182,7 +182,7 @@ class LocalMechanism(BuildingAnalysis):
     one_second_acceleration: Acceleration | None = key(
         None, "S_X1; adds the slenderness limits of ASCE 41 for walls anchored at their top", gt=0
     )
-    storey: Literal["one-story", "first", "top", "other"] = key("one-story", "where the wall stands, for ASCE 41")
+    storey: Literal["one-story", "first", "top", "other"] = key("one-story", "place of the wall, for ASCE 41")
 
     @model_validator(mode="after")
     def _elevated(self) -> "LocalMechanism":
@@ -198,4 +198,4 @@ class LocalMechanism(BuildingAnalysis):
     def of_stones(self, building: "Building") -> bool:
         """Whether the mechanism is that of the deck's stones, not of a body by itself or of the walls of a plan."""
         structure = building.structure
-        return self.mechanism == "building" and (structure is None or "blocks" not in structure.lacks)
+        return self.mechanism == "building" and (structure is None or "blocks" not in building.kind.lacks)

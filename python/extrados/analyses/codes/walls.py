@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.analyses.codes.kinematics import Overturning, Weight
+from extrados.analyses.codes.kinematics import NoMechanism, Overturning, Weight
 from extrados.analyses.codes.mechanisms import set_back
 from extrados.analyses.context import Refused
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry
-from extrados.building.properties import Material
-from extrados.building.templates.plan import MEETS, Plan, PlanWall
+from extrados.model.errors import BadGeometry
+from extrados.model.properties import Material
+from extrados.model.structures.plan import MEETS, Plan, PlanWall
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ def wall_parts(building: Building) -> list[WallPart]:
     """Every wall above the foot of each storey above which nothing holds it.
 
     Simple overturning: walls across, flexible floors, joists and rods hold no wall; rigid floors and props do. Floors load the
-    walls that they bear on, by their length, on the middle plane. Refused where every wall is held.
+    walls that carry them, by their length, on the middle plane. NoMechanism where every wall is held.
     """
     plan = building.structure
     assert isinstance(plan, Plan)
@@ -40,8 +40,9 @@ def wall_parts(building: Building) -> list[WallPart]:
         free = max((k + 1 for k in held[wall.name] if first <= k <= last), default=first)
         parts += [_part(building, plan, wall, storey, loads) for storey in range(free, last + 1)]
     if not parts:
-        raise Refused(
-            "rigid floors or props hold the top of every wall: none turns out of its plane as one body", ("structure",)
+        raise NoMechanism(
+            "Rigid floors or props restrain the top of every wall: no wall overturns out of its plane as one body. The bending of a wall "
+            "between its floors is not checked"
         )
     return parts
 
@@ -59,7 +60,7 @@ def _floors(plan: Plan) -> tuple[dict[tuple[str, int], float], dict[str, set[int
         bearing = {name: lengths[name] for name in floor.bears_on if name in lengths} if floor.bears_on else lengths
         if floor.load > 0.0 and not bearing:
             raise BadGeometry(
-                f"floor on storey {floor.storey}: none of the walls that bear its load lies beside it",
+                f"floor on storey {floor.storey}: none of the walls that carry its load lies beside it",
                 ("structure", "floors", k, "bears_on"),
             )
         for name, length in bearing.items():

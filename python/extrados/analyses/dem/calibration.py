@@ -8,11 +8,11 @@ from extrados.analyses.context import Refused
 from extrados.analyses.dem import impact_rules, measures
 from extrados.analyses.dem.model import JointValues, Model
 from extrados.analyses.dem.trial import about_a_toe
-from extrados.building.building import Building
-from extrados.building.rockers.block import BlockModel
-from extrados.building.templates.block import BlockAssembly
 from extrados.core import dem
+from extrados.model.structures.block import BlockAssembly
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
+from extrados.views.rockers.block import BlockModel
 
 #: Fractions of critical damping at edge impact that are tried, and how closely the restitution is met.
 LEAST, MOST, ACCURACY = 0.05, 20.0, 0.003

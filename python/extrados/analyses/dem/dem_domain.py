@@ -9,8 +9,9 @@ import numpy as np
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import measures, solid_settlement
 from extrados.analyses.dem import model as dem_model
+from extrados.analyses.dem.from_deck import make_model
+from extrados.analyses.dem.job import Runs, SolidRuns, SolidTask, Task, answered
 from extrados.analyses.dem.model import JointValues, Model
-from extrados.analyses.dem.runs import Runs, SolidRuns, SolidTask, Task, answered
 from extrados.analyses.dem.settlement import farthest_settlement
 from extrados.analyses.dem.solid_model import SolidModel, SolidValues, make_solid_model
 from extrados.analyses.dem.standing import compared
@@ -18,15 +19,15 @@ from extrados.analyses.dem.tables import DemDomain
 from extrados.analyses.dem.trial import start
 from extrados.analyses.needs import stones_of
 from extrados.analyses.rocking.failure_domain import settling_time, shortest_durations, unit_pulse
-from extrados.building.errors import BadGeometry
-from extrados.building.geometry.assembly import Assembly
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.templates.arch import ArchAssembly
 from extrados.core import dem, dem3, dem_run
 from extrados.core.errors import CoreError
+from extrados.model.errors import BadGeometry
+from extrados.model.geometry.assembly import Assembly
+from extrados.model.structures.arch import ArchAssembly
 from extrados.results import dem as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.arch import ArchModel
 
 FAILED = ("collapse", "left")
 #: Times at which a swing is looked at [s], and rotations below which bodies vibrate [rad].
@@ -132,7 +133,7 @@ def run(context: Context, options: DemDomain) -> Result:
     """Curves of the shortest failing durations, with their sensitivity, beside those of the four-hinge model."""
     model: Model | SolidModel
     if isinstance(stones_of(context.building, options), Assembly):
-        model = dem_model.make_model(context, options)
+        model = make_model(context, options)
         context.warnings += dem_model.warnings(model, options)
         varied = _varied(options, model.values)
     else:

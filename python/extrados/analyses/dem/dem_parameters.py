@@ -5,6 +5,7 @@ import numpy as np
 from extrados.analyses.context import Context
 from extrados.analyses.dem import impact_rules
 from extrados.analyses.dem import model as dem_model
+from extrados.analyses.dem.from_deck import make_model
 from extrados.analyses.dem.tables import DemParameters
 from extrados.results import dem as out
 from extrados.results.model import Array, Result, TableData
@@ -12,7 +13,7 @@ from extrados.results.model import Array, Result, TableData
 
 def run(context: Context, options: DemParameters) -> Result:
     """What a run with these options would use, and the damping constants of the three rules."""
-    model = dem_model.make_model(context, options)
+    model = make_model(context, options)
     v = model.values
     result = Result("dem-parameters")
     constants = {

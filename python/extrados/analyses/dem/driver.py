@@ -1,13 +1,14 @@
 """dem: rigid blocks that rock, hinge, slide and fall under a motion, or in a tilt test (thesis chapter 7)."""
 
 from extrados.analyses.context import Context
+from extrados.analyses.dem import history, solid_history, solid_tilt, tilt
 from extrados.analyses.dem import model as dem_model
-from extrados.analyses.dem import motion, solid_motion, solid_tilt, tilt
+from extrados.analyses.dem.from_deck import make_model
 from extrados.analyses.dem.solid_model import make_solid_model
 from extrados.analyses.dem.standing import compared
 from extrados.analyses.dem.tables import Dem
 from extrados.analyses.needs import stones_of
-from extrados.building.geometry.assembly import Assembly
+from extrados.model.geometry.assembly import Assembly
 from extrados.results.model import Result
 
 
@@ -15,12 +16,12 @@ def run(context: Context, options: Dem) -> Result:
     """A run with its variations, or a tilt test; of a section, or of solids."""
     tilted = options.test == "tilt"
     if isinstance(stones_of(context.building, options), Assembly):
-        model = dem_model.make_model(context, options)
+        model = make_model(context, options)
         context.warnings += dem_model.warnings(model, options)
-        of_section = tilt if tilted else motion
+        of_section = tilt if tilted else history
         return compared(context, options.rigid, model, lambda: of_section.run(context, options, model))
     solids = make_solid_model(context.building, options)
     if not options.rigid:
         context.warnings += dem_model.doubts_of_springs(solids.values)
-    of_solids = solid_tilt if tilted else solid_motion
+    of_solids = solid_tilt if tilted else solid_history
     return compared(context, options.rigid, solids, lambda: of_solids.run(context, options, solids))

@@ -5,7 +5,7 @@ import numpy as np
 from extrados.analyses.context import Context
 from extrados.analyses.dem import measures
 from extrados.analyses.dem import model as dem_model
-from extrados.analyses.dem.runs import answered
+from extrados.analyses.dem.job import answered
 from extrados.analyses.dem.trial import Trial
 
 #: Coefficients that are tried, and how closely the least is found

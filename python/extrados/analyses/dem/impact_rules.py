@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.assembly import GROUND, Assembly
 
 #: Least fractions of critical damping at the rotational and the edge impact frequency (thesis 7.4.2): below them
 #: blocks bounce and walk.

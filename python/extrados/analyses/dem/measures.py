@@ -8,12 +8,12 @@ import numpy as np
 from extrados.analyses.dem.model import JointValues, Model
 from extrados.analyses.dem.solid_model import SolidValues
 from extrados.analyses.dem.tables import Dem
-from extrados.building.geometry.assembly import GROUND
-from extrados.building.geometry.rigid import FOOTING
 from extrados.core import dem, dem3, dem_run
+from extrados.model.geometry.assembly import GROUND
 from extrados.results.dem import APART, CLOSED, HINGED_FIRST, HINGED_SECOND, CollapseCriterion, Convergence, DemOutcome
 from extrados.results.model import Array, TableData
 from extrados.schema.constants import GRAVITY
+from extrados.views.rigid import FOOTING
 
 #: A joint is open where it gapes by more than this fraction of its length.
 OPEN = 5e-4

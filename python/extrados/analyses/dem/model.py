@@ -1,24 +1,20 @@
 """A deck's structure as a discrete-element model: bodies, joint types, damping."""
 
-import itertools
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
 
-from extrados.analyses.context import Context, Refused
+from extrados.analyses.context import Refused
 from extrados.analyses.dem import impact_rules
 from extrados.analyses.dem.solid_model import SolidModel, SolidValues
 from extrados.analyses.dem.tables import DemTable
-from extrados.building.building import Building
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.earth import passive_left_out
-from extrados.building.geometry.rigid import RigidBodies
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.templates.arch import ArchAssembly
 from extrados.core import dem, dem3, dem_run
 from extrados.core.errors import Cancelled, status_code
+from extrados.model.geometry.assembly import Assembly
+from extrados.model.geometry.earth import passive_left_out
 from extrados.schema.constants import GRAVITY
+from extrados.views.rigid import RigidBodies
 
 Found = TypeVar("Found", dem.Run, dem3.Run)
 
@@ -56,42 +52,6 @@ class JointValues:
             name: float(impact_rules.damping_ratio(self.beta, self.impact.of(name)).min())
             for name in ("rotation", "corner", "edge")
         }
-
-
-def joint_values(building: Building) -> JointValues:
-    """Properties of all joints by the rules and exceptions of [joints]; Refused where the deck names an unknown joint."""
-    assembly, joints = building.blocks(), building.joints
-    length = impact_rules.joint_lengths(assembly)
-    elastic = impact_rules.joint_stiffness(building.material.young, length, assembly.length, joints.stiffness_rule)
-    given = building.joint_property("normal_stiffness")
-    stiffness = np.where(np.isnan(given), elastic, given)
-    if building.supports.stiffness is not None:
-        grounded = (assembly.a == GROUND) | (assembly.b == GROUND)
-        series = 1.0 / (1.0 / stiffness + 1.0 / building.supports.stiffness)
-        stiffness = np.where(grounded, series, stiffness)
-    impact = impact_rules.joint_impact(assembly, stiffness)
-    # The highest frequency of its kind: the smallest block sets the least damping (thesis 7.4.4).
-    beta = joints.beta
-    wanted = joints.beta is None and joints.damping == "restitution"
-    if beta is None:
-        rule = "edge" if wanted else joints.damping
-        beta = impact_rules.damping_constant(float(impact.of(rule).max()), joints.damping_ratio)
-    shear = (
-        np.full_like(stiffness, joints.shear_stiffness) if joints.shear_stiffness else stiffness * joints.shear_ratio
-    )
-    values = JointValues(
-        stiffness,
-        shear,
-        *(building.joint_property(name) for name in ("friction", "cohesion", "tension")),
-        beta,
-        impact,
-        length,
-    )
-    if wanted:
-        from extrados.analyses.dem.calibration import beta_for_restitution  # it runs models
-
-        return replace(values, beta=beta_for_restitution(building, values))
-    return values
 
 
 @dataclass(frozen=True)
@@ -132,18 +92,6 @@ class Model:
             joints[pair] = numbers[one]
         r = self.rigid
         return dem.Bodies(r.centroid, r.mass, r.inertia, r.parts, r.owner, r.outer, r.depth, laws, joints)
-
-
-def make_model(context: Context, options: DemTable) -> Model:
-    """The model of a deck; Refused where a block has no area or crosses itself."""
-    building = context.building
-    assembly = building.blocks()
-    groups: tuple[tuple[int, ...], ...] = ()
-    if options.merge == "three-bars":
-        assert isinstance(assembly, ArchAssembly)
-        joint = ArchModel(assembly).four_hinge.joint
-        groups = tuple(tuple(range(a, b)) for a, b in itertools.pairwise(joint))
-    return Model(assembly, building.rigid(groups, options.floor), joint_values(building))
 
 
 class Falls(Refused):

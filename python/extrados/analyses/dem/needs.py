@@ -7,12 +7,12 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import tables
 from extrados.analyses.dem.solid_model import RIGID, refusals, refuse_mortar, refuse_stones
 from extrados.analyses.needs import Need, stones_of
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry, Key
-from extrados.building.geometry.assembly import Assembly
-from extrados.building.geometry.solids.assembly import SolidAssembly
-from extrados.building.templates.arch import ArchAssembly
-from extrados.building.templates.block import BlockAssembly
+from extrados.model.errors import BadGeometry, Key
+from extrados.model.geometry.assembly import Assembly
+from extrados.model.geometry.solids.assembly import SolidAssembly
+from extrados.model.structures.arch import ArchAssembly
+from extrados.model.structures.block import BlockAssembly
+from extrados.views.building import Building
 
 
 def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:

@@ -5,8 +5,8 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from extrados.analyses.dem.model import JointValues, Model
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.polygons import distance
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.polygons import distance
 from extrados.schema.constants import GRAVITY
 
 #: What stands settles by .3 to 1.2 times what its joints would give if none opened (tests/unit/test_dem_settlement.py);

@@ -7,10 +7,10 @@ from scipy.spatial.transform import Rotation
 
 from extrados.analyses.dem.measures import MOST_TRACKED, OPEN, Slip
 from extrados.analyses.dem.solid_model import SolidModel
-from extrados.building.geometry.rigid import FOOTING
-from extrados.building.geometry.solids.contacts import GROUND
 from extrados.core import dem3
+from extrados.model.geometry.solids.contacts import GROUND
 from extrados.results.dem import APART, CLOSED, ROCKS
+from extrados.views.rigid import FOOTING
 
 
 @dataclass(frozen=True)

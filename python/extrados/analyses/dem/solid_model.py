@@ -7,12 +7,12 @@ import numpy as np
 from extrados.analyses.context import Refused
 from extrados.analyses.dem import impact_rules
 from extrados.analyses.dem.tables import Dem, DemDomain, SpatialDem
-from extrados.building.building import Building
-from extrados.building.errors import Key
-from extrados.building.geometry.solids.assembly import SolidAssembly
-from extrados.building.geometry.solids.contacts import GROUND
-from extrados.building.geometry.solids.supports import Supports, supports_of
 from extrados.core import dem3
+from extrados.model.errors import Key
+from extrados.model.geometry.solids.assembly import SolidAssembly
+from extrados.model.geometry.solids.contacts import GROUND
+from extrados.views.building import Building
+from extrados.views.solid_supports import Supports, supports_of
 
 #: What is refused of them, in words
 RIGID = 'rigid contacts (solver = "nonsmooth", or cross_check)'

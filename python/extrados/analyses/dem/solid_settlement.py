@@ -6,7 +6,7 @@ from scipy.sparse.linalg import splu
 
 from extrados.analyses.dem.settlement import FARTHEST, RIGID, TIMES
 from extrados.analyses.dem.solid_model import SolidModel
-from extrados.building.geometry.solids.contacts import GROUND
+from extrados.model.geometry.solids.contacts import GROUND
 from extrados.schema.constants import GRAVITY
 
 

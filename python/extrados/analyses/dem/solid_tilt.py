@@ -7,9 +7,9 @@ import numpy as np
 from extrados.analyses.context import Context
 from extrados.analyses.dem import measures, solid_measures
 from extrados.analyses.dem import model as dem_model
-from extrados.analyses.dem.runs import SolidRuns, SolidTask
+from extrados.analyses.dem.job import SolidRuns, SolidTask
+from extrados.analyses.dem.solid_history import core_options, run_arrays
 from extrados.analyses.dem.solid_model import SolidModel
-from extrados.analyses.dem.solid_motion import core_options, run_arrays
 from extrados.analyses.dem.tables import Dem
 from extrados.analyses.dem.tilt import GOES, RAMP, capacities, pushed, slides, unused
 from extrados.analyses.dem.words import solid_tilt_answer

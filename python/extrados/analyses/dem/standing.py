@@ -6,12 +6,10 @@ import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import settlement, solid_settlement
+from extrados.analyses.dem.job import Runs, SolidRuns, SolidTask, Task
 from extrados.analyses.dem.model import Falls, Model, Restless, checked
-from extrados.analyses.dem.runs import Runs, SolidRuns, SolidTask, Task
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.limit.common import loads_of
-from extrados.building.building import Building
-from extrados.building.errors import WHOLE
 from extrados.core import dem, dem3
 from extrados.core.calls import interruptible
 from extrados.limit.answer import cannot_stand
@@ -19,7 +17,9 @@ from extrados.limit.equilibrium import Disconnected
 from extrados.limit.errors import CannotStand, NoAnswer
 from extrados.limit.programme import LimitAnalysis
 from extrados.limit.solids import SolidLimit
+from extrados.model.errors import WHOLE
 from extrados.results.model import Result
+from extrados.views.building import Building
 
 WEDGED = (
     "limit analysis does not find that it must fall: friction may hold a stone that is wedged in, by forces that elements "

@@ -12,7 +12,7 @@ from extrados.schema.quantities import Acceleration, Angle, Gravities, Length, T
 from extrados.schema.table import key
 
 if TYPE_CHECKING:
-    from extrados.building.building import Building
+    from extrados.views.building import Building
 
 #: Properties of a building that rigid contacts do not look at
 SPRINGS = ("material.young", "joints.cohesion", "joints.tension", "joints.normal_stiffness", "joints.damping")

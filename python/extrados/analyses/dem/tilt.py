@@ -9,8 +9,8 @@ import numpy as np
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import measures
 from extrados.analyses.dem import model as dem_model
+from extrados.analyses.dem.job import Runs, Task, answered
 from extrados.analyses.dem.model import Model
-from extrados.analyses.dem.runs import Runs, Task, answered
 from extrados.analyses.dem.settlement import farthest_settlement
 from extrados.analyses.dem.tables import Dem
 from extrados.analyses.dem.trial import core_options

@@ -6,16 +6,16 @@ import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import model as dem_model
+from extrados.analyses.dem.job import Runs, Task
 from extrados.analyses.dem.measures import Collapse
 from extrados.analyses.dem.model import JointValues, Model
-from extrados.analyses.dem.runs import Runs, Task
 from extrados.analyses.dem.settlement import farthest_settlement
 from extrados.analyses.dem.tables import Dem
-from extrados.building.errors import NoView
-from extrados.building.rockers.mechanism import MechanismModel
-from extrados.building.templates.block import BlockAssembly
 from extrados.core import dem
 from extrados.core.ground import Ground
+from extrados.model.errors import NoView
+from extrados.model.structures.block import BlockAssembly
+from extrados.views.rockers.mechanism import MechanismModel
 
 
 def collapse_of(options: Dem, model: Model) -> Collapse:

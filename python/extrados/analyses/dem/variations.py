@@ -4,7 +4,7 @@ import numpy as np
 
 from extrados.analyses.context import Context
 from extrados.analyses.dem import measures
-from extrados.analyses.dem.runs import answered
+from extrados.analyses.dem.job import answered
 from extrados.analyses.dem.tables import Dem
 from extrados.analyses.dem.trial import Trial
 from extrados.results import dem as out

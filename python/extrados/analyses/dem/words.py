@@ -45,7 +45,7 @@ def motion_answer(r: DemRun, idle: bool) -> str:
     turn = max(r.peak_rotation_rad.items(), key=lambda item: abs(item[1]), default=("", 0.0))
     first, audit = _fate(r, "joint"), _audit(r)
     return (
-        f"{first}; {turn[0]} turns by {1e3 * abs(turn[1]):.3g} mrad at most, slip {1e3 * r.peak_slip_m:.2g} mm, "
+        f"{first}; {turn[0]} turns by {1e3 * abs(turn[1]):.3g} mrad at most, slip {1e3 * r.peak_slip_m:.3g} mm, "
         f"{r.bounces} bounces; {audit}."
     )
 
@@ -76,7 +76,7 @@ def solid_answer(r: SolidDemRun, idle: bool) -> str:
         gave = f"gave way by up to {1e3 * r.dowel_slip_m:.2g} mm" if r.dowel_slip_m > 0.0 else "held"
         first += f"; dowels {gave}" + (f", {r.dowels_out} of {r.dowels} came out" if r.dowels_out else "")
     return (
-        f"{first}; {turn[0]} turns by {1e3 * turn[1]:.3g} mrad at most, slip {1e3 * r.peak_slip_m:.2g} mm, {r.bounces} bounces; "
+        f"{first}; {turn[0]} turns by {1e3 * turn[1]:.3g} mrad at most, slip {1e3 * r.peak_slip_m:.3g} mm, {r.bounces} bounces; "
         f"{r.blocks} stones, {r.contacts} contacts; {audit}."
     )
 

@@ -6,15 +6,15 @@ import numpy as np
 
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.tables import AppliedLoad
-from extrados.building.errors import WHOLE
-from extrados.building.geometry.anchors import stones_at
-from extrados.building.geometry.assembly import Assembly
+from extrados.model.errors import WHOLE
+from extrados.model.geometry.anchors import stones_at
+from extrados.model.geometry.assembly import Assembly
 
 
 def chain_of(assembly: Assembly, name: str | None) -> str | None:
     """The chain of a name, the first where none is given, None where the assembly has no chain."""
     if name is not None and name not in assembly.chains:
-        known = f"there are {', '.join(assembly.chains)}" if assembly.chains else "no stones form one here"
+        known = f"there are {', '.join(assembly.chains)}" if assembly.chains else "no blocks form one here"
         raise Refused(f"chain: there is no '{name}'; {known}", ("analysis", "chain"))
     return name or next(iter(assembly.chains), None)
 

@@ -8,14 +8,14 @@ import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.tables import Imperfections, MovingSupports, Survey, Sweep
-from extrados.building.building import Building
-from extrados.building.errors import Key
-from extrados.building.files import read
-from extrados.building.structure import Structure
+from extrados.model.errors import Key
+from extrados.model.files import read
+from extrados.model.structure import Structure
 from extrados.schema.constants import GRAVITY
 from extrados.schema.files import BadFile, File
 from extrados.schema.quantities import parse, unit_of
 from extrados.schema.table import Table
+from extrados.views.building import Building
 
 #: The key of a sweep
 VARY = ("analysis", "vary")
@@ -140,7 +140,7 @@ def deviation_of(building: Building, options: Imperfections) -> float:
         deviation = getattr(building.structure, "contact_tolerance", None)
     if deviation is None:
         raise Refused(
-            "give the deviation of a survey; only `blocks` have a contact_tolerance that tells it", ("analysis",)
+            "give the deviation of a survey; only `blocks` have a contact_tolerance that gives it", ("analysis",)
         )
     shortest = float(assembly.length.min())
     if 4.0 * deviation > shortest:

@@ -10,9 +10,6 @@ from extrados.analyses.context import Refused
 from extrados.analyses.limit.applied import pieces
 from extrados.analyses.limit.needs import refuse_fracture
 from extrados.analyses.limit.tables import AppliedLoad, LimitAnalysisTable
-from extrados.building.building import Building
-from extrados.building.errors import WHOLE, BadGeometry
-from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.answer import Answer, assess
 from extrados.limit.equilibrium import Disconnected
 from extrados.limit.errors import CannotStand
@@ -21,17 +18,21 @@ from extrados.limit.fracture import Fracture, NoCrack, fractured_collapse
 from extrados.limit.lines import ThrustPath
 from extrados.limit.loads import Loads, forces_at, tilt_loads
 from extrados.limit.places import place_of
-from extrados.limit.programme import Immovable, LimitAnalysis, NoAnswer, NoEquilibrium, State, closed
+from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State, closed
 from extrados.limit.resistance import Resistance, together
 from extrados.limit.ties import pulls, tensions
+from extrados.model.errors import WHOLE, BadGeometry
+from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.results.limit import Hinge, Reaction, TieForce
 from extrados.results.model import Array
+from extrados.views.building import Building
 
 #: Length over which a point load on earth presses [m]
 CONTACT = 0.3
 #: Of its yield force, or of the weight: less in a tie is none
 SLACK = 1e-6
 MOST_TIES = 6  # told in words
+MOST_BESIDE = 400  # joints up to which a state without dilatancy is sought beside an upper bound: a few seconds
 
 
 def ties_of(building: Building, scale: float) -> Resistance | None:
@@ -97,6 +98,15 @@ def answer_of(building: Building, options: LimitAnalysisTable, limit: LimitAnaly
     return answer
 
 
+def collapse_beside(without_dilatancy: LimitAnalysis, direction: int) -> tuple[State, Mechanism]:
+    """The least state without dilatancy, to be given beside an upper bound by associated friction; NoAnswer of large structures."""
+    if len(without_dilatancy.assembly.a) > MOST_BESIDE:
+        raise NoAnswer(
+            f'of more than {MOST_BESIDE} joints it is sought on request alone, by friction_rule = "non-associated"'
+        )
+    return without_dilatancy.collapse(direction)
+
+
 def fracture_of(building: Building, options: LimitAnalysisTable) -> Fracture | None:
     """Collapse to +x with the leeward buttress cracked; None where it does not crack."""
     refuse_fracture(building, options)
@@ -111,7 +121,7 @@ def fracture_of(building: Building, options: LimitAnalysisTable) -> Fracture | N
 
 
 def mended_capacity(building: Building, options: LimitAnalysisTable, gamma: float) -> str | None:
-    """What a survey with open gaps would bear to +x if they were closed, in words beside its capacity gamma [g]; None
+    """What a survey with open gaps would carry to +x if they were closed, in words beside its capacity gamma [g]; None
     where none is open."""
     if not building.told()[0] or building.structure is None:
         return None
@@ -189,7 +199,7 @@ def load_arrays(assembly: Assembly, loads: Sequence[AppliedLoad]) -> dict[str, A
         return {}
     return {
         "load_point": Array(
-            np.array(point), ("load_piece", "axis"), "m", "where loads at rest act, spread ones in pieces"
+            np.array(point), ("load_piece", "axis"), "m", "points of loads at rest, spread ones in pieces"
         ),
         "load_force": Array(np.array(force), ("load_piece", "axis"), "N", "their forces, to +x and upward"),
         "load_number": Array(np.array(whole), ("load_piece",), "", "number of the load in the deck, from 0"),
@@ -204,7 +214,7 @@ def push_arrays(assembly: Assembly, loads: Loads, state: State) -> dict[str, Arr
         return {}
     most = push.wrench[:, 0]
     return {
-        "push_point": Array(push.point, ("push", "axis"), "m", "where the fill pushes back"),
+        "push_point": Array(push.point, ("push", "axis"), "m", "points of the passive pressure of the fill"),
         "push_force": Array(state.mobilised[: push.count] * most, ("push",), "N", "its horizontal push, to +x"),
         "push_most": Array(most, ("push",), "N", "the most it can push, to +x"),
     }

@@ -9,14 +9,14 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.asked import deviation_of
 from extrados.analyses.limit.common import answer_of, geometry_arrays, loads_of
 from extrados.analyses.limit.tables import Imperfections
-from extrados.building.building import Building
-from extrados.building.errors import WHOLE
-from extrados.building.geometry.assembly import Assembly
-from extrados.building.geometry.deviation import resurveyed
 from extrados.limit.answer import cannot_stand
 from extrados.limit.programme import Immovable, LimitAnalysis, NoAnswer, NoEquilibrium
+from extrados.model.errors import WHOLE
+from extrados.model.geometry.assembly import Assembly
+from extrados.model.geometry.deviation import resurveyed
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
+from extrados.views.building import Building
 
 BAND = (5.0, 95.0)  # percentiles that are told
 
@@ -105,13 +105,13 @@ def run(context: Context, options: Imperfections) -> Result:
         )
     }
     result.answer = (
-        f"Of {options.count} random surveys within {1e3 * deviation:.3g} mm of the one given, nine in ten bear {low:.4f} to "
-        f"{high:.4f} g (median {median:.4f} g, least {borne.min():.4f} g); the one given bears {given:.4f} g."
+        f"Of {options.count} random surveys within {1e3 * deviation:.3g} mm of the given one, nine in ten have {low:.4f} to "
+        f"{high:.4f} g (median {median:.4f} g, least {borne.min():.4f} g); the given one has {given:.4f} g."
     )
     if fallen:
         result.answer += f" {fallen} of them cannot stand."
     if r.upper_bounds:
         result.answer += f" In {r.upper_bounds} of them joints slide: {out.DILATANT}."
     if r.without_answer:
-        result.warnings.append(f"{r.without_answer} surveys are left out: their programmes gave no answer")
+        result.warnings.append(f"{r.without_answer} surveys are not counted: their programmes gave no result")
     return result

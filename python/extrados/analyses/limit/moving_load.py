@@ -1,4 +1,4 @@
-"""moving-load: the load or train that brings a vault or a bridge down, at every place along it."""
+"""moving-load: the collapse load, or adequacy factor of a train, at every place along a vault or a bridge."""
 
 from dataclasses import dataclass, replace
 
@@ -23,28 +23,25 @@ from extrados.analyses.limit.common import (
 from extrados.analyses.limit.tables import MovingLoad, PartialFactors
 from extrados.analyses.limit.trains import Train, fitting_train
 from extrados.analyses.limit.variation import signature, spoken
-from extrados.building.errors import WHOLE
-from extrados.building.geometry.assembly import Assembly
-from extrados.building.geometry.chains import is_stack
-from extrados.building.geometry.earth import skyline
-from extrados.building.structure import Structure
 from extrados.limit.answer import cannot_stand
 from extrados.limit.errors import CannotStand, Immovable, NoAnswer
 from extrados.limit.fill import pressed, under_load
+from extrados.limit.finite_motion import finite_motion
 from extrados.limit.lines import thrust_paths
 from extrados.limit.loads import Loads, forces_at
-from extrados.limit.motion import finite_motion
 from extrados.limit.programme import LimitAnalysis, Mechanism, State
+from extrados.model.errors import WHOLE
+from extrados.model.geometry.assembly import Assembly
+from extrados.model.geometry.chains import is_stack
+from extrados.model.geometry.earth import skyline
+from extrados.model.structure import Structure
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
 PATTERNS = 20  # even loads and mechanism are fitted to each other at most so often
 #: What makes the model of a bridge whole
-MODEL = (
-    'The ring alone is no model of a bridge. Use structure kind = "bridge" with fill and backing, or give the forces on the ring by '
-    "axle_loads."
-)
+MODEL = 'The ring alone is no model of a bridge. Use structure kind = "bridge" with fill and backing.'
 FINE = 0.02  # of the way: pieces of the top on which even loads stand or do not
 
 
@@ -253,13 +250,12 @@ def run(context: Context, options: MovingLoad) -> Result:
     k = int(factor.argmin())
     if not np.isfinite(factor[k]):
         raise Refused(
-            f"no load of this kind brings the {structure.word} down: it only presses the joints together", WHOLE
+            f"no load of this kind causes collapse of the {structure.word}: such a load only compresses the joints",
+            WHOLE,
         )
     worst = job.collapse(k)
     if worst is None:  # the sweep found it by the same steps
-        raise NoAnswer(
-            f"the load at {places[k]:.4g} m brought it down in the sweep, and not when it was computed again"
-        )
+        raise NoAnswer(f"the load at {places[k]:.4g} m caused collapse in the sweep, and not when computed again")
     state, mechanism = worst.state, worst.mechanism
     heavier = replace(assembly, mass=factors.masonry * assembly.mass)
     result = Result("moving-load")
@@ -288,16 +284,11 @@ def run(context: Context, options: MovingLoad) -> Result:
         **tie_rows(building, dead, state),
         duality_gap=gap,
         characteristic=factors == PartialFactors(),
-        violated=_violated(options, assembly, structure),
+        violated=_violated(train, assembly, structure),
         **asked,
     )
     result.results = r
     result.warnings += [f"{one} {MODEL}" for one in r.violated]
-    if (options.axle_loads or options.uniform) and assembly.earth is None:
-        result.warnings.append(
-            f"The loads act on the blocks of the {structure.word} themselves: no fill spreads them. For a bridge use structure "
-            'kind = "bridge" with fill and backing.'
-        )
     finite = np.where(np.isinf(capacity), np.nan, capacity)
     result.arrays = {
         **geometry_arrays(assembly),
@@ -307,9 +298,9 @@ def run(context: Context, options: MovingLoad) -> Result:
         **zone_arrays(assembly, state, job.strength),
         "place": Array(places, ("place",), "m", "x of the first axle"),
         "way": Array(ways, ("place",), "", "1 where the train heads to +x, -1 to -x"),
-        "capacity": Array(finite, ("place",), "N", "load that brings it down; NaN where none does"),
+        "capacity": Array(finite, ("place",), "N", "collapse load; NaN where no load causes collapse"),
         "axle": Array(job.at(k), ("axle",), "m", "axles at the worst place"),
-        "even_load": Array(_standing(job, k, worst), ("stretch", "end"), "m", "where even loads stand at the worst place"),
+        "even_load": Array(_standing(job, k, worst), ("stretch", "end"), "m", "even loads at the worst place"),
         "collapse_point": Array(state.points(assembly), ("joint", "axis"), "m", "thrust line at collapse, worst place"),
         **line_arrays("collapse", thrust_paths(heavier, worst.loads, state, sway=0.0), "at collapse, worst place"),
         "envelope_point": Array(swept["line"], ("place", "joint", "axis"), "m", "thrust lines at collapse, all places"),
@@ -325,7 +316,7 @@ def run(context: Context, options: MovingLoad) -> Result:
     if train.known:
         adequacy = np.where(np.isinf(factor), np.nan, factor)
         result.arrays["adequacy"] = Array(
-            adequacy, ("place",), "", "multiple of the factored train that brings it down"
+            adequacy, ("place",), "", "multiple of the factored train that causes collapse"
         )
         columns = {"place": places, "way": ways, "adequacy": adequacy, "collapse_load": finite, "mechanism": mechanisms}
     result.tables = {"moving_load": TableData(columns, {"place": "m", "collapse_load": "N"})}
@@ -387,7 +378,7 @@ def _words(options: MovingLoad, r: out.MovingLoad, structure: Structure) -> str:
         factors = "" if r.live_load_factor == 1.0 else f" with its load factor of {r.live_load_factor:.4g}"
         text = (
             f"The {what} carries {r.adequacy_factor:.3g} times {'the train' if r.train == 'train' else r.train}{factors} at "
-            f"the most dangerous place, with its first axle at {place}{heading}: {r.collapse_load_N / 1e3:.4g} kN then stand on it."
+            f"the most dangerous place, with its first axle at {place}{heading}: {r.collapse_load_N / 1e3:.4g} kN are then on the structure."
         )
     else:
         text = (
@@ -405,12 +396,13 @@ def _words(options: MovingLoad, r: out.MovingLoad, structure: Structure) -> str:
     return text + spoken_ties(r.ties)
 
 
-def _violated(options: MovingLoad, assembly: Assembly, structure: Structure) -> list[str]:
-    """What a load model of road or rail supposes of a bridge and the structure has not: earth that spreads axles."""
-    if options.train is None or assembly.earth is not None:
+def _violated(train: Train, assembly: Assembly, structure: Structure) -> list[str]:
+    """What a load that crosses a bridge supposes of the structure, where it has none: earth that spreads the load."""
+    if assembly.earth is not None:
         return []
     weight = "" if assembly.fill is None else "; its fill acts by weight alone"
+    load = f"The {train.name}" if train.name in ("load", "train") else train.name
     return [
-        f"{options.train} acts on the blocks of the {structure.word} themselves{weight}: no fill spreads its axles, and no "
-        "passive pressure or backing restrains the ring."
+        f"{load} acts on the blocks of the {structure.word} themselves{weight}: no fill spreads it, and no passive pressure or backing "
+        f"restrains the {structure.word}."
     ]

@@ -7,9 +7,9 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit import tables
 from extrados.analyses.limit.asked import deviation_of, refuse_still, sections_of, values_of
 from extrados.analyses.needs import Need, stones_of
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry, Key
-from extrados.building.geometry.assembly import Assembly
+from extrados.model.errors import BadGeometry, Key
+from extrados.model.geometry.assembly import Assembly
+from extrados.views.building import Building
 
 
 def needs(context: Context, options: tables.BuildingAnalysis) -> Iterator[Need]:
@@ -61,16 +61,12 @@ def _refuse_of_sections(building: Building, options: tables.BuildingAnalysis) ->
     }
     for what, (there, key) in asked.items():
         if there:
-            raise Refused(
-                f"tilt of solids cannot take {what} into account: leave it out, or look at a plane section", key
-            )
+            raise Refused(f"tilt of solids cannot take {what} into account: remove it, or analyse a plane section", key)
 
 
 def _refuse_alone(building: Building) -> None:
     if not building.blocks().buttresses:
-        raise Refused(
-            "needs a buttress that stands on the ground: a vault or an aisled vault", ("analysis", "buttress_alone")
-        )
+        raise Refused("needs a buttress on the ground: a vault or an aisled vault", ("analysis", "buttress_alone"))
 
 
 def refuse_fracture(building: Building, options: tables.LimitAnalysisTable) -> None:
@@ -78,7 +74,7 @@ def refuse_fracture(building: Building, options: tables.LimitAnalysisTable) -> N
     key = ("analysis", "fracture")
     assembly = building.blocks()
     if not assembly.buttresses:
-        raise Refused("fracture needs a buttress that stands on the ground: a vault or an aisled vault", key)
+        raise Refused("fracture needs a buttress on the ground: a vault or an aisled vault", key)
     if building.material.compressive_strength is not None or options.friction_rule != "associated":
         raise Refused("fracture is computed without crushing and with associated friction", key)
     leeward = assembly.buttresses[-1]

@@ -5,10 +5,10 @@ import numpy as np
 from extrados.analyses.context import Context
 from extrados.analyses.limit.common import named_places
 from extrados.analyses.limit.tables import Tilt
-from extrados.building.geometry.assembly import GROUND
-from extrados.building.geometry.solids.assembly import SolidAssembly
 from extrados.limit.errors import CannotStand, Immovable
 from extrados.limit.solids import Falls, Programme, SolidLimit
+from extrados.model.geometry.assembly import GROUND
+from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.results import solids as out
 from extrados.results.limit import DILATANT
 from extrados.results.model import Array, Result
@@ -41,7 +41,7 @@ def run(context: Context, options: Tilt) -> Result:
     if there.gamma < 0.0 or back.gamma < 0.0:
         low, high = sorted((there.gamma, -back.gamma))
         raise CannotStand(
-            f"it stands only when pushed along {first:g} degrees by {low:.4f} to "
+            f"the structure stands only under a horizontal load along {first:g} degrees by {low:.4f} to "
             f"{high:.4f} g; proof: the mechanism of the lesser push, in which the weights do work"
         )
     rose = [found_at[round(d, 9)] for d in angles.tolist()]
@@ -71,7 +71,7 @@ def run(context: Context, options: Tilt) -> Result:
         "contact_normal": Array(assembly.normal, ("contact", "axis3"), "", "normals of the contacts, into their first stone"),
         "collapse_force": Array(there.force, ("contact_corner", "component"), "N", "compression and both shears at the corners at collapse"),
         "contact_force": Array(force, ("contact", "axis3"), "N", "force on the first stone of each contact at collapse"),
-        "contact_centre": Array(centre, ("contact", "axis3"), "m", "where it acts: the centre of the compression"),
+        "contact_centre": Array(centre, ("contact", "axis3"), "m", "point of application: centre of the compression"),
         "velocity": Array(there.motion, ("block", "motion"), "m, m, m, rad, rad, rad", "mechanism: velocity of the centroid, spin"),
         "mechanism_pose": Array(pose, ("block", "pose"), "m, m, m, rad, rad, rad", "the mechanism carried on: shift, rotation vector"),
         "rose_direction": Array(angles, ("direction",), "deg", "directions of the rose"),
@@ -92,14 +92,14 @@ def scene_arrays(assembly: SolidAssembly) -> dict[str, Array]:
         "solid_face": Array(np.concatenate(faces), ("face_vertex",), "", "vertices of each face, counter-clockwise from outside"),
         "solid_face_start": Array(np.cumsum([0, *map(len, faces)]), ("face_edge",), "", "first vertex of each face, and the end"),
         "solid_face_block": Array(owner, ("face",), "", "stone of each face"),
-        "solid_centroid": Array(assembly.centroid, ("block", "axis3"), "m", "centroids of the stones"),
-        **named_places("block", assembly.block_names, assembly.centroid, "centroids of the stones"),
+        "solid_centroid": Array(assembly.centroid, ("block", "axis3"), "m", "centroids of the blocks"),
+        **named_places("block", assembly.block_names, assembly.centroid, "centroids of the blocks"),
     }  # fmt: skip
 
 
 def _stands(found: Programme | Falls | None, assembly: SolidAssembly) -> Programme:
     if found is None:
-        raise Immovable("no push of its weight brings it down: its contacts hold it from all sides")
+        raise Immovable("no horizontal load causes collapse: the contacts restrain the blocks from all sides")
     if isinstance(found, Falls):
         name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
         raise CannotStand(
@@ -207,16 +207,16 @@ def _words(word: str, r: out.SolidTilt, count: int) -> str:
     along = f"along {r.load_direction_deg:g} degrees in plan"
     text = (
         f"The {word} becomes a mechanism at a constant horizontal acceleration of {r.collapse_acceleration_g:.4f} g {along}, or when "
-        f"its base is tilted by {r.tilt_angle_deg:.2f} degrees; the opposite way it bears {r.collapse_acceleration_opposite_g:.4f} g. "
+        f"its base is tilted by {r.tilt_angle_deg:.2f} degrees; opposite {r.collapse_acceleration_opposite_g:.4f} g. "
     )
     moving = (
-        "all of its stones move" if r.moving_blocks == r.blocks else f"{r.moving_blocks} of its {r.blocks} stones move"
+        "all of its blocks move" if r.moving_blocks == r.blocks else f"{r.moving_blocks} of its {r.blocks} blocks move"
     )
     names = [c.name for c in r.opening_contacts[:MOST_NAMED]]
-    opens = f"; it opens most at {', '.join(names)}" if names else ""
+    opens = f"; most open: {', '.join(names)}" if names else ""
     text += f"In the mechanism {moving}, {r.fastest_block} fastest{opens}. "
     if count:
-        text += f"Of {count} directions it bears least along {r.least_direction_deg % 360.0:g} degrees: {r.least_acceleration_g:.4f} g. "
+        text += f"Of {count} directions the least is along {r.least_direction_deg % 360.0:g} degrees: {r.least_acceleration_g:.4f} g. "
     if r.dilating_contacts:
         text += f"Contacts slide: {DILATANT}. "
     text += f"The bounds from equilibrium and from the mechanism differ by {r.duality_gap:.1e} g."

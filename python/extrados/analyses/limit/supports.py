@@ -8,9 +8,6 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.asked import movements_of, refuse_still
 from extrados.analyses.limit.common import geometry_arrays, spoken_ties, state_arrays, tie_arrays, tie_rows, ties_of
 from extrados.analyses.limit.tables import MovingSupports
-from extrados.building.errors import WHOLE, BadGeometry
-from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.chains import in_order, is_stack
 from extrados.limit.answer import cannot_stand
 from extrados.limit.loads import tilt_loads
 from extrados.limit.places import place_of
@@ -18,6 +15,9 @@ from extrados.limit.programme import LimitAnalysis, NoEquilibrium
 from extrados.limit.resistance import together
 from extrados.limit.settlement import settle
 from extrados.limit.supports import support_movement
+from extrados.model.errors import WHOLE, BadGeometry
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.chains import in_order, is_stack
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
 
@@ -108,8 +108,8 @@ def run(context: Context, options: MovingSupports) -> Result:
     way = "spreads" if options.spread > 0 and options.settle == 0 else "moves"
     result.answer = (
         f"The right support {way}: the arch follows on three hinges ({'; '.join(_place(arch, hinge) for hinge in states[0].hinges)}) "
-        f"and falls at {movement[-1]:.4g} m, {100 * movement[-1] / span:.2f} % of the span, after "
-        f"{len(stages) - 1} change{'s' if len(stages) != 2 else ''} of hinges; meanwhile the thrust goes from "
+        f"and collapses at {movement[-1]:.4g} m, {100 * movement[-1] / span:.2f} % of the span, after "
+        f"{len(stages) - 1} change{'s' if len(stages) != 2 else ''} of hinges; meanwhile the thrust changes from "
         f"{force[0, 0] / 1e3:.4g} to {force[-1, 0] / 1e3:.4g} kN."
     )
     return result
@@ -126,8 +126,8 @@ def _right_support(assembly: Assembly, options: MovingSupports) -> np.ndarray:
     apart = ends[0, order[:-1]] - ends[1, order[1:]] > APART * assembly.size
     if not apart.any():
         raise Refused(
-            "it stands on one support, which carries all of it along; say by [[initial.movements]] which joints on the "
-            "ground give way",
+            "the structure has one support, which moves all of it. State by [[initial.movements]] which joints on the "
+            "ground move",
             ("analysis",),
         )
     right = grounded[order[: int(apart.argmax()) + 1]]
@@ -181,7 +181,7 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
     result.arrays = {
         **geometry_arrays(assembly),
         **tie_arrays(building, loads, {"settled": found.state}),
-        **state_arrays(assembly, "settled", found.state, "while supports give way"),
+        **state_arrays(assembly, "settled", found.state, "under moving supports"),
         "settled_pose": Array(found.pose, ("block", "component"), "m, m, rad", "places of the centroids, rotations"),
         "settled_opening": Array(motion, ("joint", "component"), "m", "opening at the first and second end, slip"),
         "support_movement": Array(movement, ("joint", "component"), "m, m, rad", "movements of the supports"),
@@ -195,7 +195,7 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
     }  # fmt: skip
     if np.abs(found.pose[:, 2]).max() > LARGE:
         result.warnings.append(
-            f"stones turn by up to {np.degrees(np.abs(found.pose[:, 2]).max()):.1f} degrees: the motion is of first order, "
+            f"blocks rotate by up to {np.degrees(np.abs(found.pose[:, 2]).max()):.1f} degrees: the motion is of first order, "
             "smaller movements are meant"
         )
     wide_open = [o for o in opened if o.opening_mm > 1e-3 * abs(o.slip_mm)]
@@ -209,7 +209,7 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
     most_moved = 1e3 * float(np.hypot(*movement[:, :2].T).max())
     given = f" by up to {most_moved:.3g} mm" if most_moved > 0.0 else ""
     result.answer = (
-        f"Where its supports give way{given} {_counted(len(wide_open), 'joint')} of the {building.structure.word} "
+        f"Under the movements of its supports{given} {_counted(len(wide_open), 'joint')} of the {building.structure.word} "
         f"{'opens' if len(wide_open) == 1 else 'open'}"
         + (f": {shown}" if shown else "")
         + (f" and {len(wide_open) - 6} more" if len(wide_open) > 6 else "")

@@ -12,10 +12,10 @@ from extrados.analyses.context import Context
 from extrados.analyses.limit.asked import sections_of
 from extrados.analyses.limit.tables import Survey
 from extrados.analyses.limit.variation import Outcome, evaluate, outcomes_of, spoken
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry
+from extrados.model.errors import BadGeometry
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
+from extrados.views.building import Building
 
 
 def _value(cell: str) -> Any:

@@ -21,12 +21,12 @@ from extrados.analyses.limit.variation import (
     outcomes_of,
     spoken,
 )
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry
 from extrados.limit.errors import CannotStand
-from extrados.limit.motion import finite_motion
+from extrados.limit.finite_motion import finite_motion
+from extrados.model.errors import BadGeometry
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
+from extrados.views.building import Building
 
 #: Of the greatest capacity: by so little capacities differ that are the same but for rounding
 LEVEL = 1e-6
@@ -155,8 +155,10 @@ def run(context: Context, options: Sweep) -> Result:
         "gamma": Array(
             gamma, ("value",), "g", "collapse acceleration to +x; 0 where it cannot stand, NaN without an answer"
         ),
-        "mechanism": Array(number, ("value",), "", "number of the mechanism; 0 where there is none"),
-        "change": Array(np.array([c["value"] for c in changes]), ("change",), "", "where the mechanism changes"),
+        "mechanism": Array(number, ("value",), "", "number of the mechanism; 0: none"),
+        "change": Array(
+            np.array([c["value"] for c in changes]), ("change",), "", "values at which the mechanism changes"
+        ),
     }
     if options.fracture:
         cracked = np.array([np.nan if f is None else f for f in fractured])
@@ -340,7 +342,7 @@ def _words(options: Sweep, r: out.Sweep) -> str:
     locked = ", ".join(f"{v:.4g}" for v in r.locked_limits)
     text += f"; changes {', '.join(moves[:8])}." if moves else "."
     if locked:
-        text += f" At {locked} it locks: past that no load of this kind brings it down."
+        text += f" At {locked} it locks: beyond that no load of this kind causes collapse."
     if r.stable_limits:
         text += f" The range in which it stands ends at {', '.join(f'{v:.4g}' for v in r.stable_limits)}."
     counts = {status: sum(gap.status == status for gap in r.gaps) for status in ("cannot-stand", "no-answer")}

@@ -9,19 +9,19 @@ from extrados.schema.quantities import Angle, Force, Gravities, Length, LineForc
 from extrados.schema.table import Table, key
 
 if TYPE_CHECKING:
-    from extrados.building.building import Building
+    from extrados.views.building import Building
 
 
 class AppliedLoad(Table):
     """A load on the structure: at a place, or spread from x to x_end; upright, oblique or horizontal; it may sway."""
 
     x: Length = key(
-        about="where it stands; it acts on the highest block below, or on the block at y; without y its weight spreads "
+        about="place; the load acts on the highest block below, or on the block at y; without y its weight spreads "
         "through the fill of a bridge"
     )
     force: Force = key(0.0, "its weight, downward; of a spread load all of it")
     horizontal: Force = key(0.0, "its part to +x; of a spread load all of it")
-    x_end: Length | None = key(None, "where a spread load ends, even per length of plan; it starts at x")
+    x_end: Length | None = key(None, "end of a spread load, even per length of plan, which starts at x")
     y: Length | None = key(None, "height at which it acts; default the surface below")
     sways: bool = key(False, "whether its weight is accelerated with the ground, as a floor's or a roof's is")
 
@@ -32,7 +32,7 @@ class AppliedLoad(Table):
         if self.x_end is not None and self.x_end <= self.x:
             raise ValueError("x_end must lie to the right of x")
         if self.sways and self.force <= 0.0:
-            raise ValueError("what sways is the weight: give a force above 0")
+            raise ValueError("the weight sways: give a force above 0")
         return self
 
 
@@ -55,13 +55,13 @@ class Tilt(LimitAnalysisTable, Animated):
 
     kind: Literal["tilt"]
     solid: ClassVar = True
-    fracture: bool = key(False, "also let the leeward buttress crack: monolithic and fractured side by side")
+    fracture: bool = key(False, "also consider a crack in the leeward buttress: monolithic and fractured side by side")
     direction: Angle | None = key(
         None, "direction in plan of the push, from +x to +y, which is across a section; with it, and where there is no plane section, "
-        "the blocks are looked at as solids", ge=-360, le=360,
+        "the blocks are analysed as solids", ge=-360, le=360,
     )  # fmt: skip
     rose: int | None = key(
-        None, "of solids: directions all around at which the capacity is sought; default 16 up to 300 stones, beyond the direction alone",
+        None, "of solids: directions all around at which the capacity is sought; default 16 up to 300 blocks, beyond the direction alone",
         ge=4, le=720,
     )  # fmt: skip
     pyramids: int | None = key(
@@ -140,10 +140,10 @@ class MovingSupports(BuildingAnalysis, Animated):
     settle: float = key(0.0, "downward movement of the right support, relative to the other component", ge=-10, le=10)
     movement: Length | None = key(
         None,
-        "how far the right support moves where it is not followed to the fall; default a thousandth of the width",
+        "movement of the right support where collapse is not followed; default a thousandth of the width",
         gt=0,
     )
-    steps: int = key(200, "of an arch: steps from rest to the fall", ge=10, le=5000)
+    steps: int = key(200, "of an arch: steps from rest to collapse", ge=10, le=5000)
 
     def reckons_with(self, building: "Building") -> set[str]:
         """Through its three-hinge states an arch opens alone, and does not slide."""
@@ -156,15 +156,15 @@ class MovingSupports(BuildingAnalysis, Animated):
 class UniformLoad(Table):
     """A load spread evenly along a train, over all of the width that carries it."""
 
-    start: Length | None = key(None, "where it begins, behind the first axle; without it it goes on for ever before")
-    stop: Length | None = key(None, "where it ends, behind the first axle; without it it goes on for ever behind")
+    start: Length | None = key(None, "start, behind the first axle; default: unlimited")
+    stop: Length | None = key(None, "end, behind the first axle; default: unlimited")
     load: LineForce = key(about="load per length of bridge", gt=0)
 
 
 class PartialFactors(Table):
     """Partial factors: actions are multiplied by theirs, strength and friction divided by theirs."""
 
-    masonry: float = key(1.0, "on the weight of the stones", gt=0, le=10)
+    masonry: float = key(1.0, "on the weight of the blocks", gt=0, le=10)
     fill: float = key(1.0, "on the weight of the fill", gt=0, le=10)
     surfacing: float = key(1.0, "on the weight of the surfacing", gt=0, le=10)
     live: float = key(1.0, "on the moving load", gt=0, le=10)
@@ -185,7 +185,7 @@ class MovingLoad(LimitAnalysisTable):
     )
     axles: list[Length] = key([0.0], "places of the axles behind the first", max_length=200)
     shares: list[float] | None = key(None, "share of the load on each axle; default equal", max_length=200)
-    force: Force | None = key(None, "the load itself; the safety factor is told when it is given", gt=0)
+    force: Force | None = key(None, "the load; adds the safety factor", gt=0)
     axle_loads: list[Force] | None = key(None, "load of each axle, in place of shares and force", max_length=200)
     uniform: list[UniformLoad] = key(
         [], "even loads along the train; they need axle_loads, or axles = []", max_length=50
@@ -198,7 +198,7 @@ class MovingLoad(LimitAnalysisTable):
     )
     contact_length: Length = key(0.3, "length of an axle's contact along a bridge with fill", gt=0)
     factors: PartialFactors = key(PartialFactors(), "partial factors")
-    both_ways: bool = key(False, "let the train cross to the left too, its first axle ahead")
+    both_ways: bool = key(False, "the train also crosses to the left, its first axle ahead")
     count: int = key(81, "number of places along the span", ge=3, le=2000)
     places: list[Length] | None = key(
         None, "places of the first axle, in place of count", min_length=1, max_length=2000

@@ -16,11 +16,11 @@ from extrados.analyses.limit.common import (
     tie_rows,
 )  # fmt: skip
 from extrados.analyses.limit.tables import Thrust
-from extrados.building.geometry.assembly import Assembly
-from extrados.building.geometry.chains import is_stack
 from extrados.limit.answer import Answer, assess, safety_factor
 from extrados.limit.graphic import thrust_joint, thrust_of
 from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium, State
+from extrados.model.geometry.assembly import Assembly
+from extrados.model.geometry.chains import is_stack
 from extrados.results import limit as out
 from extrados.results.model import Result, TableData
 
@@ -42,7 +42,7 @@ def run(context: Context, options: Thrust) -> Result:
         states, part = _with_central(limit, options.gamma, ends, result)
     except NoEquilibrium:
         raise Refused(
-            f"at {options.gamma:g} g no thrust line is admissible: the structure bears {low:.4f} to {high:.4f} g",
+            f"at {options.gamma:g} g no thrust line is admissible: the structure carries {low:.4f} to {high:.4f} g",
             ("analysis", "gamma"),
         ) from None
     safety = None if part is None else safety_factor(part)
@@ -89,7 +89,7 @@ def _with_central(
     try:
         central, part = limit.central(gamma, start=list(ends.values()))
     except (NoAnswer, NoEquilibrium) as error:
-        result.warnings.append(f"the most central line is left out: {error}")
+        result.warnings.append(f"the most central line is not given: {error}")
         return ends, None
     return {**ends, "central": central}, part
 

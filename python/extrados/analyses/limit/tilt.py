@@ -7,6 +7,7 @@ import numpy as np
 from extrados.analyses.context import Context
 from extrados.analyses.limit.common import (
     answer_of,
+    collapse_beside,
     fracture_of,
     geometry_arrays,
     graphic_arrays,
@@ -21,17 +22,17 @@ from extrados.analyses.limit.common import (
     tie_rows,
 )  # fmt: skip
 from extrados.analyses.limit.tables import Tilt
-from extrados.building.building import Building
-from extrados.building.errors import NoView
-from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.answer import Answer
 from extrados.limit.certificate import certify
+from extrados.limit.finite_motion import finite_motion
 from extrados.limit.fracture import Fracture
 from extrados.limit.graphic import thrust_joint, thrust_of
-from extrados.limit.motion import finite_motion
 from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium
+from extrados.model.errors import NoView
+from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.results import limit as out
 from extrados.results.model import Array, Result
+from extrados.views.building import Building
 
 __all__ = ["geometry_arrays", "run", "state_arrays"]
 
@@ -39,7 +40,6 @@ FILM = 90  # tilts of an animation
 
 MOST_NAMED = 6  # hinges and sliding joints told in words
 
-MOST_BESIDE = 400  # joints up to which a state without dilatancy is sought beside an upper bound: a few seconds
 
 #: Above this the joints of masonry slide
 USUAL_FRICTION = 0.7
@@ -134,7 +134,7 @@ def run(context: Context, options: Tilt) -> Result:
     needed = found.required_friction or 0.0
     if building.joints.coefficient is None and needed > USUAL_FRICTION:
         result.warnings.append(
-            f"a coefficient of friction of {needed:.2f} is needed, more than masonry has ({USUAL_FRICTION:g} or so): it slides "
+            f"a coefficient of friction of {needed:.2f} is needed, more than masonry has ({USUAL_FRICTION:g} or so): joints slide "
             "before; give friction"
         )
     if getattr(context.deck.structure, "preset", None):
@@ -208,11 +208,7 @@ def _without_dilatancy(
                 forth, back = (answer.collapse_state, answer.mechanism), (answer.back_state, answer.back_mechanism)
                 pair = forth if direction > 0 else back
             elif dilating[direction]:
-                if len(limit.assembly.a) > MOST_BESIDE:
-                    raise NoAnswer(
-                        f'of more than {MOST_BESIDE} joints it is sought on request alone, by friction_rule = "non-associated"'
-                    )
-                pair = beside.collapse(direction)
+                pair = collapse_beside(beside, direction)
             else:
                 continue
         except (NoAnswer, NoEquilibrium) as error:
@@ -238,7 +234,7 @@ def _without_dilatancy(
             stone = limit.assembly.block_names[found.falling]
             result.warnings.append(
                 f"{stone} hangs between its neighbours by friction alone, and slides out of them at any load in a state without "
-                f"dilatancy: {way} nothing is borne that can be relied on"
+                f"dilatancy: {way} no horizontal load is carried reliably"
             )
         if not certified:
             told["non_associated_reason"] = f"the state found {way} is not certified (zero gap {proof.zero_gap:.1e} g)"
@@ -336,13 +332,15 @@ def _words(what: str, assembly: Assembly, answer: Answer, found: out.Tilt) -> st
     gamma, back = answer.gamma, -answer.back_state.gamma
     where = _some([h.told() for h in found.hinges], "; ")
     slides = _sliding(assembly, answer.mechanism.sliding)
-    moves = ([f"it hinges at the {where}"] if where else []) + ([f"it slides or parts at {slides}"] if slides else [])
+    moves = ([f"hinges form at the {where}"] if where else []) + (
+        [f"joints slide or part at {slides}"] if slides else []
+    )
     text = (
         f"The {what} becomes a mechanism at a constant horizontal acceleration of {gamma:.4f} g, or when its base is "
-        f"tilted by {degrees(gamma):.2f} degrees. Pushed to +x {' and '.join(moves)}. "
+        f"tilted by {degrees(gamma):.2f} degrees. In the mechanism to +x {' and '.join(moves)}. "
     )
     if abs(back - gamma) > 1e-6 * max(1.0, abs(gamma)):
-        text += f"To -x it bears {back:.4f} g ({degrees(back):.2f} degrees). "
+        text += f"To -x the collapse acceleration is {back:.4f} g ({degrees(back):.2f} degrees). "
     text += _told(found)
     needed = np.inf if found.required_friction is None else found.required_friction
     text += f"Friction of {needed:.2f} is needed" + (
@@ -352,8 +350,8 @@ def _words(what: str, assembly: Assembly, answer: Answer, found: out.Tilt) -> st
     fracture = found.fracture
     if fracture and fracture.cracks:
         text += (
-            f" With the leeward buttress cracked from {fracture.crack_height_m:.2f} m above its base down to the toe it "
-            f"bears only {fracture.collapse_acceleration_g:.4f} g ({fracture.tilt_angle_deg:.2f} degrees), "
+            f" With the leeward buttress cracked from {fracture.crack_height_m:.2f} m above its base down to the toe the "
+            f"collapse acceleration is {fracture.collapse_acceleration_g:.4f} g ({fracture.tilt_angle_deg:.2f} degrees), "
             f"{fracture.ratio:.2f} of that."
         )
     elif fracture and fracture.cracks is False:

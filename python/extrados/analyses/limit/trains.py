@@ -6,7 +6,7 @@ import numpy as np
 
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.tables import MovingLoad
-from extrados.building.building import Building
+from extrados.views.building import Building
 
 KN = 1e3
 FOR_EVER = 1e6  # m: even loads without an end

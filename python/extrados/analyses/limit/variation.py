@@ -9,13 +9,13 @@ from extrados.analyses.batches import Swept
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.common import fracture_of, limit_of
 from extrados.analyses.limit.tables import LimitAnalysisTable
-from extrados.building.building import Building
-from extrados.building.geometry.assembly import GROUND, Assembly, part_of
-from extrados.building.geometry.builder import BadGeometry
 from extrados.limit.answer import cannot_stand
 from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium
 from extrados.limit.solver import Immovable, NoAnswer
+from extrados.model.geometry.assembly import GROUND, Assembly, part_of
+from extrados.model.geometry.builder import BadGeometry
 from extrados.results import limit as out
+from extrados.views.building import Building
 
 Signature = tuple[tuple[str, str], ...]
 #: Stands for a structure that no load of the kind brings down
@@ -94,7 +94,7 @@ def signature(assembly: Assembly, mechanism: Mechanism) -> Signature:
 def spoken(found: Signature) -> str:
     """A signature in words."""
     if found == LOCKED:
-        return "none: it cannot be brought down"
+        return "none: no collapse mechanism exists"
     words = {"i": "intrados", "e": "extrados", "s": "slide"}
     return "; ".join(f"{name}: {'-'.join(words[m] for m in marks.split('-'))}" for name, marks in found)
 
@@ -146,7 +146,7 @@ def _evaluate(
             raise NoEquilibrium
     except Immovable as error:
         return Outcome(
-            signature=LOCKED, reason=f"cannot be brought down: {error}", assembly=assembly, locked=True,
+            signature=LOCKED, reason=f"no collapse mechanism: {error}", assembly=assembly, locked=True,
             measures=measures_of(assembly),
         )  # fmt: skip
     except NoEquilibrium:

@@ -10,15 +10,15 @@ from extrados.analyses.rocking.conditions import Counted, astray_of, of_many, ro
 from extrados.analyses.rocking.criterion import CAP, Fit, fit_own, interpolated
 from extrados.analyses.rocking.doubts import DIFFER
 from extrados.analyses.rocking.tables import Assessment
-from extrados.building.errors import WHOLE
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.rocker import Rocker
 from extrados.core.rocking import FAILED, OUTCOMES, ensemble
+from extrados.model.errors import WHOLE
 from extrados.motions.impulse import Impulse, primary_impulses
 from extrados.motions.tables import SinePulse
 from extrados.results import rocking as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.arch import ArchModel
+from extrados.views.rockers.rocker import Rocker
 
 #: After the motion it rocks itself to rest within this many of its own time units.
 SETTLE = 40.0

@@ -7,12 +7,12 @@ from extrados.analyses.limit.tilt import geometry_arrays
 from extrados.analyses.rocking.doubts import doubts
 from extrados.analyses.rocking.history import answer, rest_time, rocking_result, run_history, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
-from extrados.building.rockers.block import BlockModel
-from extrados.building.rockers.restraints import Restraints
-from extrados.building.rockers.rocker import Rocker
 from extrados.core import rocking as core_rocking
 from extrados.results.model import Array, Result
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.block import BlockModel
+from extrados.views.rockers.restraints import Restraints
+from extrados.views.rockers.rocker import Rocker
 
 
 def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
@@ -102,20 +102,25 @@ def pose(model: BlockModel, rotation: np.ndarray) -> np.ndarray:
     return np.stack([x - side * b.radius[i] * np.sin(rest), y + b.radius[i] * np.cos(rest), -rotation], axis=1)
 
 
+def force_line(model: BlockModel, rotation: np.ndarray, tangential: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """The line of the ground's force (n, 2 ends, 2) [m]: from the toe along the force, as far up as the centre of mass; at rest
+    through the middle of the base."""
+    b = model.block
+    toe = np.where(rotation < 0.0, -b.toe_left, b.toe_right)
+    toe = np.where(rotation == 0.0, 0.0, toe)
+    foot = toe * np.sin(b.slope)
+    toe = toe * np.cos(b.slope)
+    rise = b.centre_height
+    lean = np.clip(tangential / np.maximum(normal, 1e-300), -3.0, 3.0)
+    return np.stack([np.stack([toe, foot], axis=1), np.stack([toe + lean * rise, foot + rise], axis=1)], axis=1)
+
+
 def _snapshots(
     model: BlockModel, response: core_rocking.Response, tangential: np.ndarray, normal: np.ndarray, index: np.ndarray
 ) -> dict[str, Array]:
     """The block and the line of the ground's force at some output times."""
     rotation = response.rotation[index]
-    b = model.block
-    toe = np.where(rotation < 0.0, -b.toe_left, b.toe_right)
-    # From the toe along the force, as far up as the centre of mass; at rest through the middle of the base.
-    toe = np.where(rotation == 0.0, 0.0, toe)
-    foot = toe * np.sin(b.slope)
-    toe = toe * np.cos(b.slope)
-    rise = b.centre_height
-    lean = np.clip(tangential[index] / np.maximum(normal[index], 1e-300), -3.0, 3.0)
-    line = np.stack([np.stack([toe, foot], axis=1), np.stack([toe + lean * rise, foot + rise], axis=1)], axis=1)
+    line = force_line(model, rotation, tangential[index], normal[index])
     return {
         "snapshot_time": Array(response.time[index], ("snapshot",), "s"),
         "snapshot_pose": Array(

@@ -4,10 +4,10 @@ from dataclasses import replace
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking.tables import RockingTable
-from extrados.building.building import Building
-from extrados.building.geometry.assembly import GROUND
-from extrados.building.rockers.rocker import Rocker
+from extrados.model.geometry.assembly import GROUND
 from extrados.motions.supports import Shift, with_shifts
+from extrados.views.building import Building
+from extrados.views.rockers.rocker import Rocker
 
 
 def rocker_of(context: Context, options: RockingTable) -> Rocker:

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from extrados.building.rockers.rocker import Rocker
-from extrados.building.rockers.soft_base import SoftBaseModel
-from extrados.building.rockers.watch import LOST, Watch
 from extrados.core.rocking import FAILED, JointDemand, Response
 from extrados.results.rocking import Conditions, JointTime
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.rocker import Rocker
+from extrados.views.rockers.soft_base import SoftBaseModel
+from extrados.views.rockers.watch import LOST, Watch
 
 #: What a member of an ensemble keeps of the demand on its joints, see `rows_of`
 ROWS = ("friction", "slips", "strays")
@@ -111,15 +111,17 @@ def violated(rocker: Rocker, counted: Counted, runs: str) -> list[str]:
     if counted.sliding:
         share = _share(counted.sliding, counted.runs, runs)
         given = friction_of(watch)
-        if np.isfinite(min(watch.capacity)):
-            reason = _rests(rocker, watch)
-        elif np.isfinite(counted.friction):
-            reason = f"rocking needs up to {counted.friction:.2f}"
+        if np.isinf(min(watch.capacity)) and np.isinf(counted.friction):
+            found.append(f"A joint comes under tension or slides {share}. Use dem.")
         else:
-            reason = "a joint comes under tension"
-        found.append(
-            f"Friction {given:.2f} is too low {share}: {reason}. Blocks slide first. Use dem, or check the friction."
-        )
+            reason = (
+                _rests(rocker, watch)
+                if np.isfinite(min(watch.capacity))
+                else f"rocking needs up to {counted.friction:.2f}"
+            )
+            found.append(
+                f"Friction {given:.2f} is too low {share}: {reason}. Blocks slide first. Use dem, or check the friction."
+            )
     if counted.elsewhere:
         share = _share(counted.elsewhere, counted.runs, runs)
         found.append(

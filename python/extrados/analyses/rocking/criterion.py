@@ -17,10 +17,10 @@ import numpy as np
 from extrados.analyses.batches import computed
 from extrados.analyses.context import Context
 from extrados.analyses.rocking.failure_domain import LowestAmplitudes
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.templates.arch import make_arch
 from extrados.core.rocking import Body
+from extrados.model.structures.arch import make_arch
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.arch import ArchModel
 
 THICKNESSES = (0.12, 0.15, 0.18, 0.21)
 EMBRACES = (140, 150, 160, 170, 180)

@@ -8,10 +8,10 @@ import numpy as np
 
 from extrados.analyses.context import Context
 from extrados.analyses.rocking.tables import Rocking
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.rocker import Rocker
 from extrados.core.rocking import FAILED, OUTCOMES, Body, Response, arch_body, ensemble, history
 from extrados.results.rocking import RuleOutcome
+from extrados.views.rockers.arch import ArchModel
+from extrados.views.rockers.rocker import Rocker
 
 #: Impact rules whose c_v differ by more than this factor give both outcomes.
 DIFFER = 1.3

@@ -14,11 +14,9 @@ from extrados.analyses.rocking.doubts import DIFFER, OFTEN, too_fast
 from extrados.analyses.rocking.failure_domain import LowestAmplitudes, curves_by_rule, natural_durations, warned
 from extrados.analyses.rocking.needs import structures_of
 from extrados.analyses.rocking.tables import FailureCurves
-from extrados.building.errors import BadGeometry
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.rocker import Rocker
 from extrados.core.rocking import FAILED, OUTCOMES, Body, ensemble
 from extrados.limit.errors import CannotStand
+from extrados.model.errors import BadGeometry
 from extrados.motions.impulse import Impulse, primary_impulses
 from extrados.motions.motion import Motion
 from extrados.results import rocking as out
@@ -26,6 +24,8 @@ from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import unit_of
 from extrados.schema.table import Table
+from extrados.views.rockers.arch import ArchModel
+from extrados.views.rockers.rocker import Rocker
 
 #: After a motion a structure rocks itself to rest within this many of its natural times.
 SETTLE = 40.0

@@ -15,10 +15,8 @@ from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.rocking.conditions import ROWS, Counted, astray_of, of_many, told
 from extrados.analyses.rocking.doubts import DIFFER
+from extrados.analyses.rocking.job import RunsJob, runs_job
 from extrados.analyses.rocking.tables import FailureDomain
-from extrados.analyses.runs import RunsJob, runs_job
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.rocker import Rocker
 from extrados.core.calls import interruptible
 from extrados.core.rocking import Body
 from extrados.motions import pulses
@@ -27,6 +25,8 @@ from extrados.results import rocking as out
 from extrados.results.model import Array, Result, TableData
 from extrados.results.rocking import COLLAPSE, RECOVERY
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.arch import ArchModel
+from extrados.views.rockers.rocker import Rocker
 
 #: Codes of the map: those of the outcomes, with collapse told apart by its mode
 MODE_I, MODE_II = COLLAPSE, COLLAPSE + 1

@@ -8,14 +8,14 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking.conditions import of_one, told
 from extrados.analyses.rocking.doubts import Doubts
 from extrados.analyses.rocking.tables import Rocking
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.block import BlockModel
-from extrados.building.rockers.rocker import Rocker
 from extrados.core.restraints import LENGTH
 from extrados.core.rocking import Body, Response, history
 from extrados.results import rocking as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.arch import ArchModel
+from extrados.views.rockers.block import BlockModel
+from extrados.views.rockers.rocker import Rocker
 
 #: Numbers a history may hold in all: output times times the values at each.
 LARGEST = 20_000_000

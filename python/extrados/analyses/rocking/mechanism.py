@@ -7,11 +7,11 @@ from extrados.analyses.limit.common import geometry_arrays
 from extrados.analyses.rocking.doubts import doubts
 from extrados.analyses.rocking.history import answer, rest_time, rocking_result, run_history, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
-from extrados.building.rockers.frame import FrameModel
-from extrados.building.rockers.mechanism import MechanismModel
-from extrados.building.rockers.rocker import Rocker
 from extrados.results.model import Array, Result
 from extrados.results.rocking import RockingHinge
+from extrados.views.rockers.frame import FrameModel
+from extrados.views.rockers.mechanism import MechanismModel
+from extrados.views.rockers.rocker import Rocker
 
 
 def run(context: Context, options: Rocking, rocker: Rocker) -> Result:

@@ -7,10 +7,10 @@ from extrados.analyses.changes import changed, read_table
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.needs import Need
 from extrados.analyses.rocking import tables
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry
-from extrados.building.rockers.words import refuse_words
-from extrados.building.structure import Structure
+from extrados.model.errors import BadGeometry
+from extrados.model.structure import Structure
+from extrados.views.building import Building
+from extrados.views.rockers.words import refuse_words
 
 
 def needs(context: Context, options: tables.RockingTable) -> Iterator[Need]:
@@ -27,7 +27,7 @@ def needs(context: Context, options: tables.RockingTable) -> Iterator[Need]:
     else:
         yield functools.partial(refuse_words, building, options.form == "linear")
         if building.restraints:
-            from extrados.building.rockers.restraints import restraints_of
+            from extrados.views.rockers.restraints import restraints_of
 
             yield from restraints_of(building, stones)
     if building.initial.movements:
@@ -56,7 +56,7 @@ def structures_of(context: Context, options: tables.FailureCurves) -> list[Struc
 
 def _refuse_soft_base(building: Building, options: tables.RockingTable) -> None:
     """Refused where a base that gives way does not carry the building, or nothing but `dem` follows it there."""
-    from extrados.building.rockers.soft_base import soft_base_model
+    from extrados.views.rockers.soft_base import soft_base_model
 
     _ = soft_base_model(building, options.form == "linear").rest
 

@@ -4,12 +4,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.block import BlockModel
-from extrados.building.rockers.mechanism import MechanismModel
-from extrados.building.rockers.rocker import Rocker
+from extrados.analyses.rocking import arch, block
 from extrados.core import arch as core_arch
 from extrados.results.model import Array, Result
+from extrados.views.rockers.arch import ArchModel
+from extrados.views.rockers.block import BlockModel
+from extrados.views.rockers.mechanism import MechanismModel
+from extrados.views.rockers.rocker import Rocker
 
 #: Pictures of a film in a second of real time, and the most that are kept
 RATE, MOST = 30.0, 900
@@ -36,34 +37,21 @@ class Shapes(NamedTuple):
 
 def shapes(rocker: Rocker, states: States) -> Shapes:
     """The structure in given states."""
-    from extrados.analyses.rocking import block, driver
-
     model, rotation = rocker.model, states.rotation
     if isinstance(model, ArchModel):
-        thrust = driver._thrust(model, states)
+        thrust = arch.thrust_line(model, states)
         placed = core_arch.pose(model.four_hinge, model.arch.centroid, np.abs(rotation))
         left = rotation < 0.0
         placed[left] = placed[left, ::-1] * np.array([-1.0, 1.0, -1.0])
         return Shapes(placed, thrust.point, thrust.friction)
     if isinstance(model, BlockModel):
         tangential, normal = block.toe_forces(model, states)
-        lines = block._snapshots(
-            model, _Timed(*states, np.zeros(len(rotation))), tangential, normal, np.arange(len(rotation))
-        )
+        line = block.force_line(model, rotation, tangential, normal)
         friction = np.abs(tangential) / np.where(normal > 0.0, normal, np.nan)
-        return Shapes(lines["snapshot_pose"].data, lines["snapshot_thrust"].data, friction[:, None])
+        return Shapes(block.pose(model, rotation)[:, None, :], line, friction[:, None])
     assert isinstance(model, MechanismModel)
     forces = model.hinge_forces(rotation, states.rate, states.acceleration, states.ground, states.vertical)
     return Shapes(model.pose(rotation), None, np.where(np.isnan(forces.normal), np.nan, forces.friction))
-
-
-class _Timed(NamedTuple):
-    rotation: np.ndarray
-    rate: np.ndarray
-    acceleration: np.ndarray
-    ground: np.ndarray
-    vertical: np.ndarray
-    time: np.ndarray
 
 
 def pictures(time: np.ndarray) -> np.ndarray:

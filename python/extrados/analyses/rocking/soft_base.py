@@ -8,12 +8,12 @@ from extrados.analyses.rocking.doubts import CHAOTIC, chaos_told, growth, pertur
 from extrados.analyses.rocking.history import LARGEST, ROOM, count, drawn_times
 from extrados.analyses.rocking.shapes import film, pictures
 from extrados.analyses.rocking.tables import Rocking
-from extrados.building.rockers.soft_base import UNDAMPED, SoftBaseModel, soft_base_model
 from extrados.core.rocking import FAILED, OUTCOMES, ensemble
 from extrados.core.soft_base import SoftBaseResponse, soft_base_history, soft_base_start
 from extrados.results import rocking as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.soft_base import UNDAMPED, SoftBaseModel, soft_base_model
 
 #: After the motion it rocks within this many of the block's own time units 1/p
 SETTLE = 30.0

@@ -8,11 +8,11 @@ from extrados.analyses.rocking.doubts import CHAOTIC, chaos_told, growth, pertur
 from extrados.analyses.rocking.history import LARGEST, count, drawn_times
 from extrados.analyses.rocking.shapes import film, pictures
 from extrados.analyses.rocking.tables import Rocking
-from extrados.building.rockers.stack import StackModel
 from extrados.core.stack import StackResponse, stack_history
 from extrados.results import rocking as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.stack import StackModel
 
 #: After the motion it rocks itself to rest within this many of its own time units
 SETTLE = 40.0

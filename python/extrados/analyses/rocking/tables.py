@@ -5,11 +5,11 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from extrados.analyses.table import Animated, BuildingAnalysis
-from extrados.building.building import Building
-from extrados.building.properties import NO_SLIDING
+from extrados.model.properties import NO_SLIDING
 from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import Acceleration, Time
 from extrados.schema.table import key
+from extrados.views.building import Building
 
 #: What a rocking structure may be held by
 HOLDS = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")

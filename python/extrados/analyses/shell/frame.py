@@ -9,7 +9,7 @@ from extrados.analyses.context import Refused
 from extrados.analyses.shell.model import ShellModel
 from extrados.analyses.shell.sections import sections_at
 from extrados.analyses.shell.tables import FrameRules
-from extrados.building.templates.plan import Plan, PlanWall
+from extrados.model.structures.plan import Plan, PlanWall
 
 #: Walls that make a greater angle with the push than this cosine says are left out
 ALONG = 0.1

@@ -19,12 +19,12 @@ from extrados.analyses.sla.model import (
     softening_of,
     teeth_of_joints,
 )
-from extrados.building.errors import BadGeometry
-from extrados.building.mesh.mesh import JointLaw
-from extrados.building.mesh.shells import ShellBar, ShellJoint, ShellMesh, ShellPart
 from extrados.core import sla as core
 from extrados.core.shell import layers_of, node_frames
+from extrados.model.errors import BadGeometry
 from extrados.schema.constants import GRAVITY
+from extrados.views.mesh.mesh import JointLaw
+from extrados.views.shell.mesh import ShellBar, ShellJoint, ShellMesh, ShellPart
 
 #: Iterations of the lowest modes; the vectors that go with them
 ROUNDS, VECTORS = 12, 4

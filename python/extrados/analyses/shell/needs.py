@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.needs import Need
 from extrados.analyses.shell.tables import Pushover
-from extrados.building.building import Building
-from extrados.building.templates.plan import Plan
+from extrados.model.structures.plan import Plan
+from extrados.views.building import Building
 
 
 def needs(context: Context, options: Pushover) -> Iterator[Need]:

@@ -20,14 +20,14 @@ from extrados.analyses.sla.events import Curve, run_curves
 from extrados.analyses.sla.kept import State
 from extrados.analyses.sla.measures import numbers_of, out_of_reach
 from extrados.analyses.sla.stored import events_of_curve
-from extrados.building.building import Building
-from extrados.building.templates.plan import Plan
 from extrados.core.calls import interruptible
 from extrados.core.sla import EVENT, ShellJoints, Shells
+from extrados.model.structures.plan import Plan
 from extrados.results import shell as out
 from extrados.results.model import Array, Result, TableData
 from extrados.results.sla import PREFIXES
 from extrados.results.vtu import pvd, vtu
+from extrados.views.building import Building
 
 #: Part of the weight that walls across the push must take up or down to count as working flanges
 WORKING = 0.05
@@ -412,7 +412,7 @@ def _varied(building: Building, variant: Variant) -> Building:
     plan = building.structure
     changed = replace(
         building, material=material(building.material),
-        materials={name: material(of) for name, of in building.materials.items()}, _views={},
+        materials={name: material(of) for name, of in building.materials.items()}, views={},
     )  # fmt: skip
     if not isinstance(plan, Plan):
         return changed

@@ -10,9 +10,9 @@ import numpy as np
 
 from extrados.analyses.shell.model import ShellModel
 from extrados.analyses.shell.tables import Pushover
-from extrados.building.building import Building
-from extrados.building.mesh.shells import nodal_areas
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
+from extrados.views.shell.mesh import nodal_areas
 
 #: Heights that are the same [m]; of the area of the walls in a level: bed joints that have so much of it cut all of them
 SAME, ALL = 1e-6, 0.999

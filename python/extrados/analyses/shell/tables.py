@@ -4,15 +4,16 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
+from extrados import kinds
 from extrados.analyses.sla.tables import INTERFACES, MATERIAL, CrackOptions, Staged, without_effect
 from extrados.analyses.table import BuildingAnalysis
-from extrados.building.mesh.shells import ShellOptions
-from extrados.building.places import Range
+from extrados.model.places import Range
 from extrados.schema.quantities import Angle, Force, Length, Stress
 from extrados.schema.table import Table, key
+from extrados.views.shell.options import ShellOptions
 
 if TYPE_CHECKING:
-    from extrados.building.building import Building
+    from extrados.views.building import Building
 
 
 class Drive(Table):
@@ -118,7 +119,7 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
 
     kind: Literal["pushover"]
     view: ClassVar = "shell"
-    structures: ClassVar = ("building", "arch", "vault", "dome", "cross-vault", "mesh")
+    structures: ClassVar = tuple(kind for kind, parts in kinds.STRUCTURES.items() if isinstance(parts.shell, str))
     uses: ClassVar = (
         "material.density", "material.young", "material.poisson", "material.tensile_strength", "material.fracture_energy",
         "material.compressive_strength", "material.tensile_strength_parallel", "material.shear_strength",

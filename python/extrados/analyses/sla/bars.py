@@ -5,14 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from extrados.analyses.sla.tables import Sla
-from extrados.building.errors import BadGeometry
-from extrados.building.mesh.mesh import Mesh
-from extrados.building.mesh.rods import Corners, Rod, bonded
-from extrados.building.properties import Material
-from extrados.building.templates.walls import Bar
-from extrados.building.ties import Tie
 from extrados.core import sla as core
 from extrados.core.sla import EVENT
+from extrados.model.errors import BadGeometry
+from extrados.model.properties import Material
+from extrados.model.structures.walls import Bar
+from extrados.model.ties import Tie
+from extrados.views.mesh.mesh import Mesh
+from extrados.views.mesh.rods import Corners, Rod, bonded
 
 #: Rows of the damage of a bar: its tooth in tension and in pressure, from 1, and whether it is taut
 TENSION, PRESSURE, TAUT = 3, 5, 7

@@ -7,9 +7,9 @@ import numpy as np
 from extrados.analyses.context import Refused
 from extrados.analyses.sla.model import SlaModel
 from extrados.analyses.sla.tables import Sla
-from extrados.building.errors import WHOLE
 from extrados.core import sla as core
 from extrados.core.errors import CoreError, status_code
+from extrados.model.errors import WHOLE
 
 #: Rounds in which a state is looked for: without friction, with it, and from a state under a little more of it
 MOST_ROUNDS, MOST_SLIDING, MOST_NEAR = 400, 60, 15

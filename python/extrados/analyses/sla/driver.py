@@ -20,7 +20,6 @@ from extrados.analyses.sla.stages import run_stages
 from extrados.analyses.sla.stored import curve_arrays, field_files, mesh_arrays, sections
 from extrados.analyses.sla.tables import Sla
 from extrados.analyses.sla.words import answer_of_stones, answer_of_wall
-from extrados.building.building import Building
 from extrados.core.calls import interruptible
 from extrados.limit.answer import cannot_stand
 from extrados.limit.equilibrium import Disconnected
@@ -28,6 +27,7 @@ from extrados.limit.programme import LimitAnalysis, NoAnswer
 from extrados.results import sla as out
 from extrados.results.model import Result
 from extrados.results.sla import PREFIXES
+from extrados.views.building import Building
 
 #: States that an animation shows
 FILM = 80

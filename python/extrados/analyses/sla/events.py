@@ -18,11 +18,11 @@ from extrados.analyses.sla.incremental import run_incremental
 from extrados.analyses.sla.kept import State, UnderWay
 from extrados.analyses.sla.model import MECHANISM, MECHANISM_OF_STONES, SlaModel
 from extrados.analyses.sla.tables import Sla
-from extrados.building.errors import WHOLE
 from extrados.core import lists
 from extrados.core import sla as core
 from extrados.core.errors import Cancelled, CoreError, status_code
 from extrados.core.sla import EVENT
+from extrados.model.errors import WHOLE
 
 BATCH_SECONDS = 0.7
 #: Events between two states that are kept; a new factor takes as long as some tens of events of a large wall.

@@ -9,12 +9,12 @@ import numpy as np
 from extrados.analyses.context import Refused
 from extrados.analyses.sla.bars import NamedBar, bar_group, tie_group
 from extrados.analyses.sla.tables import CrackOptions, Load, Sla
-from extrados.building.errors import BadGeometry, Key
-from extrados.building.mesh.mesh import ElementGroup, JointLaw, Mesh, corner_count, element_areas
-from extrados.building.places import Placed
-from extrados.building.properties import Material
-from extrados.building.templates.walls import Bar
 from extrados.core import sla as core
+from extrados.model.errors import BadGeometry, Key
+from extrados.model.places import Placed
+from extrados.model.properties import Material
+from extrados.model.structures.walls import Bar
+from extrados.views.mesh.mesh import ElementGroup, JointLaw, Mesh, corner_count, element_areas
 
 AXES = {"x": 0, "y": 1}
 POINTS_PER_THREAD = 20_000

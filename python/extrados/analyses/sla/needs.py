@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from extrados.analyses.context import Context
 from extrados.analyses.needs import Need
 from extrados.analyses.sla.tables import Sla
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry
+from extrados.model.errors import BadGeometry
+from extrados.views.building import Building
 
 
 def needs(context: Context, options: Sla) -> Iterator[Need]:

@@ -10,10 +10,10 @@ from extrados.analyses.sla.curve import MOST_ENVELOPE
 from extrados.analyses.sla.events import run_curves
 from extrados.analyses.sla.model import build, strength_factors
 from extrados.analyses.sla.tables import Sla
-from extrados.building.building import Building
 from extrados.core.errors import Cancelled, status_code
 from extrados.results import sla as out
 from extrados.results.model import Array, Result, TableData
+from extrados.views.building import Building
 
 
 @dataclass(frozen=True)

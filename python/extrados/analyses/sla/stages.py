@@ -13,8 +13,8 @@ from extrados.analyses.batches import Chain
 from extrados.analyses.sla.events import NOTHING_DONE, Curve, bring_on_constant_loads, run_reference_loads
 from extrados.analyses.sla.model import AXES, SlaModel, acceleration_of, control_of, nodal_forces, refusal, resultant
 from extrados.analyses.sla.tables import Hold, Sla, Stage
-from extrados.building.errors import BadGeometry
 from extrados.core import sla as core
+from extrados.model.errors import BadGeometry
 
 #: Displacements at the start of a stage may differ from those at the end of the one before by this part of the greatest
 SAME = 1e-6

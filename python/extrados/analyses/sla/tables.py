@@ -5,15 +5,15 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field, field_validator, model_validator
 
 from extrados.analyses.table import Animated, BuildingAnalysis
-from extrados.building.mesh.options import MeshOptions
-from extrados.building.places import Placed, Range
-from extrados.building.properties import NO_SLIDING, Material
+from extrados.model.places import Placed, Range
+from extrados.model.properties import NO_SLIDING, Material
 from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import Acceleration, Force, Length, LineForce, Stress
 from extrados.schema.table import Table, key
+from extrados.views.mesh.options import MeshOptions
 
 if TYPE_CHECKING:
-    from extrados.building.building import Building
+    from extrados.views.building import Building
 
 
 class Part(Placed):

@@ -18,8 +18,6 @@ from extrados.analyses.statistics.sensitivity import sensitivity, spoken
 from extrados.analyses.statistics.summaries import median, shares, shares_of
 from extrados.analyses.statistics.tables import Fragility
 from extrados.analyses.statistics.uncertain import Bodies, bodies_at, sampled
-from extrados.building.rockers.block import BlockModel
-from extrados.building.rockers.rocker import Rocker
 from extrados.core import rocking as core_rocking
 from extrados.core.errors import Cancelled, status_code
 from extrados.core.rocking import FAILED, Body, Ground, Response
@@ -31,6 +29,8 @@ from extrados.results import statistics as out
 from extrados.results.model import Array, Result, StreamedTable, TableData
 from extrados.results.rocking import COLLAPSE, Conditions
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.block import BlockModel
+from extrados.views.rockers.rocker import Rocker
 
 #: Histories are drawn in so many points, and until so many time units of the building after the motion
 POINTS, AFTER = 3000, 5.0

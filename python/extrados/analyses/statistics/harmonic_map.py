@@ -7,14 +7,14 @@ from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.rocking.conditions import Counted, astray_of, of_many, told
 from extrados.analyses.rocking.doubts import too_fast
-from extrados.analyses.runs import runs_job
+from extrados.analyses.rocking.job import runs_job
 from extrados.analyses.statistics.tables import HarmonicMap
-from extrados.building.rockers.arch import ArchModel
 from extrados.motions import pulses
 from extrados.results import statistics as out
 from extrados.results.model import Array, Result, TableData
 from extrados.results.rocking import COLLAPSE
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.arch import ArchModel
 
 
 def run(context: Context, options: HarmonicMap) -> Result:

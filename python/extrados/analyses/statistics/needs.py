@@ -7,7 +7,7 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.needs import Need
 from extrados.analyses.rocking import needs as rocking
 from extrados.analyses.statistics import tables
-from extrados.building.building import Building
+from extrados.views.building import Building
 
 
 def needs(context: Context, options: rocking.tables.RockingTable) -> Iterator[Need]:

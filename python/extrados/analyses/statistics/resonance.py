@@ -9,14 +9,14 @@ from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.rocking.conditions import of_one, told
 from extrados.analyses.statistics.tables import Resonance
-from extrados.building.rockers.block import BlockModel
-from extrados.building.rockers.rocker import Rocker
-from extrados.building.templates.block import make_block
 from extrados.core import rocking as core_rocking
 from extrados.core.rocking import Ground
+from extrados.model.structures.block import make_block
 from extrados.results import statistics as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
+from extrados.views.rockers.block import BlockModel
+from extrados.views.rockers.rocker import Rocker
 
 #: Axes of Fig. 6-3
 ASPECTS = np.linspace(0.05, 0.6, 12)

@@ -9,16 +9,16 @@ from extrados.analyses.batches import sweep
 from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.rocking.conditions import ROWS, Counted, astray_of, of_many, told
-from extrados.analyses.runs import runs_job
+from extrados.analyses.rocking.job import runs_job
 from extrados.analyses.statistics.tables import RockingSpectrum
-from extrados.building.building import Building
-from extrados.building.properties import Initial
-from extrados.building.rockers.rocker import Rocker, make_rocker
-from extrados.building.templates.block import Block
+from extrados.model.properties import Initial
+from extrados.model.structures.block import Block
 from extrados.results import statistics as out
 from extrados.results.model import Array, Result, TableData
 from extrados.results.rocking import COLLAPSE, Conditions
 from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
+from extrados.views.rockers.rocker import Rocker, make_rocker
 
 
 def block_of(period: float, alpha: float, building: Building, linear: bool) -> Rocker:

@@ -9,7 +9,7 @@ from scipy.stats import qmc, sobol_indices
 from extrados.analyses.batches import sweep
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.motion_source import Source
-from extrados.analyses.runs import runs_job
+from extrados.analyses.rocking.job import runs_job
 from extrados.analyses.statistics.uncertain import Bodies
 from extrados.core.rocking import FAILED
 from extrados.results import statistics as out

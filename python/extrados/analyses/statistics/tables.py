@@ -10,7 +10,7 @@ from extrados.schema.quantities import Acceleration, Angle, Frequency, OrText, T
 from extrados.schema.table import Table, key
 
 if TYPE_CHECKING:
-    from extrados.building.building import Building
+    from extrados.views.building import Building
 
 #: Measures of levels that have a dimension: SI unit, and the unit of a bare number
 LEVELS = {"pga": ("m/s^2", "g"), "sa": ("m/s^2", "g"), "arias": ("m/s", "m/s")}

@@ -9,14 +9,14 @@ from scipy.stats import norm, qmc
 from extrados.analyses.batches import computed, stacked
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.statistics.tables import BASE, STONES, UNCERTAIN, Fragility
-from extrados.building.building import Building
-from extrados.building.errors import BadGeometry, NoView
-from extrados.building.geometry.assembly import Assembly
-from extrados.building.geometry.deviation import resurveyed
-from extrados.building.rockers.block import BlockModel
-from extrados.building.rockers.rocker import Rocker, make_rocker
 from extrados.core.rocking import Body
 from extrados.limit.errors import CannotStand
+from extrados.model.errors import BadGeometry, NoView
+from extrados.model.geometry.assembly import Assembly
+from extrados.model.geometry.deviation import resurveyed
+from extrados.views.building import Building
+from extrados.views.rockers.block import BlockModel
+from extrados.views.rockers.rocker import Rocker, make_rocker
 
 #: What is drawn stone by stone, by a generator that the point of the cube seeds
 BY_STONE = ("density", "imperfection")

@@ -15,7 +15,6 @@ import tomlkit
 from extrados import kinds
 from extrados._build_info import VERSION
 from extrados.analyses.context import Refused
-from extrados.building.geometry.polygons import signed_area
 from extrados.decks.explain import starter
 from extrados.decks.reader import LARGEST, read_text
 from extrados.explore import statics, stored
@@ -26,6 +25,7 @@ from extrados.explore.folder import NotThere
 from extrados.explore.frames import Reply
 from extrados.explore.handles import MOST_VERTICES
 from extrados.explore.messages import BadMessage, Message, path
+from extrados.model.geometry.polygons import signed_area
 from extrados.running.live import Live
 
 #: Bytes of a drawing or a record that is dropped on the page
@@ -180,7 +180,7 @@ def blocks(desk: Desk, _: Message) -> Iterator[Reply]:
     left = [name for name in ("ties", "dampers", "hinges", "supports", "initial", "motion") if deck.data.get(name)]
     left += ["joints.types"] * bool(deck.data.get("joints", {}).get("types"))
     note = f"note = {json.dumps('Left out when its stones were set free: ' + ', '.join(left))}\n" if left else ""
-    title = deck.title or deck.building._structure().word
+    title = deck.title or deck.building.require_structure().word
     text = (
         f'title = {json.dumps(f"{title}, its stones free")}\n{note}\n[structure]\nkind = "blocks"\n'
         + f"depth = {assembly.depth!r}\n" * (assembly.depth != 1.0)

@@ -4,13 +4,13 @@ from collections.abc import Iterator
 
 from extrados.analyses.context import Refused
 from extrados.analyses.rocking.tables import FailureDomain, Rocking
-from extrados.building.errors import BadGeometry
 from extrados.core.errors import CoreError
 from extrados.explore import rocking
 from extrados.explore.desk import Desk
 from extrados.explore.frames import Reply
 from extrados.explore.messages import Message
 from extrados.limit.programme import NoAnswer, NoEquilibrium
+from extrados.model.errors import BadGeometry
 
 MOST_MAPS = 8
 

@@ -9,14 +9,14 @@ import numpy as np
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.applied import block_under
 from extrados.analyses.limit.tables import LimitAnalysisTable, Tilt
-from extrados.analyses.run import run_one
-from extrados.building.errors import NoView
-from extrados.building.geometry.assembly import Assembly
+from extrados.analyses.sequence import run_one
 from extrados.explore import bodies, statics
 from extrados.explore.desk import Desk
 from extrados.explore.frames import Reply
 from extrados.explore.handles import Handle, anchor_of, handles_of, load_handles
 from extrados.explore.messages import BadMessage, Message, numbers, quantity
+from extrados.model.errors import NoView
+from extrados.model.geometry.assembly import Assembly
 
 
 def scene(desk: Desk) -> Reply:

@@ -95,8 +95,9 @@ export function motionPanel(app, lower, frame) {
   app.on("rocking", (told, arrays) => {
     if (told.refused) { none(told.refused, arrays); return; }
     it.words = told; it.arrays = it.ground = arrays;
-    const verdict = { "no-hinging": "It does not rock. ", recovery: "It rocks and recovers. ", collapse: "It comes down. " }[told.outcome] ?? "";
-    words.replaceChildren(h("b", { class: told.outcome === "collapse" ? "bad" : "good" }, verdict), told.answer, ...told.warnings.slice(0, 2).map((w) => h("span", { class: "warning" }, ` ${w}`)));
+    const open = told.violated.length > 0;
+    const verdict = open ? "Open: an assumption does not hold. " : { "no-hinging": "No rocking. ", recovery: "Rocking, then recovery. ", collapse: "Collapse. " }[told.outcome] ?? "";
+    words.replaceChildren(h("b", { class: open ? "" : told.outcome === "collapse" ? "bad" : "good" }, verdict), told.answer, ...told.warnings.slice(0, 2).map((w) => h("span", { class: "warning" }, ` ${w}`)));
     it.end = told.active_s || 1;
     const end = it.end;
     set(slider, { max: end });

@@ -99,7 +99,9 @@ export function resultsPanel(app, wide) {
       runs.value = words.path;
       kinds.replaceChildren(...words.analyses.map((a) => h("option", { value: a.name, selected: a.name === words.analysis }, `${a.name}${a.status === "ok" ? "" : ` (${a.status})`}`)));
       const told = words.analyses.find((a) => a.name === words.analysis) ?? words.analyses[0];
-      answer.textContent = told ? told.answer || `${told.status}: ${told.reason}` : "";
+      const outcome = told?.verdict?.outcome;
+      const mark = { stands: "good", collapses: "bad", "cannot-stand": "bad" }[outcome] ?? "";
+      answer.replaceChildren(...(outcome ? [h("b", { class: mark }, `Verdict: ${outcome.replaceAll("-", " ")}. `), ...(told.verdict.violated ?? []).map((w) => h("span", { class: "warning" }, `${w} `))] : []), told ? told.answer || `${told.status}: ${told.reason}` : "");
       if (words.charts === undefined) { clear(); return; }
       it.arrays = arrays;
       numbers.replaceChildren(h("tbody", {}, (words.numbers ?? []).map(([k, v]) => h("tr", {}, h("th", { scope: "row" }, k), h("td", {}, typeof v === "number" ? number(v, 6) : String(v))))));

@@ -1,4 +1,4 @@
-// Bodies in space: parallel projection, hidden parts by a depth buffer as in plots/scene.py, turned by hand or by keys.
+// Bodies in space: parallel projection, hidden parts by a depth buffer as in show/scene.py, turned by hand or by keys.
 import { h, quantity, s, set } from "./dom.js";
 
 const LIGHT = unit([-0.35, -0.75, 1]), DARKEST = 0.55, FINE = 2;

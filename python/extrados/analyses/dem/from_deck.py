@@ -1,0 +1,62 @@
+"""The discrete-element model of a deck: bodies, and joints by the rules and exceptions of [joints]."""
+
+import itertools
+from dataclasses import replace
+
+import numpy as np
+
+from extrados.analyses.context import Context
+from extrados.analyses.dem import impact_rules
+from extrados.analyses.dem.calibration import beta_for_restitution
+from extrados.analyses.dem.model import JointValues, Model
+from extrados.analyses.dem.tables import DemTable
+from extrados.model.geometry.assembly import GROUND
+from extrados.model.structures.arch import ArchAssembly
+from extrados.views.building import Building
+from extrados.views.rockers.arch import ArchModel
+
+
+def joint_values(building: Building) -> JointValues:
+    """Properties of all joints by the rules and exceptions of [joints]; Refused where the deck names an unknown joint."""
+    assembly, joints = building.blocks(), building.joints
+    length = impact_rules.joint_lengths(assembly)
+    elastic = impact_rules.joint_stiffness(building.material.young, length, assembly.length, joints.stiffness_rule)
+    given = building.joint_property("normal_stiffness")
+    stiffness = np.where(np.isnan(given), elastic, given)
+    if building.supports.stiffness is not None:
+        grounded = (assembly.a == GROUND) | (assembly.b == GROUND)
+        series = 1.0 / (1.0 / stiffness + 1.0 / building.supports.stiffness)
+        stiffness = np.where(grounded, series, stiffness)
+    impact = impact_rules.joint_impact(assembly, stiffness)
+    # The highest frequency of its kind: the smallest block sets the least damping (thesis 7.4.4).
+    beta = joints.beta
+    wanted = joints.beta is None and joints.damping == "restitution"
+    if beta is None:
+        rule = "edge" if wanted else joints.damping
+        beta = impact_rules.damping_constant(float(impact.of(rule).max()), joints.damping_ratio)
+    shear = (
+        np.full_like(stiffness, joints.shear_stiffness) if joints.shear_stiffness else stiffness * joints.shear_ratio
+    )
+    values = JointValues(
+        stiffness,
+        shear,
+        *(building.joint_property(name) for name in ("friction", "cohesion", "tension")),
+        beta,
+        impact,
+        length,
+    )
+    if wanted:
+        return replace(values, beta=beta_for_restitution(building, values))
+    return values
+
+
+def make_model(context: Context, options: DemTable) -> Model:
+    """The model of a deck; Refused where a block has no area or crosses itself."""
+    building = context.building
+    assembly = building.blocks()
+    groups: tuple[tuple[int, ...], ...] = ()
+    if options.merge == "three-bars":
+        assert isinstance(assembly, ArchAssembly)
+        joint = ArchModel(assembly).four_hinge.joint
+        groups = tuple(tuple(range(a, b)) for a, b in itertools.pairwise(joint))
+    return Model(assembly, building.rigid(groups, options.floor), joint_values(building))

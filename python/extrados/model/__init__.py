@@ -1,0 +1,1 @@
+"""What a building is: tables, stones, geometry. Nothing here knows the views that strategies take."""

@@ -1,0 +1,67 @@
+"""Dampers of a building, [[dampers]], and what is added at its joints, [[hinges]], said once for every strategy."""
+
+from pydantic import model_validator
+
+from extrados.model.ties import Point
+from extrados.schema.quantities import AxialStiffness, Damping, Force, Moment, TurningDamping
+from extrados.schema.table import Table, key
+
+
+class Damper(Table):
+    """A damper between two stones, or from a stone to the ground: [[dampers]].
+
+    Viscous, F = c |v|^n, or friction behind a brace: elastic up to the force at which it slides, and sliding under that
+    force in both senses.
+    """
+
+    name: str | None = key(None, "what answers call it; default damper 1, damper 2 and so on", max_length=80)
+    start: Point = key(about="[x, y] where it is anchored in a stone")
+    end: Point | None = key(None, "[x, y] where it is anchored in another stone; or give `ground`")
+    ground: Point | None = key(None, "[x, y] where it is anchored in the ground, which moves with the supports")
+    start_stone: str | None = key(None, "name of the stone at `start`, where that lies between two", max_length=80)
+    end_stone: str | None = key(None, "name of the stone at `end`, where that lies between two", max_length=80)
+    damping: Damping | None = key(
+        None, "c of a viscous damper: force per rate, of a power n of the rate in N (s/m)^n", gt=0
+    )
+    power: float = key(1.0, "n: 1 is a linear damper", source="EN 15129", ge=0.1, le=2)
+    slip_force: Force | None = key(None, "force at which a friction damper slides", gt=0)
+    stiffness: AxialStiffness | None = key(None, "of the brace of a friction damper, before it slides", gt=0)
+
+    @model_validator(mode="after")
+    def _whole(self) -> "Damper":
+        if (self.end is None) == (self.ground is None):
+            raise ValueError("expected either end, in another stone, or ground")
+        if self.start == self.far:
+            raise ValueError("start: both ends are at one point")
+        if (self.damping is None) == (self.slip_force is None):
+            raise ValueError("expected either damping, of a viscous damper, or slip_force with stiffness, of friction")
+        if (self.slip_force is None) != (self.stiffness is None):
+            raise ValueError("slip_force and stiffness go together: one of them is missing")
+        return self
+
+    @property
+    def far(self) -> list[float]:
+        """The point at its other end, in a stone or in the ground [m]."""
+        return (self.end if self.ground is None else self.ground) or []
+
+
+class AddedHinge(Table):
+    """Damping and stiffness added at joints, against the turn of the stones on both sides: [[hinges]]."""
+
+    name: str | None = key(None, "what answers call it; default hinge 1, hinge 2 and so on", max_length=80)
+    joints: list[str] = key(
+        about='names of joints; "ground" means all joints to the ground, "all" every joint',
+        min_length=1,
+        max_length=10000,
+    )
+    stiffness: Moment | None = key(None, "moment per radian of turn", gt=0)
+    yield_moment: Moment | None = key(None, "moment at which it yields, in both senses; needs stiffness", gt=0)
+    damping: TurningDamping | None = key(None, "moment per radian per second of turn", gt=0)
+
+    @model_validator(mode="after")
+    def _whole(self) -> "AddedHinge":
+        if self.stiffness is None and self.damping is None:
+            raise ValueError("expected stiffness or damping")
+        if self.yield_moment is not None and self.stiffness is None:
+            raise ValueError("yield_moment needs stiffness")
+        return self

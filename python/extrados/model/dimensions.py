@@ -1,0 +1,68 @@
+"""The dimensions by which an engineer knows a building: spans and rises of its arches, widths of what stands, its height."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados.model.geometry.assembly import GROUND, Assembly
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """A length [m] by its name, between two places [m]; aside: "below", "left" or "right" of them a drawing shows it,
+    "along" on the line itself."""
+
+    name: str
+    start: tuple[float, float]
+    end: tuple[float, float]
+    aside: str
+
+    @property
+    def length(self) -> float:
+        """Length [m]."""
+        return float(np.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1]))
+
+
+def dimensions(assembly: Assembly) -> list[Dimension]:
+    """Clear span, rise and thickness of every arch, feet of what stands beside them, and the height of the whole."""
+    vertices = np.concatenate(assembly.outlines)
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    found: list[Dimension] = []
+    for name, joints in assembly.chains.items():
+        if len(joints) > 2 and name != "stack":
+            found += _arch(assembly, name, joints)
+    arches = bool(found)
+    for block in assembly.buttresses:
+        found += [_foot(assembly, j, f"width of the {assembly.block_names[block]}") for j in assembly.joints_of(block)
+                  if GROUND in (assembly.a[j], assembly.b[j])]  # fmt: skip
+    if not arches:
+        base = vertices[np.isclose(vertices[:, 1], low[1], atol=1e-6 * (high[1] - low[1]))]
+        left, right = float(base[:, 0].min()), float(base[:, 0].max())
+        name = "width at the base" if right - left < 0.98 * (high[0] - low[0]) else "width"
+        found.append(Dimension(name, (left, float(low[1])), (right, float(low[1])), "below"))
+    springing = min((d.start[1] for d in found if d.aside == "along"), default=float(high[1]))
+    if float(low[1]) < springing - 0.02 * float(high[1] - low[1]):
+        x = float(low[0])
+        found.append(Dimension("height", (x, float(low[1])), (x, float(high[1])), "left"))
+    return found
+
+
+def _arch(assembly: Assembly, name: str, joints: list[int]) -> list[Dimension]:
+    """The intrados is the end p of the joints of a chain."""
+    intrados = assembly.p[joints]
+    left, right = sorted((intrados[0], intrados[-1]), key=lambda point: float(point[0]))
+    crown = int(np.argmax(intrados[:, 1]))
+    x, top = (float(v) for v in intrados[crown])
+    level = max(float(left[1]), float(right[1]))
+    of = "" if len(assembly.chains) == 1 else f" of the {name}"
+    inner, outer = (tuple(float(v) for v in end[joints[crown]]) for end in (assembly.p, assembly.q))
+    return [
+        Dimension(f"clear span{of}", (float(left[0]), level), (float(right[0]), level), "along"),
+        Dimension(f"rise{of}", (x, level), (x, top), "along"),
+        Dimension(f"thickness at the crown{of}", inner, outer, "right"),  # type: ignore[arg-type]
+    ]
+
+
+def _foot(assembly: Assembly, joint: int, name: str) -> Dimension:
+    left, right = sorted((assembly.p[joint], assembly.q[joint]), key=lambda point: float(point[0]))
+    return Dimension(name, (float(left[0]), float(left[1])), (float(right[0]), float(right[1])), "below")

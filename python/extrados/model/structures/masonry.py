@@ -1,0 +1,117 @@
+"""Columns of drums: stones one upon the other."""
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from extrados.model.errors import NoView
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.polygons import properties
+from extrados.model.structure import RocksAs, Structure
+from extrados.schema.quantities import Force, Length
+from extrados.schema.table import key
+
+
+def stones_and_joints(
+    outlines: list[np.ndarray], names: list[str], joints: list[tuple[str, np.ndarray, np.ndarray, int, int]],
+    density: float, depth: float,
+) -> Assembly:  # fmt: skip
+    """Blocks of straight outlines and their joints (name, p, q, block above or right, block below or left)."""
+    mass, centroid, inertia = zip(*(properties(o) for o in outlines), strict=True)
+    weight = density * depth
+    label, p, q, a, b = zip(*joints, strict=True)
+    return Assembly(
+        outlines=outlines, mass=np.array(mass) * weight, centroid=np.array(centroid), inertia=np.array(inertia) * weight,
+        p=np.array(p), q=np.array(q), a=np.array(a), b=np.array(b), depth=depth, block_names=names,
+        joint_names=list(label),
+    )  # fmt: skip
+
+
+def make_column(
+    width: float, heights: list[float], top_width: float | None = None, density: float = 2000.0, depth: float = 1.0
+) -> Assembly:
+    """Drums of the given heights [m] on the ground, from `width` at the base to `top_width` [m]."""
+    levels = np.concatenate([[0.0], np.cumsum(heights)])
+    half = 0.5 * np.interp(levels, [0.0, levels[-1]], [width, width if top_width is None else top_width])
+    n = len(heights)
+    outlines = [
+        np.array(
+            [[-half[i], levels[i]], [half[i], levels[i]], [half[i + 1], levels[i + 1]], [-half[i + 1], levels[i + 1]]]
+        )
+        for i in range(n)
+    ]
+    joints = [
+        (
+            "base" if i == 0 else f"joint {i}", np.array([-half[i], levels[i]]), np.array([half[i], levels[i]]), i,
+            i - 1 if i else GROUND,
+        )
+        for i in range(n)
+    ]  # fmt: skip
+    made = stones_and_joints(outlines, [f"drum {i + 1}" for i in range(n)], joints, density, depth)
+    return replace(made, chains={"stack": list(range(n))})
+
+
+class Column(Structure):
+    """Blocks or drums stacked on the ground, tapered where asked for."""
+
+    word: ClassVar = "column"
+    kind: Literal["column"]
+    rocks_as: ClassVar[RocksAs] = "block"
+    starter: ClassVar = {"height": "4.0"}
+    width: Length = key(about="width at the base; of round drums the diameter, over the corners or arrises", gt=0)
+    height: Length | None = key(None, "total height, shared equally by the drums", gt=0)
+    drums: int = key(1, "number of equal drums", ge=1, le=2000)
+    heights: list[Length] = key([], "heights of the drums from below, instead of height and drums", max_length=2000)
+    top_width: Length | None = key(None, "width at the top; default as at the base", gt=0)
+    depth: Length = key(1.0, "depth out of plane", gt=0)
+    section: Literal["rectangle", "round"] = key("rectangle", "of the drums: rectangles of width and depth, or round")
+    sides: int = key(24, "round: flat facets, or flutes, around", ge=3, le=96)
+    flute_depth: Length = key(0.0, "round: how deep the flutes are cut at the base, each by two flat facets", ge=0)
+    dowels: Annotated[Force, Field(gt=0)] | Literal["unbroken"] | None = key(
+        None, 'dowels in the axis between the drums: the shear each bears, or "unbroken"'
+    )
+    dowel_reach: Length | None = key(
+        None,
+        "`dem`: how far each dowel reaches into the drum above; drums that part farther have lost it; default: never lost",
+        gt=0,
+    )
+
+    @model_validator(mode="after")
+    def _one_height(self) -> "Column":
+        if (self.height is None) == (not self.heights):
+            raise ValueError("give height (and drums), or heights, one of the two")
+        if self.heights and self.drums != 1:
+            raise ValueError("heights already tells the number of drums")
+        if any(h <= 0.0 for h in self.heights):
+            raise ValueError("every one of heights must be above zero")
+        given = self.model_fields_set
+        if self.section == "rectangle" and (wrong := given & {"sides", "flute_depth"}):
+            raise ValueError(f'{min(wrong)} is of round drums: section = "round"')
+        if self.section == "round" and "depth" in given:
+            raise ValueError("depth is of rectangular drums; round ones have their width as a diameter")
+        if self.dowel_reach is not None and self.dowels is None:
+            raise ValueError("dowel_reach is of dowels: say what shear they bear")
+        if self.flute_depth >= 0.25 * self.width:
+            raise ValueError(f"flute_depth {self.flute_depth:g} m is not below a quarter of the width {self.width:g} m")
+        return self
+
+    @property
+    def drum_heights(self) -> list[float]:
+        """Heights of the drums from below [m]."""
+        return [self.height / self.drums] * self.drums if self.height is not None else self.heights
+
+    def assembly(self, density: float, folder: Path) -> Assembly:
+        if self.section == "round":
+            raise NoView(
+                "a column of round drums is no plane section; `tilt` and `dem` look at its solids",
+                ("structure", "section"),
+            )
+        if self.dowels is not None:
+            raise NoView(
+                "dowels are known in space alone: ask `tilt` with a direction, or leave them out",
+                ("structure", "dowels"),
+            )
+        return make_column(self.width, self.drum_heights, self.top_width, density, self.depth)

@@ -1,0 +1,426 @@
+"""A building of walls on a plan: storeys, openings, flanges, floors, rods (`building`)."""
+
+from collections import Counter
+from itertools import pairwise
+from typing import Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from extrados.model.errors import BadGeometry
+from extrados.model.places import Opening, Range
+from extrados.model.structure import Structure
+from extrados.schema.quantities import Force, Length, Stiffness, Stress
+from extrados.schema.table import Table, key
+
+#: Distance within which two walls meet [m]
+MEETS = 1e-6
+#: Cosine of the angle of walls that run side by side
+PARALLEL = 0.99
+PlanPoint = Annotated[list[Length], Field(min_length=2, max_length=2)]
+Place = Annotated[list[Length], Field(min_length=3, max_length=3)]
+
+
+class Lintel(Table):
+    """A beam over an opening that stays elastic, of the wall's thickness."""
+
+    depth: Length = key(about="height of the beam", gt=0)
+    bearing: Length = key(0.0, "length on the wall at each side", ge=0)
+    material: str | None = key(None, "a name of [materials]; default [material], uncracked")
+
+
+class WallOpening(Table):
+    """A rectangular door or window."""
+
+    storey: int = key(1, "the storey it is in, from 1 at the ground", ge=1)
+    x: Range = key(about="[from, to] along the wall from its start")
+    z: Range = key(about="[from, to] above the floor of the storey")
+    lintel: Lintel | None = key(None, "beam over it")
+
+    @model_validator(mode="after")
+    def _area(self) -> "WallOpening":
+        Opening(x=self.x, y=self.z)
+        for name, (low, high) in (("x", self.x), ("z", self.z)):
+            if high - low <= 2 * MEETS:
+                raise ValueError(
+                    f"{name}: the opening is {high - low:.3g} m wide or high; expected more than {2 * MEETS:g} m"
+                )
+        return self
+
+
+class PlanWall(Table):
+    """A plane wall: a line on the plan, of one thickness or one for each storey."""
+
+    name: str = key(about="what answers call it", min_length=1, max_length=40)
+    start: PlanPoint = key(about="[x, y] on the plan where its middle plane starts")
+    end: PlanPoint = key(about="[x, y] where it ends")
+    thickness: Length | None = key(None, "thickness; or give thicknesses", gt=0)
+    thicknesses: list[Length] = key([], "one for each of its storeys, from the lowest", max_length=50)
+    storeys: list[int] | None = key(None, "[first, last] storey; default all", min_length=2, max_length=2)
+    openings: list[WallOpening] = key([], "doors and windows", max_length=200)
+    material: str | None = key(None, "a name of [materials]; default [material]")
+
+    @model_validator(mode="after")
+    def _long(self) -> "PlanWall":
+        if not self.length > MEETS:
+            raise ValueError("start and end are the same point")
+        if (self.thickness is None) == (not self.thicknesses):
+            raise ValueError("expected either thickness or thicknesses")
+        if not all(t > 0.0 for t in self.thicknesses):
+            raise ValueError("thicknesses: each must be above 0")
+        return self
+
+    @property
+    def length(self) -> float:
+        """Length on the plan [m]."""
+        return float(np.hypot(*np.subtract(self.end, self.start)))
+
+    @property
+    def direction(self) -> np.ndarray:
+        """Unit vector on the plan from start to end."""
+        return np.subtract(self.end, self.start) / self.length
+
+
+class Corner(Table):
+    """How two walls that meet hang together."""
+
+    walls: list[str] = key(about="names of the two walls; the second abuts on the first", min_length=2, max_length=2)
+    bond: Literal["bonded", "weak", "joint", "open"] = key(
+        about="bonded: one masonry; weak: the column of elements of the second wall beside the first has less strength; "
+        "joint: one of [joints] between them, which opens, slides up and down, and crushes; open: nothing but floors holds "
+        "them together"
+    )
+    strength: float = key(0.5, "of a weak corner: its tensile strength over that of the wall", gt=0, le=1)
+
+    @model_validator(mode="after")
+    def _two(self) -> "Corner":
+        if self.walls[0] == self.walls[1]:
+            raise ValueError(f"walls: '{self.walls[0]}' stands twice; expected two walls that meet")
+        return self
+
+
+class Bed(Table):
+    """A bed joint of [joints] all along a height of some walls: it opens, slides along the wall, and crushes."""
+
+    name: str | None = key(None, 'what answers and [[joints.types]] call it; default "bed 1" and so on', max_length=40)
+    storey: int = key(1, "the storey it is in, from 1 at the ground", ge=1)
+    z: Length = key(0.0, "height above the floor of the storey; 0 in the first is the sole", ge=0)
+    walls: list[str] = key([], "names of the walls that it runs through; default all of the storey", max_length=200)
+
+
+class StoreyFloor(Table):
+    """A floor or roof on top of a storey: a membrane between walls, or joists, and what it carries."""
+
+    storey: int = key(about="the storey that it lies on", ge=1)
+    kind: Literal["rigid", "flexible", "joists", "none"] = key(
+        "flexible",
+        "flexible: a membrane of young times thickness; rigid: a concrete slab's, 30 GPa and 0.2 m, which is as good as "
+        "rigid; joists: bars across it in one direction; none: only its load",
+    )
+    walls: list[str] | None = key(
+        None,
+        "names of the walls around it, in order; default, where they make one ring, all of the storey",
+        min_length=3,
+    )
+    young: Stress | None = key(None, "of a flexible floor: its modulus; of joists: that of their wood", gt=0)
+    thickness: Length | None = key(None, "of a flexible floor", gt=0)
+    poisson: float = key(0.25, "of a flexible floor", ge=0, lt=0.5)
+    joist_area: Annotated[float, Field(gt=0)] | None = key(None, "of joists: cross-section of one in m^2")
+    joist_spacing: Length | None = key(None, "of joists: their distance", gt=0)
+    load: Stress = key(0.0, "weight of the floor with what lies on it, per area", ge=0)
+    bears_on: list[str] = key([], "walls that carry the load, by their length; default all around it", max_length=100)
+
+    @model_validator(mode="after")
+    def _whole(self) -> "StoreyFloor":
+        needed = {"flexible": ("young", "thickness"), "joists": ("young", "joist_area", "joist_spacing")}.get(
+            self.kind, ()
+        )
+        for name in ("young", "thickness", "joist_area", "joist_spacing"):
+            if (getattr(self, name) is None) == (name in needed):
+                raise ValueError(f"a floor of kind '{self.kind}' {'needs' if name in needed else 'takes no'} {name}")
+        if self.kind == "joists" and len(set(self.bears_on)) != 2:
+            raise ValueError("bears_on: of joists, expected the two walls that they reach from and to")
+        if self.walls is not None and (twice := [name for name, n in Counter(self.walls).items() if n > 1]):
+            raise ValueError(f"walls: wall '{twice[0]}' stands twice")
+        return self
+
+
+class Rod(Table):
+    """A tie rod between the nodes nearest to two places."""
+
+    start: Place = key(about="[x, y, z] of one end")
+    end: Place = key(about="[x, y, z] of the other end")
+    area: Annotated[float, Field(gt=0)] = key(about="cross-section in m^2")
+    material: str = key(about="a name of [materials]")
+    prestress: Force = key(0.0, "force before the building moves, tension", ge=0)
+
+
+class Prop(Table):
+    """The top of a storey of a wall that cannot move across its plane: what holds it does not move."""
+
+    wall: str = key(about="name of the wall, along x or y")
+    storey: int = key(about="on top of this storey", ge=1)
+
+
+class Prestress(Table):
+    """A vertical force along the top of a wall, of post-tensioning or of what stands on it."""
+
+    wall: str = key(about="name of the wall")
+    force: Force = key(about="downward, in all, spread evenly", gt=0)
+    level: Annotated[int, Field(ge=1)] | None = key(None, "on top of this storey; default the wall's last")
+
+
+class Plan(Structure):
+    """A building of plane walls on a plan, storey upon storey; z is up, the ground at 0."""
+
+    word: ClassVar = "building"
+    kind: Literal["building"]
+    starter_analysis: ClassVar = "pushover"
+    starter: ClassVar = {
+        "storeys": '["3.0 m", "2.8 m"]',
+        "walls": """[
+    { name = "front", start = [0, 0], end = [6, 0], thickness = 0.3, openings = [{ storey = 1, x = [1, 2], z = [0, 2.1] }, { storey = 2, x = [1, 2], z = [0.9, 2.1] }] },
+    { name = "right", start = [6, 0], end = [6, 5], thickness = 0.3 },
+    { name = "back", start = [6, 5], end = [0, 5], thickness = 0.3 },
+    { name = "left", start = [0, 5], end = [0, 0], thickness = 0.3 },
+]""",
+        "floors": '[{ storey = 1, young = "50 MPa", thickness = "5 cm", load = "2 kPa" }, { storey = 2, young = "50 MPa", thickness = "5 cm", load = "1 kPa" }]',
+    }
+    storeys: list[Length] = key(about="heights of the storeys, from the ground up", min_length=1, max_length=50)
+    walls: list[PlanWall] = key(about="[[structure.walls]]", min_length=1, max_length=200)
+    corners: list[Corner] = key([], "where walls meet and are not one masonry, [[structure.corners]]", max_length=1000)
+    beds: list[Bed] = key([], "bed joints that may slide, [[structure.beds]]", max_length=100)
+    floors: list[StoreyFloor] = key([], "[[structure.floors]]", max_length=200)
+    rods: list[Rod] = key([], "[[structure.rods]]", max_length=200)
+    props: list[Prop] = key([], "[[structure.props]]", max_length=200)
+    prestress: list[Prestress] = key([], "[[structure.prestress]]", max_length=200)
+    assumed: list[str] = key(
+        [], "what the sources of the deck do not say and it assumes: every answer repeats it", max_length=100
+    )
+    foundation_stiffness: Stiffness | None = key(
+        None, "vertical stiffness of the ground per area of the walls' soles; default rigid", gt=0
+    )
+
+    @model_validator(mode="after")
+    def _sound(self) -> "Plan":
+        if not all(h > 0.0 for h in self.storeys):
+            raise ValueError("storeys: every height must be above 0")
+        names = [wall.name for wall in self.walls]
+        for w, wall in enumerate(self.walls):
+            if wall.name in names[:w]:
+                raise ValueError(f"walls[{w}].name: the name '{wall.name}' stands twice")
+            self._check_wall(w, wall)
+        for what, named in (
+            *((f"corners[{k}].walls", corner.walls) for k, corner in enumerate(self.corners)),
+            *((f"beds[{k}].walls", bed.walls) for k, bed in enumerate(self.beds)),
+            *((f"floors[{k}].walls", floor.walls or []) for k, floor in enumerate(self.floors)),
+            *((f"floors[{k}].bears_on", floor.bears_on) for k, floor in enumerate(self.floors)),
+            *((f"prestress[{k}].wall", [part.wall]) for k, part in enumerate(self.prestress)),
+            *((f"props[{k}].wall", [part.wall]) for k, part in enumerate(self.props)),
+        ):
+            if strange := [name for name in named if name not in names]:
+                raise ValueError(f"{what}: there is no wall '{strange[0]}'; there are {', '.join(names)}")
+        heights: dict[float, int] = {}
+        for k, bed in enumerate(self.beds):
+            if bed.storey > len(self.storeys):
+                raise ValueError(f"beds[{k}].storey: there is no storey {bed.storey}, there are {len(self.storeys)}")
+            if bed.z >= self.storeys[bed.storey - 1]:
+                raise ValueError(
+                    f"beds[{k}].z: {bed.z:g} m is not below the top of a storey of {self.storeys[bed.storey - 1]:g} m; "
+                    "that on top of it is z = 0 of the next"
+                )
+            if (first := heights.setdefault(round(self.bed_height(bed), 9), k)) != k:
+                raise ValueError(f"beds[{k}]: bed {first + 1} lies at the same height; name all of its walls there")
+        names_of_joints = self.joint_names
+        for k, name in enumerate(names_of_joints):
+            if name in names_of_joints[:k]:
+                raise ValueError(f"beds: the name '{name}' of a joint stands twice")
+        told: dict[frozenset[str], int] = {}
+        for k, corner in enumerate(self.corners):
+            if (first := told.setdefault(frozenset(corner.walls), k)) != k:
+                raise ValueError(f"corners[{k}].walls: corner {first + 1} is of the same two walls")
+        for k, prop in enumerate(self.props):
+            if np.abs(self.wall(prop.wall).direction).max() < 1.0 - 1e-9:
+                raise ValueError(
+                    f"props[{k}].wall: wall '{prop.wall}' stands askew on the plan; a prop holds walls along x or y"
+                )
+            self._check_storey(f"props[{k}].storey", prop.wall, prop.storey)
+        for k, part in enumerate(self.prestress):
+            if part.level is not None:
+                self._check_storey(f"prestress[{k}].level", part.wall, part.level)
+        for k, floor in enumerate(self.floors):
+            if floor.storey > len(self.storeys):
+                raise ValueError(
+                    f"floors[{k}].storey: there is no storey {floor.storey}, there are {len(self.storeys)}"
+                )
+        return self
+
+    def _check_storey(self, what: str, wall: str, storey: int) -> None:
+        first, last = self.reach(self.wall(wall))
+        if not first <= storey <= last:
+            raise ValueError(f"{what}: wall '{wall}' has no storey {storey}, it has {first} to {last}")
+
+    def _check_wall(self, w: int, wall: PlanWall) -> None:
+        first, last = self.reach(wall)
+        if not 1 <= first <= last <= len(self.storeys):
+            raise ValueError(
+                f"walls[{w}].storeys: wall '{wall.name}': storeys {first} to {last}, there are 1 to {len(self.storeys)}"
+            )
+        if wall.thicknesses and len(wall.thicknesses) != last - first + 1:
+            raise ValueError(
+                f"walls[{w}].thicknesses: wall '{wall.name}': {len(wall.thicknesses)} thicknesses for {last - first + 1} storeys; "
+                "expected one for each"
+            )
+        for i, opening in enumerate(wall.openings):
+            at, said = f"walls[{w}].openings[{i}]", f"wall '{wall.name}', opening {i + 1}"
+            if not first <= opening.storey <= last:
+                raise ValueError(f"{at}: {said}: the wall has no storey {opening.storey}")
+            if opening.x[0] < 0.0 or opening.x[1] > wall.length:
+                raise ValueError(
+                    f"{at}: {said}: x from {opening.x[0]:g} to {opening.x[1]:g} m, the wall is {wall.length:g} m long"
+                )
+            tall = self.storeys[opening.storey - 1]
+            if opening.z[0] < 0.0 or opening.z[1] >= tall:
+                raise ValueError(
+                    f"{at}: {said}: z from {opening.z[0]:g} to {opening.z[1]:g} m does not fit in a storey of {tall:g} m"
+                )
+            above = float(sum(self.storeys[opening.storey - 1 : last])) - opening.z[1]
+            if opening.lintel is not None and opening.lintel.depth > above + MEETS:
+                raise ValueError(
+                    f"{at}.lintel: {said}: a lintel of {opening.lintel.depth:g} m under {above:g} m of wall"
+                )
+
+    def reach(self, wall: PlanWall) -> tuple[int, int]:
+        """First and last storey of a wall."""
+        return (wall.storeys[0], wall.storeys[1]) if wall.storeys is not None else (1, len(self.storeys))
+
+    def bed_height(self, bed: Bed) -> float:
+        """Height of a bed joint above the ground [m]."""
+        return float(self.levels[bed.storey - 1] + bed.z)
+
+    @property
+    def joint_names(self) -> list[str]:
+        """Of the joints between walls, then of the bed joints."""
+        between = ["-".join(corner.walls) for corner in self.corners if corner.bond == "joint"]
+        return between + [bed.name or f"bed {k}" for k, bed in enumerate(self.beds, 1)]
+
+    @property
+    def levels(self) -> np.ndarray:
+        """Heights of the ground and of the top of each storey [m]."""
+        return np.concatenate([[0.0], np.cumsum(self.storeys)])
+
+    def foot_area(self, axis: int) -> float:
+        """Area of the walls' soles at the ground without doors [m^2], each times the share of its direction along x (0) or
+        y (1)."""
+        total = 0.0
+        for wall in self.walls:
+            if self.reach(wall)[0] == 1:
+                sole = self.strips(wall, 1)[0][0]
+                total += (wall.thickness or wall.thicknesses[0]) * sole * abs(wall.direction[axis])
+        return float(total)
+
+    @property
+    def wall_area(self) -> float:
+        """Of all walls in their planes, openings not deducted [m^2]."""
+        return float(
+            sum(
+                wall.length * np.diff(self.levels[[r[0] - 1, r[1]]])[0]
+                for wall in self.walls
+                if (r := self.reach(wall))
+            )
+        )
+
+    def strips(self, wall: PlanWall, storey: int) -> list[tuple[float, float, float]]:
+        """Masonry of a wall in a storey, from the bottom up: length, bottom and top above its floor [m] of each strip between
+        sills and heads of openings. What openings share is left out once."""
+        holes = [o for o in wall.openings if o.storey == storey]
+        heights = sorted({0.0, self.storeys[storey - 1], *(z for o in holes for z in o.z)})
+        found = []
+        for low, high in pairwise(heights):
+            cut, end = 0.0, 0.0
+            for left, right in sorted(tuple(o.x) for o in holes if o.z[0] < high and low < o.z[1]):
+                cut += max(right - max(left, end), 0.0)
+                end = max(end, right)
+            found.append((wall.length - cut, low, high))
+        return found
+
+    def wall(self, name: str) -> PlanWall:
+        """The wall of a name; StopIteration where there is none."""
+        return next(wall for wall in self.walls if wall.name == name)
+
+    def bond(self, one: str, two: str) -> Corner | None:
+        """What a deck says of the corner of two walls; None where they are one masonry."""
+        return next((c for c in self.corners if set(c.walls) == {one, two} and c.bond != "bonded"), None)
+
+    def around(self, floor: StoreyFloor) -> list[tuple[int, float, float]]:
+        """The walls around a floor in order: number, and the places along it where the one before and the one after meet it
+        [m]; BadGeometry where they make no ring."""
+        what = f"floor on storey {floor.storey}"
+        reach = [self.reach(wall) for wall in self.walls]
+        names = floor.walls or [w.name for w, r in zip(self.walls, reach, strict=True) if r[0] <= floor.storey <= r[1]]
+        walls = [next(i for i, w in enumerate(self.walls) if w.name == name) for name in names]
+        if floor.walls is None:
+            walls = _in_order(self, walls, what)
+        corners = []
+        for a, b in zip(walls, walls[1:] + walls[:1], strict=True):
+            at = meeting(self.walls[a], self.walls[b])
+            if at is None:
+                raise BadGeometry(f"{what}: walls '{self.walls[a].name}' and '{self.walls[b].name}' do not meet")
+            corners.append(at)
+        return [(w, corners[k - 1][1], corners[k][0]) for k, w in enumerate(walls)]
+
+
+def nearly_meeting(one: PlanWall, two: PlanWall) -> float | None:
+    """How far an end of one of two walls that do not meet stays from the middle of the other [m], where their thicknesses
+    reach over that; None elsewhere, and of walls side by side."""
+    if abs(float(np.dot(one.direction, two.direction))) > PARALLEL:
+        return None
+    gaps = []
+    for wall, other in ((one, two), (two, one)):
+        for end in (wall.start, wall.end):
+            along = np.clip(float(np.subtract(end, other.start) @ other.direction), 0.0, other.length)
+            gaps.append(float(np.hypot(*(np.asarray(other.start) + along * other.direction - end))))
+    reach = 0.5 * sum(max([wall.thickness or 0.0, *wall.thicknesses]) for wall in (one, two))
+    return min(gaps) if min(gaps) < reach else None
+
+
+def meeting(one: PlanWall, two: PlanWall) -> tuple[float, float] | None:
+    """Distances along two walls from their starts to where they meet [m]; None where they do not."""
+    a, b = np.asarray(one.start), np.asarray(two.start)
+    d, e = one.direction, two.direction
+    cross = d[0] * e[1] - d[1] * e[0]
+    if abs(cross) < 1e-9:  # side by side, or in one line: end to end
+        low, high = sorted((float((b - a) @ d), float((np.asarray(two.end) - a) @ d)))
+        aside = abs((b - a)[0] * d[1] - (b - a)[1] * d[0])
+        if aside < MEETS and min(high, one.length) - max(low, 0.0) > MEETS:
+            raise BadGeometry(
+                f"walls '{one.name}' and '{two.name}' lie on each other on the plan; one wall may have `thicknesses` by storey"
+            )
+        for s, p in ((0.0, one.start), (one.length, one.end)):
+            for t, q in ((0.0, two.start), (two.length, two.end)):
+                if np.hypot(*np.subtract(p, q)) < MEETS:
+                    return s, t
+        return None
+    gap = b - a
+    s, t = (gap[0] * e[1] - gap[1] * e[0]) / cross, (gap[0] * d[1] - gap[1] * d[0]) / cross
+    if not (-MEETS <= s <= one.length + MEETS and -MEETS <= t <= two.length + MEETS):
+        return None
+    return float(np.clip(s, 0.0, one.length)), float(np.clip(t, 0.0, two.length))
+
+
+def _in_order(plan: Plan, walls: list[int], what: str) -> list[int]:
+    """Walls that meet two others each, in the order of the ring they make."""
+    meets = {a: [b for b in walls if b != a and meeting(plan.walls[min(a, b)], plan.walls[max(a, b)])] for a in walls}
+    if any(len(others) != 2 for others in meets.values()):
+        raise BadGeometry(
+            f"{what}: the walls of the storey make no simple ring; name those around the floor by `walls`"
+        )
+    ring = [walls[0], meets[walls[0]][0]]
+    while len(ring) < len(walls):
+        after = [b for b in meets[ring[-1]] if b != ring[-2]]
+        if after[0] in ring:
+            raise BadGeometry(
+                f"{what}: the walls of the storey make more than one ring; name those around it by `walls`"
+            )
+        ring.append(after[0])
+    return ring

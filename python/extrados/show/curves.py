@@ -1,0 +1,70 @@
+"""Figures of failure curves beside each other (Figs 5-4, 5-5 and 5-15)."""
+
+from pathlib import Path
+
+import numpy as np
+
+from extrados.results.store import Stored
+from extrados.show import style
+
+LINES = ("-", "--", "-.", ":")
+#: Places of a legend outside of which curves would be hidden
+MOST_IN_AXES = 8
+
+
+def draw_failure_curves(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """The curves with the primary impulses of the motions, and the same over natural time and uplift."""
+    import matplotlib
+
+    r = run[name]
+    duration, amplitude = run.array(name, "duration"), run.array(name, "amplitude")
+    natural, slender = run.array(name, "natural_time"), bool(run.array(name, "slender").all())
+    first = {"step": "duration t_p of the first part [s]", "rectangular": "duration t_p [s]"}.get(
+        r.pulse, "period T_p [s]"
+    )
+    # beyond 0.6 of the map a line has less than three times the contrast to paper
+    shades = matplotlib.colormaps["cividis"](np.linspace(0.0, 0.6, len(r.curves)))
+    top = 1.1 * max([np.nanmax(amplitude, initial=0.0), *(abs(i.amplitude_g) for i in r.impulses)])
+    with style.figure(9.0, 4.6, columns=2, width_ratios=[1.25, 1]) as (fig, (plain, scaled)):
+        for k, curve in enumerate(r.curves):
+            look = {"color": shades[k], "linestyle": LINES[k % len(LINES)]}
+            plain.plot(duration[k], amplitude[k], label=curve.label, **look)
+            plain.axhline(curve.uplift_acceleration_g, color=shades[k], linewidth=0.6, linestyle=":")
+            ratio = amplitude[k] / curve.uplift_acceleration_g
+            scaled.plot(2.0 * np.pi * natural[k] / duration[k] if slender else duration[k] / natural[k], ratio, **look)
+        places = np.array([(i.period_s, abs(i.amplitude_g)) for i in r.impulses]).reshape(-1, 2)
+        if len(places):
+            falls = [sum(c.run_outcomes[k] == "collapse" for c in r.curves) for k in range(len(places))]
+            for marker, colour, text, some in (
+                ("o", style.THRUST, "brings all down", [k for k, n in enumerate(falls) if n == len(r.curves)]),
+                ("^", style.MODES[2], "brings some down", [k for k, n in enumerate(falls) if 0 < n < len(r.curves)]),
+                ("s", style.SAFE, "brings none down", [k for k, n in enumerate(falls) if n == 0]),
+            ):
+                if some:
+                    plain.plot(*places[some].T, marker, color=colour, markeredgecolor=style.EDGE, markersize=5,
+                               label=f"impulse of a motion that {text}")  # fmt: skip
+            style.letters(plain, places, [str(k + 1) for k in range(len(places))], style.EDGE)
+        plain.set_ylim(0.0, top)
+        plain.set_xlim(0.0, None)
+        plain.set_xlabel(first)
+        plain.set_ylabel("amplitude [g]")
+        plain.set_title(
+            f"Lowest failing {'train of sines' if max(c.cycles for c in r.curves) > 1 else r.pulse + ' pulse'}"
+        )
+        scaled.set_ylim(0.0, None)
+        if slender:
+            scaled.set_xlabel("frequency of the pulse over p")
+            scaled.set_ylabel("amplitude over g tan(alpha)")
+        else:
+            scaled.set_xlabel(first.replace("[s]", "/ sqrt(R/g)"))
+            scaled.set_ylabel("amplitude over the uplift acceleration")
+        scaled.set_title("Over natural time and uplift")
+        if len(r.curves) <= MOST_IN_AXES:
+            plain.legend(loc="upper right", frameon=True)
+        else:
+            style.legend_below(fig, plain)
+        caption = "Lowest amplitudes that bring each down (dotted: where it starts to rock), and the same over its natural time and its uplift."
+        if len(places):
+            named = ", ".join(f"{k + 1} {i.name}" for k, i in enumerate(r.impulses))
+            caption += f" Points: primary impulses of {named}."
+        return [(style.save(fig, folder, name), caption)]

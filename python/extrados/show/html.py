@@ -1,0 +1,61 @@
+"""A document as one self-contained HTML page, which prints on A4."""
+
+import base64
+from pathlib import Path
+
+import jinja2
+
+from extrados.show.document import Document, Figure, Heading
+
+TEMPLATE = """<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><title>{{ document.title }}</title>
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
+<style>
+@page{size:A4;margin:18mm 16mm}
+body{font:15px/1.5 Georgia,serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#222}
+h1{font-size:1.6rem}h2{font-size:1.25rem;border-bottom:1px solid #ccc;margin-top:2.2rem}h3{font-size:1.05rem;margin-top:1.6rem}
+p{white-space:pre-line}
+p.answer{background:#f6f2ea;border-left:4px solid #b3261e;padding:.7rem 1rem}
+p.bad{background:#fbe9e7;border-left:4px solid #b3261e;padding:.7rem 1rem}
+p.warn{background:#fff7e0;border-left:4px solid #d9a400;padding:.5rem 1rem}
+figure{margin:1.2rem 0;break-inside:avoid}figure img{max-width:100%}figcaption{font-size:.85rem;color:#555}
+table{border-collapse:collapse;font:13px/1.4 sans-serif}td,th{border-bottom:1px solid #ddd;padding:.15rem .7rem .15rem 0;text-align:left;vertical-align:top;overflow-wrap:anywhere;min-width:3.5em}
+tr{break-inside:avoid}td.stands,td.holds{color:#3b7a57;font-weight:bold}td.collapses,td.cannot-stand,td.fails{color:#b3261e;font-weight:bold}td.open{color:#a86400;font-weight:bold}
+nav ol{columns:2}nav a{color:inherit}
+pre{background:#f7f7f7;padding:.7rem;overflow:auto;font-size:12px;white-space:pre-wrap}footer{margin-top:3rem;font-size:.8rem;color:#666}
+@media print{body{font-size:10.5pt;margin:0;max-width:none;padding:0}h2,h3{break-after:avoid}.fresh{break-before:page}table{font-size:8.5pt}}
+</style></head><body>
+<h1>{{ document.title }}</h1>
+<table>{% for label, text in document.facts %}<tr><th>{{ label }}</th><td>{{ text }}</td></tr>{% endfor %}</table>
+<nav><h2>Contents</h2><ol>{% for text in contents %}<li><a href="#part-{{ loop.index }}">{{ text }}</a></li>{% endfor %}</ol></nav>
+{% for kind, b, number in blocks %}
+{% if kind == "Heading" %}<h{{ b.level + 1 }}{% if b.level == 1 %} id="part-{{ number }}"{% endif %}{% if b.fresh %} class="fresh"{% endif %}>{% if b.level == 1 %}{{ number }} {% endif %}{{ b.text }}</h{{ b.level + 1 }}>
+{% elif kind == "Words" %}<p{% if b.look %} class="{{ b.look }}"{% endif %}>{{ b.text }}</p>
+{% elif kind == "Table" %}<table>{% if b.head %}<tr>{% for cell in b.head %}<th>{{ cell }}</th>{% endfor %}</tr>{% endif %}
+{% for row in b.rows %}<tr>{% for cell in row %}{% if loop.first %}<th>{{ cell }}</th>{% else %}<td{% if cell in looks %} class="{{ cell|replace(' ', '-') }}"{% endif %}>{{ cell }}</td>{% endif %}{% endfor %}</tr>{% endfor %}</table>
+{% elif kind == "Figure" %}<figure><img alt="{{ b.caption }}"{% if b.width < 1 %} style="max-width:{{ (100 * b.width)|round|int }}%"{% endif %} src="data:image/svg+xml;base64,{{ images[b.name] }}"><figcaption>Figure {{ number }}. {{ b.caption }}</figcaption></figure>
+{% else %}<pre>{{ b.text }}</pre>{% endif %}{% endfor %}
+<footer>{{ document.foot }}</footer>
+</body></html>
+"""
+#: Words of verdicts that a table shows in their colour
+LOOKS = ("stands", "collapses", "cannot stand", "open", "holds", "fails")
+
+
+def page(document: Document, folder: Path) -> str:
+    """The page; pictures are folder/NAME.svg."""
+    numbers = {"Heading": 0, "Figure": 0}
+    blocks = []
+    for block in document.blocks:
+        kind = type(block).__name__
+        if (isinstance(block, Heading) and block.level == 1) or isinstance(block, Figure):
+            numbers[kind] += 1
+        blocks.append((kind, block, numbers.get(kind, 0)))
+    images = {
+        b.name: base64.b64encode((folder / f"{b.name}.svg").read_bytes()).decode()
+        for b in document.blocks if isinstance(b, Figure)
+    }  # fmt: skip
+    return jinja2.Environment(autoescape=True).from_string(TEMPLATE).render(
+        document=document, blocks=blocks, images=images, looks=LOOKS,
+        contents=[b.text for b in document.blocks if isinstance(b, Heading) and b.level == 1],
+    )  # fmt: skip

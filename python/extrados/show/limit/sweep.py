@@ -1,0 +1,157 @@
+"""Figures of many sections: a key that varies, a survey, random surveys of one."""
+
+from pathlib import Path
+
+import numpy as np
+
+from extrados.results.store import Stored
+from extrados.show import style
+from extrados.show.limit import section
+
+MOST_NAMED = 8  # mechanisms in a legend
+
+
+def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Capacity curve with numbered mechanisms, and one section of each mechanism."""
+    r = run[name]
+    value, gamma, number = run.array(name, "value"), run.array(name, "gamma"), run.array(name, "mechanism")
+    tilt = np.degrees(np.arctan(gamma))
+    with style.figure(7.5, 4.2) as (fig, (ax,)):
+        ax.plot(value, tilt, "-", color=style.EDGE, linewidth=1.0, zorder=2)
+        seen = [k for k in range(1, int(number.max()) + 1) if (number == k).any()]
+        for k in seen:
+            here = number == k
+            ax.plot(
+                value[here],
+                tilt[here],
+                "o",
+                markersize=3.5,
+                color=section.CHAIN_COLOURS[(k - 1) % len(section.CHAIN_COLOURS)],
+                label=f"mechanism {k}" if k in seen[:MOST_NAMED] else None,
+                zorder=3,
+            )
+        if "fractured" in run.arrays[name]:
+            cracked = np.degrees(np.arctan(run.array(name, "fractured")))
+            ax.plot(value, cracked, "--", color=style.HINGE, linewidth=1.0, label="buttress cracked")
+        if "buttress_alone" in run.arrays[name]:
+            alone = np.degrees(np.arctan(run.array(name, "buttress_alone")))
+            ax.plot(value, alone, "-.", color=style.GROUND, linewidth=1.0, label="buttress alone")
+        crowded = 0.04 * (value[-1] - value[0])
+        shown = -np.inf
+        for change in r.changes:
+            ax.axvline(change.value, color=style.EDGE, linestyle=":", linewidth=0.7)
+            if change.value - shown < crowded:
+                continue
+            shown = change.value
+            ax.annotate(
+                f"{change.before or 'falls'}|{change.after or 'falls'}", (change.value, 1.0), xycoords=("data", "axes fraction"),
+                ha="center", va="bottom", fontsize=7,
+            )  # fmt: skip
+        ax.plot(
+            r.optimum_value,
+            r.optimum_tilt_angle_deg,
+            "*",
+            color="black",
+            markersize=9,
+            zorder=4,
+            label=f"greatest: {r.optimum_value:.4g}",
+        )
+        for gap in r.gaps:
+            ax.plot(gap.value, 0.0, "x" if gap.status == "cannot-stand" else ".", color=style.THRUST, markersize=4)
+        if r.upper_bound_values:
+            bounded = np.isin(value, r.upper_bound_values)
+            ax.plot(
+                value[bounded], tilt[bounded], "v", markersize=6, fillstyle="none", color=style.HINGE, zorder=4,
+                label="upper bound (dilatant friction)",
+            )  # fmt: skip
+        ax.set_ylim(bottom=0.0)
+        ax.set_xlabel(f"{spoken(r.vary)} [{r.unit}]" if r.unit else spoken(r.vary))
+        ax.set_ylabel("tilt at collapse [deg]")
+        ax.legend(loc="best")
+        found = [
+            (
+                style.save(fig, folder, f"{name}-curve"),
+                "Tilt at collapse; dotted: changes of mechanism; crosses: values at which the structure cannot stand; "
+                "points on the axis: values without an answer or without a limit.",
+            )
+        ]
+    if len(run.array(name, "example")):
+        examples, moved = (list(section.paths(run, name, what).values()) for what in ("example", "example_moved"))
+        of = run.array(name, "example_mechanism")
+        numbers = np.unique(of)[:6]
+        with style.figure(3.4 * len(numbers), 3.8, columns=len(numbers)) as (fig, axes):
+            for ax, k in zip(axes, numbers, strict=True):
+                section.stone(ax, [examples[i] for i in np.flatnonzero(of == k)], ghost=True)
+                section.stone(ax, [moved[i] for i in np.flatnonzero(of == k)])
+                ax.set_title(f"Mechanism {k}")
+                style.section_axes(ax)
+            found.append(
+                (
+                    style.save(fig, folder, f"{name}-mechanisms"),
+                    "; ".join(f"{m.number}: {m.hinges}" for m in r.mechanisms[:6]),
+                )
+            )
+    return found
+
+
+def spoken(key: str) -> str:
+    """A key of a deck as an axis calls it: "ties.0.yield_force" is the yield force of tie 1."""
+    *way, last = key.replace("_", " ").split(".")
+    of = ""
+    for part in way:
+        if part.isdigit():
+            of = f"{of.removesuffix('s')} {int(part) + 1}"
+        elif part in ("left", "right"):
+            last = f"{part} {last}"
+        elif part != "structure":
+            of += f" {'of' if not of else 'in'} {'the ' if part in ('joints', 'material') else ''}{part}"
+    return last + of
+
+
+def draw_survey(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Capacities of all sections in order."""
+    gamma = run.array(name, "gamma")
+    names = run.array(name, "section_name")
+    order = np.argsort(gamma)
+    order = order[np.isfinite(gamma[order])]
+    if not len(order):
+        return []
+    few = len(order) <= 40
+    with style.figure(7.5, max(3.0, 0.22 * len(order) + 1.0) if few else 4.0) as (fig, (ax,)):
+        if few:
+            ax.barh(np.arange(len(order)), gamma[order], color=style.STONE, edgecolor=style.EDGE)
+            ax.set_yticks(np.arange(len(order)), [str(names[i]) for i in order])
+            ax.set_xlabel("collapse acceleration [g]")
+        else:
+            ax.plot(gamma[order], (np.arange(len(order)) + 1.0) / len(order), color=style.THRUST)
+            ax.set_xlabel("collapse acceleration [g]")
+            ax.set_ylabel("share of sections at or below")
+        return [(style.save(fig, folder, name), "Collapse acceleration of the sections that stand.")]
+
+
+def draw_imperfections(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Capacities of the random surveys: how many bear at most how much, the band, and the survey that is given."""
+    r = run[name]
+    gamma = run.array(name, "gamma")
+    lesser = np.sort(np.nan_to_num(gamma.min(axis=1), nan=0.0))
+    with style.figure(7.5, 3.8) as (fig, (ax,)):
+        share = np.arange(1, len(lesser) + 1) / len(lesser)
+        ax.axvspan(
+            r.low_collapse_acceleration_g, r.high_collapse_acceleration_g, color=style.STONE, zorder=0,
+            label=f"nine in ten: {r.low_collapse_acceleration_g:.4f} to {r.high_collapse_acceleration_g:.4f} g",
+        )  # fmt: skip
+        ax.step(
+            lesser,
+            share,
+            where="post",
+            color=style.THRUST,
+            label=f"{r.count} surveys within {1e3 * r.deviation_m:.3g} mm",
+        )
+        given = r.given_collapse_acceleration_g
+        ax.axvline(given, color=style.HINGE, linestyle="--", label=f"as given: {given:.4f} g")
+        ax.set_xlabel("collapse acceleration, the lesser of both senses [g]")
+        ax.set_ylabel("share of surveys at or below")
+        ax.set_ylim(0.0, 1.0)
+        ax.set_title("Capacity within the tolerance of the survey")
+        style.legend_below(fig, ax)
+        return [(style.save(fig, folder, name), "Capacities of random surveys of the same stones.")]

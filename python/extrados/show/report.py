@@ -1,0 +1,92 @@
+"""Figures and the report of a stored run: one self-contained HTML page, and on A4 paper as PDF."""
+
+import os
+import sys
+import tempfile
+import threading
+from collections.abc import Callable
+from datetime import UTC, datetime
+from functools import partial
+from pathlib import Path
+
+from extrados import kinds
+from extrados.results import written
+from extrados.results.store import REPORT, SUMMARY, Stored, StoreError, read, reason
+from extrados.show import html, typeset
+from extrados.show.building import draw_building
+from extrados.show.drawn import figures_of
+from extrados.show.forked import Lost, side_by_side
+from extrados.show.telling import told
+
+#: Figures of an analysis with their captions
+Figures = list[tuple[str, str]]
+PRINTED = "report.pdf"
+
+
+def draw(run: Stored, folder: Path) -> dict[str, Figures]:
+    """All figures of a run into folder/figures; analysis name -> (figure name, caption).
+
+    StoreError where the stored results lack what a figure needs, or a figure cannot be written.
+    """
+    shown = [a for a in run.analyses if a["kind"] in kinds.ANALYSES and run.arrays.get(a["name"])]
+    (folder / "figures").mkdir(exist_ok=True)
+    tasks = [(run, a["name"], figures_of(run, a["name"]), folder) for a in shown]
+    return {a["name"]: figures for a, figures in zip(shown, _drawn(tasks), strict=True)}
+
+
+def _draw_one(run: Stored, name: str, figures: Callable[..., Figures], folder: Path) -> Figures:
+    """The figures of one analysis."""
+    try:
+        return figures(run, name, folder)
+    except OSError as error:
+        raise StoreError(f"{run.folder}: figures could not be written: {reason(error)}") from None
+    except KeyError as error:
+        raise StoreError(f"{run.folder}: the results are damaged: {name}: {error.args[0]}") from None
+
+
+def _drawn(tasks: list[tuple]) -> list[Figures]:
+    """The figures of each analysis, drawn side by side where this process can fork and it is worth it.
+
+    A process with threads of its own is not forked: one of them might hold a lock that the child then waits for.
+    """
+    workers = min(len(os.sched_getaffinity(0)) if sys.platform == "linux" else 1, len(tasks))
+    if workers < 2 or threading.active_count() > 1:
+        return [_draw_one(*task) for task in tasks]
+    try:
+        return side_by_side([partial(_draw_one, *task) for task in tasks], workers)
+    except Lost as error:
+        raise StoreError(f"{tasks[0][0].folder}: figures could not be drawn: {error}; the results are kept") from None
+
+
+def write_report(folder: Path, printed: bool | None = None) -> tuple[Path, dict[str, Figures]]:
+    """Draw a stored run and write report.html: the report, and the figures with captions by analysis.
+
+    printed: also report.pdf; None: where the run holds an assessment and the typesetter is there. Drawn aside and put in
+    place when all is done. A figure or report that is there and was not written by extrados, or was changed since, stays:
+    the new one is put beside it under another name, which is logged. StoreError where that is not possible.
+    """
+    folder = Path(folder)
+    run = read(folder)
+    within = Path(os.path.abspath(folder)).parent
+    if printed is None:
+        printed = any(a["kind"] == "assess" for a in run.analyses) and typeset.available()
+    try:
+        with tempfile.TemporaryDirectory(prefix=f".{folder.name}.drawing-", dir=within) as place:
+            scratch = Path(place)
+            drawn = draw(run, scratch)
+            building = draw_building(run, scratch)
+            document = told(run, drawn, building, _written_on(folder))
+            (scratch / REPORT).write_text(html.page(document, scratch), encoding="utf-8", errors="backslashreplace")
+            if printed:
+                (scratch / PRINTED).write_bytes(typeset.pdf(document, scratch))
+            with written.alone(within):
+                ours = (REPORT, PRINTED) if printed else (REPORT,)
+                names = written.put(scratch, folder, lambda name: name in ours or name.startswith("figures/"))
+    except OSError as error:
+        raise StoreError(f"{folder}: the report could not be written: {reason(error)}") from None
+    return folder / names[REPORT], drawn
+
+
+def _written_on(folder: Path) -> str:
+    """The day on which the results were written."""
+    return datetime.fromtimestamp((folder / SUMMARY).stat().st_mtime, UTC).date().isoformat()

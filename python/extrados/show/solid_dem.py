@@ -1,0 +1,166 @@
+"""Figures of discrete elements in space: drawings at telling times, histories, energies, contacts, the film."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, ListedColormap, Normalize, to_rgb
+from matplotlib.figure import Figure
+
+from extrados.results.dem import SolidDemRun, SolidDemTilt
+from extrados.results.store import Stored
+from extrados.schema.constants import GRAVITY
+from extrados.show import film, scene, style
+from extrados.show.solids import FILM_PIXELS, VIEW, faces_of
+
+SHOWN = 6
+MOVED = LinearSegmentedColormap.from_list("moved", [style.STONE, "#f2c28b", "#c8553d"])
+
+
+def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Everything that a run or a tilt test of solids has to show."""
+    found = [_snapshots(run, name, folder)]
+    if "shift" in run.arrays[name]:
+        found += [_histories(run, name, folder), _contacts(run, name, folder)]
+        _film(run, name, folder)
+    return found
+
+
+class _Stage:
+    """What stays the same from one picture of a run to the next; colours tell how far a stone has gone."""
+
+    def __init__(self, run: Stored, name: str, picks: list[int], pixels: int = scene.PIXELS):
+        self.run, self.name, self.pixels = run, name, pixels
+        self.pose, self.time = run.array(name, "pose"), run.array(name, "time")
+        self.still = faces_of(run, name)
+        size = float(np.ptp(self.still.vertices, axis=0).max())
+        low, high = self.still.vertices.min(axis=0) - 0.5 * size, self.still.vertices.max(axis=0) + 0.5 * size
+        ends = np.concatenate([self.still.vertices, *(faces_of(run, name, self.pose[k]).vertices for k in picks)])
+        self.frame = scene.frame_of(np.clip(ends, low, high), VIEW)  # what flies farther leaves the picture
+        far = np.linalg.norm(self.pose[:, :, :3] - self.pose[0, :, :3], axis=2)
+        self.share = far / max(float(far[picks].max()), 1e-12) if far.max() > 1e-4 * size else 0.0 * far
+        self.farthest = float(far[picks].max())
+
+    @property
+    def aspect(self) -> float:
+        """Height over width."""
+        left, right, low, high = self.frame
+        return (high - low) / (right - left)
+
+    def image(self, k: int) -> np.ndarray:
+        colours = (
+            np.array(to_rgb(style.STONE)) if not self.share.any() else MOVED(np.clip(self.share[k], 0.0, 1.0))[:, :3]
+        )
+        colours = np.broadcast_to(colours, (self.pose.shape[1], 3))
+        return scene.picture(faces_of(self.run, self.name, self.pose[k]), VIEW, self.frame, colours, self.pixels)
+
+    def show(self, ax: Axes, k: int, push: float | None) -> None:
+        scene.show(ax, self.image(k), self.frame)
+        scene.ground(ax, self.still.vertices, VIEW)
+        scene.compass(ax, self.still.vertices, VIEW, push)
+
+
+def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    r, times = run[name], run.array(name, "time")
+    picks = [int(np.abs(times - t).argmin()) for t in run.array(name, "snapshot_time")]
+    stage = _Stage(run, name, picks)
+    columns = min(3, len(picks))
+    rows = -(-len(picks) // columns)
+    tilt = isinstance(r, SolidDemTilt)
+    with style.figure(
+        10.0, float(np.clip(3.3 * stage.aspect + 0.9, 2.6, 5.5)) * rows, rows=rows, columns=columns
+    ) as (fig, axes):  # fmt: skip
+        for n, (ax, k) in enumerate(zip(axes, picks, strict=False)):
+            stage.show(ax, k, r.load_direction_deg if tilt and n == 0 else None)
+            ax.set_title(f"{times[k]:.3f} s")
+        for ax in axes[len(picks) :]:
+            ax.axis("off")
+        if stage.share.any():
+            legend(fig, list(axes[: rows * columns]), stage.farthest)
+        saved = style.save(fig, folder, f"{name}-snapshots")
+    what = f"Brought down by {r.collapse_acceleration_g:.4f} g" if tilt else "The stones as they move"
+    return saved, f"{what}; colours tell how far a stone has gone, at most {stage.farthest:.3g} m."
+
+
+def legend(fig: Figure, axes: list[Axes], farthest: float) -> None:
+    """What the colours of the stones tell [m]."""
+    bar = fig.colorbar(
+        ScalarMappable(Normalize(0.0, farthest), MOVED), ax=axes, shrink=0.6, pad=0.02, aspect=30, panchor=False
+    )
+    bar.set_label("displacement of a stone [m]")
+
+
+def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    r, time = run[name], run.array(name, "time")
+    assert isinstance(r, SolidDemRun)
+    shift, turn, tracked = (run.array(name, key) for key in ("shift", "turn", "tracked"))
+    far = np.linalg.norm(shift[:, tracked], axis=2).max(axis=0)
+    order = np.argsort(-far, kind="stable")[:SHOWN]
+    names, both = list(r.peak_rotation_rad), r.horizontal_components == 2
+    with style.figure(8.0, 9.0, rows=5, sharex=True, height_ratios=[2, 2, 2, 2, 1]) as (fig, axes):
+        for n in order:
+            i = tracked[n]
+            for k, ax in enumerate(axes[:3]):
+                ax.plot(time, 1e3 * shift[:, i, k], label=names[n])
+            axes[3].plot(time, 1e3 * np.linalg.norm(turn[:, i], axis=1))
+        for axis, ax in zip("xyz", axes[:3], strict=True):
+            ax.set_ylabel(f"{axis} [mm]")
+        style.legend_above(axes[0])
+        axes[3].set_ylabel("turned by [mrad]")
+        axes[4].plot(time, run.array(name, "ground") / GRAVITY, color=style.EDGE, label="along")
+        if both:
+            axes[4].plot(
+                time, run.array(name, "ground_across") / GRAVITY, color=style.THRUST, linewidth=0.8, label="across"
+            )
+            axes[4].legend(loc="upper right", ncols=2, fontsize=8)
+        axes[4].set_ylabel("ground [g]")
+        axes[4].set_xlabel("time [s]")
+        axes[4].set_xlim(0.0, float(time.max(initial=0.0)) or 1.0)
+        saved = style.save(fig, folder, f"{name}-displacements")
+    return saved, (
+        f"Displacements of the stones that go farthest, from their settled places, and by how much they turn; the ground moves along "
+        f"{r.direction_deg:g} degrees in plan{' and across' if both else ''}."
+    )
+
+
+def _contacts(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    time, state = run.array(name, "time"), run.array(name, "state")
+    colours = ListedColormap(["#f4f1ea", style.THRUST, style.HINGE])
+    with style.figure(8.0, min(7.0, 1.6 + 0.18 * state.shape[1])) as (fig, (ax,)):
+        norm = BoundaryNorm([-0.5, 0.5, 1.5, 2.5], 3)
+        mesh = ax.pcolormesh(
+            time, np.arange(state.shape[1]), state.T, cmap=colours, norm=norm, shading="nearest", rasterized=True
+        )
+        bar = fig.colorbar(mesh, ax=ax, ticks=[0, 1, 2])
+        bar.ax.set_yticklabels(["closed", "open at\nsome corners", "apart"])
+        style.numbers(ax.yaxis)
+        ax.set_xlabel("time [s]")
+        ax.set_ylabel("contact")
+        ax.grid(False)
+        saved = style.save(fig, folder, f"{name}-contacts")
+    return saved, "Where contacts are open, over time."
+
+
+def _film(run: Stored, name: str, folder: Path) -> None:
+    """The motion as a film, where the deck asks for one."""
+    kind, speed = film.asked(run, name)
+    if kind == "none":
+        return
+    time = run.array(name, "time")
+    frames, rate = film.pictures(time, kind, speed)
+    stage = _Stage(run, name, frames.tolist(), FILM_PIXELS)
+    width, height = (side / film.DPI for side in film.PIXELS)
+    with style.figure(width, height) as (fig, (ax,)):
+        stage.show(ax, int(frames[0]), None)
+        if stage.share.any():
+            legend(fig, [ax], stage.farthest)
+        (drawn,) = ax.images
+        title = ax.set_title(f"{time[frames[0]]:.2f} s")
+
+        def show(k: int) -> None:
+            drawn.set_data(stage.image(int(frames[k])))
+            title.set_text(f"{time[frames[k]]:.2f} s")
+
+        path = folder / "figures" / f"{name}.{kind}"
+        film.write(fig, path, kind, rate, np.arange(len(frames)), show, [drawn, title])

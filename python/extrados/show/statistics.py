@@ -1,0 +1,461 @@
+"""Figures of the rocking statistics: fragility, resonance, rocking spectra, harmonic maps, code checks."""
+
+from pathlib import Path
+
+import numpy as np
+
+from extrados.results.rocking import COLLAPSE, RECOVERY
+from extrados.results.statistics import Ensemble, OverDurations, OverLevels
+from extrados.results.store import Stored
+from extrados.schema.constants import GRAVITY
+from extrados.show import style
+
+PERCENTILES = (16, 50, 84)
+FALLEN = 1.12  # where a figure draws the rotation ratio of what has come down
+
+
+#: Incremental curves that are drawn one by one: more are a cloud
+HAIRS = 40
+
+
+def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Histogram (Fig. 6-7), single histories (Fig. 6-6) and cloud; over levels the curves with their stripes and the
+    incremental picture; the annual rate; or Fig. 6-8."""
+    arrays = run.arrays[name]
+    if isinstance(run[name], OverDurations):
+        return _durations(run, name, folder)
+    found = []
+    if "stripe_level" in arrays:
+        found += [_curve(run, name, folder), _incremental(run, name, folder)]
+    if "bin_edge" in arrays and run[name].count:
+        found.append(_histogram(run, name, folder))
+    if "intensity" in arrays and "grid" in arrays:
+        found.append(_cloud(run, name, folder))
+    if "contribution" in arrays:
+        found.append(_annual(run, name, folder))
+    if run.series(name, "history_time"):
+        found.append(_histories(run, name, folder))
+    if "sensitivity_rotation_total" in arrays:
+        found.append(_sensitivity(run, name, folder))
+    return found
+
+
+def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    r = run[name]
+    edges, counts = run.array(name, "bin_edge"), run.array(name, "bin_count")
+    n = max(r.count, 1)
+    with style.figure(6.0, 3.8) as (fig, (ax,)):
+        width = edges[1] - edges[0]
+        ax.bar(
+            edges[:-1],
+            100 * counts / n,
+            width=width,
+            align="edge",
+            color=style.STONE,
+            edgecolor=style.EDGE,
+            linewidth=0.6,
+        )
+        ax.bar(
+            [1.0 + width],
+            [100 * r.collapsed / n],
+            width=1.6 * width,
+            align="edge",
+            color=style.THRUST,
+            label="collapse",
+        )
+        ax.set_axisbelow(True)
+        ax.set_xticks([0, 0.2, 0.4, 0.6, 0.8, 1.0])
+        ax.set_xlabel("greatest rotation over the critical rotation")
+        ax.set_ylabel("share of the runs [%]")
+        ax.set_title(f"{r.count} runs, {100 * r.collapse_probability:.1f} % collapse")
+        full = np.flatnonzero(counts)
+        if len(full) == 1:  # one bar says nothing by its height
+            where = f"{edges[full[0]]:.2f} to {edges[full[0] + 1]:.2f}"
+            ax.text(
+                0.5,
+                0.5,
+                f"{int(counts[full[0]])} runs turn by {where} of the critical rotation",
+                transform=ax.transAxes,
+                ha="center",
+                fontsize=8,
+            )
+        ax.legend()
+        return style.save(
+            fig, folder, f"{name}-histogram"
+        ), "Greatest rotation of all runs; the red bar holds those that collapse."
+
+
+def _axis(r: Ensemble | OverLevels) -> str:
+    """What an axis of intensities says."""
+    return f"{r.intensity} [{r.intensity_unit}]" if r.intensity_unit else r.intensity
+
+
+def _cloud(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    """The motions at their own intensities; the curves over them."""
+    r = run[name]
+    x, ratio, outcome = (run.array(name, k) for k in ("intensity", "peak_ratio", "outcome"))
+    grid = run.array(name, "grid")
+    with style.figure(9.0, 4.2, columns=2, sharex=True) as (fig, (left, right)):
+        up, fell = outcome == RECOVERY, outcome == COLLAPSE
+        left.plot(
+            x[up], ratio[up], "o", color=style.HINGE, markersize=3, alpha=0.6, label=f"{int(up.sum())} rock and stay up"
+        )
+        left.plot(
+            x[fell],
+            np.full(int(fell.sum()), FALLEN),
+            "x",
+            color=style.THRUST,
+            markersize=4,
+            label=f"{int(fell.sum())} collapse",
+        )
+        rest = int((outcome == 0).sum())
+        left.set_xscale("log")
+        left.set_yscale("log")
+        left.set_ylim(max(1e-4, 0.5 * ratio[up].min()) if up.any() else 1e-3, 1.5)
+        left.axhline(1.0, color=style.THRUST, linewidth=0.8, linestyle=":")
+        left.set_ylabel("greatest rotation over the critical one")
+        left.set_title(f"{r.count} motions, {rest} leave it at rest" if rest else f"{r.count} motions")
+        left.legend(loc="center left", frameon=True)
+        share = np.where(fell, 1.0, 0.0)
+        right.plot(x, share, "|", color=style.EDGE, alpha=0.4, markersize=5)
+        if r.median is not None:
+            right.plot(grid, run.array(name, "curve"), color=style.THRUST,
+                       label=f"collapse: median {r.median:.3g}")  # fmt: skip
+            low, high = run.array(name, "curve_lower"), run.array(name, "curve_upper")
+            right.fill_between(grid, low, high, color=style.THRUST, alpha=0.15, linewidth=0)
+        limits = zip(
+            r.rotation_limits or [], *(run.series(name, f"limit{e}") for e in ("", "_lower", "_upper")), strict=True
+        )
+        for k, (limit, curve, low, high) in enumerate(limits):
+            line = right.plot(
+                grid,
+                curve.data,
+                ("--", "-.", ":")[k % 3],
+                label=f"rotation beyond {limit.rotation_ratio:g} of the critical: median {limit.median:.3g}",
+            )[0]
+            right.fill_between(grid, low.data, high.data, color=line.get_color(), alpha=0.12, linewidth=0)
+        right.set_xscale("log")
+        right.set_ylim(-0.02, 1.02)
+        right.set_ylabel("probability")
+        right.set_title("fitted curves")
+        style.legend_below(fig, right)
+        for ax in (left, right):
+            ax.set_xlabel(_axis(r))
+        return style.save(fig, folder, f"{name}-cloud"), (
+            "Motions as they are, each at its own intensity, and the curves fitted to them; bands of "
+            f"{100 * r.confidence:g} % by the profile of the likelihood."
+        )
+
+
+def _annual(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    """Hazard, curve of collapse, and what each intensity adds to the annual rate."""
+    r = run[name]
+    x, rate = run.array(name, "hazard_intensity"), run.array(name, "hazard_rate")
+    at, share = run.array(name, "contribution_intensity"), run.array(name, "contribution")
+    with style.figure(9.0, 3.8, columns=2) as (fig, (left, right)):
+        left.plot(x, rate, "o-", color=style.GROUND, markersize=4)
+        left.axhline(r.annual_collapse_rate, color=style.THRUST, linestyle="--",
+                     label=f"collapse, {r.annual_collapse_rate:.2g} a year")  # fmt: skip
+        low, high = (np.nan if v is None else v for v in r.annual_collapse_rate_interval)
+        if np.isfinite(low):
+            left.axhspan(low, high, color=style.THRUST, alpha=0.15, linewidth=0)
+        if r.acceptable_annual_rate is not None:
+            left.axhline(r.acceptable_annual_rate, color=style.EDGE, linestyle=":", label="accepted")
+        left.set_xscale("log")
+        left.set_yscale("log")
+        left.set_ylabel("annual rate of exceedance [1/year]")
+        left.set_title("hazard of the site")
+        left.legend()
+        right.fill_between(at, 0.0, share, color=style.THRUST, alpha=0.3, linewidth=0)
+        right.plot(at, share, color=style.THRUST)
+        right.axvline(r.median, color=style.HINGE, linestyle="--", label=f"median of collapse, {r.median:.3g}")
+        right.set_xscale("log")
+        right.set_ylim(bottom=0.0)
+        right.set_ylabel("rate of collapse by ln(intensity) [1/year]")
+        right.set_title("which intensities bring it down")
+        right.legend()
+        for ax in (left, right):
+            ax.set_xlabel(_axis(r))
+        return style.save(fig, folder, f"{name}-annual"), (
+            f"Hazard curve with the annual rate of collapse and its {100 * r.confidence:g} % band; the area on the right is that rate."
+        )
+
+
+def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    """Ground motions and the responses to them, side by side (Fig. 6-6)."""
+    series = [run.series(name, f"history_{what}") for what in ("motion_time", "motion", "time", "rotation")]
+    n = len(series[0])
+    with style.figure(9.0, 1.0 + 1.35 * n, rows=n, columns=2, sharex=True, sharey="col") as (fig, axes):
+        for (left, right), at, ground, time, rotation in zip(axes.reshape(n, 2), *series, strict=True):
+            left.plot(at.data, ground.data, color=style.GROUND, linewidth=0.8)
+            fell = rotation.about.endswith("collapse")
+            right.plot(time.data, np.clip(rotation.data, -FALLEN, FALLEN), color=style.THRUST if fell else style.HINGE)
+            left.set_title(f"{at.about}: ground [g]", fontsize=8, loc="left")
+            right.set_title(
+                f"rotation over the critical one: {'overturns' if fell else 'stays up'}", fontsize=8, loc="left"
+            )
+            right.set_ylim(-FALLEN, FALLEN)
+        for ax in axes[-2:]:
+            ax.set_xlabel("time [s]")
+        return style.save(fig, folder, f"{name}-histories"), (
+            f"The first {n} motions and the rotation under each, over the critical one (Fig. 6-6)."
+        )
+
+
+def _sensitivity(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    """First-order and total Sobol indices of each uncertain value, for the rotation and the collapse."""
+    r = run[name]
+    values = list(r.sensitivity)
+    place = np.arange(len(values))
+    with style.figure(7.5, 1.6 + 0.45 * len(values), columns=2, sharey=True) as (fig, axes):
+        for ax, what, title in zip(axes, ("rotation", "collapse"), ("greatest rotation", "collapse"), strict=True):
+            for order, shift, color, text in (
+                ("total", 0.18, style.HINGE, "with interactions"),
+                ("first", -0.18, style.SAFE, "alone"),
+            ):
+                index, low, high = (run.array(name, f"sensitivity_{what}_{order}{e}") for e in ("", "_lower", "_upper"))
+                ax.barh(place + shift, index, 0.34, color=color, label=text)
+                bars = np.maximum([index - low, high - index], 0.0)
+                ax.errorbar(index, place + shift, xerr=bars, fmt="none", ecolor="k", capsize=2, linewidth=0.8)
+            ax.set_axisbelow(True)
+            ax.set_title(title)
+            ax.set_xlabel("share of the variance (Sobol index)")
+            ax.axvline(0.0, color="k", linewidth=0.8)
+        axes[0].set_yticks(place, values)
+        axes[0].invert_yaxis()
+        style.legend_below(fig, axes[0])
+        return style.save(fig, folder, f"{name}-sensitivity"), (
+            f"Sobol indices of the uncertain values and of the choice of the motion, {r.sensitivity_runs} runs; "
+            f"{100 * r.confidence:g} % bootstrap intervals."
+        )
+
+
+def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    r, arrays = run[name], run.arrays[name]
+    level = run.array(name, "stripe_level")
+    unit = arrays["stripe_level"].unit
+    grid = run.array(name, "grid")
+    with style.figure(6.5, 4.2) as (fig, (ax,)):
+        for key, lower, upper, color, label in (
+            ("stripe_uplift_probability", "stripe_uplift_lower", "stripe_uplift_upper", style.GROUND, "uplift"),
+            ("stripe_collapse_probability", "stripe_lower", "stripe_upper", style.THRUST, "collapse"),
+        ):
+            value, low, high = (run.array(name, k) for k in (key, lower, upper))
+            bars = np.maximum([value - low, high - value], 0.0)
+            ax.errorbar(
+                level,
+                value,
+                yerr=bars,
+                fmt="o",
+                color=color,
+                markersize=4,
+                capsize=2,
+                linewidth=0.9,
+                label=f"{label}, counted",
+            )
+        for curve, band, color, style_, text, median, dispersion in (
+            ("curve", "curve", style.THRUST, "-", "collapse at the level", r.median, r.dispersion),
+            ("first_collapse_curve", "first_collapse", style.HINGE, "-.", "collapse by the level", r.first_collapse_median,
+             r.first_collapse_dispersion),
+        ):  # fmt: skip
+            if curve not in arrays:
+                continue
+            label = f"{text}: median {median:.3g}, dispersion {dispersion:.2f}"
+            ax.plot(grid, run.array(name, curve), style_, color=color, label=label)
+            if f"{band}_lower" in arrays:
+                low, high = run.array(name, f"{band}_lower"), run.array(name, f"{band}_upper")
+                ax.fill_between(grid, low, high, color=color, alpha=0.15, linewidth=0)
+        if "uplift_curve" in arrays:
+            ax.plot(grid, run.array(name, "uplift_curve"), color=style.GROUND, linewidth=0.9)
+        if "two_stage_curve" in arrays:
+            ax.plot(
+                grid, run.array(name, "two_stage_curve"), "--", color=style.EDGE, label="P(uplift) P(collapse | uplift)"
+            )
+        ax.set_xlim(0.0, 1.1 * level[-1])
+        ax.set_ylim(-0.02, 1.02)
+        ax.set_xlabel(f"{r.intensity}{f' [{unit}]' if unit else ''}")
+        ax.set_ylabel("probability")
+        ax.set_title(f"{r.motions} motions at {len(level)} levels")
+        ax.legend(loc="best")
+        return style.save(fig, folder, f"{name}-curve"), (
+            f"Shares of the motions with {100 * r.confidence:g} % Wilson intervals; the fitted curve of collapse at a level with "
+            "its bootstrap band; and that of collapse at the level or one below it, by interval-censored likelihood."
+        )
+
+
+def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    r = run[name]
+    level, ratio, risen = (
+        run.array(name, "stripe_level"),
+        run.array(name, "incremental_ratio"),
+        run.array(name, "incremental_risen"),
+    )
+    unit = run.arrays[name]["stripe_level"].unit
+    quantile = [np.minimum(run.array(name, f"stripe_peak_ratio_{p}"), FALLEN) for p in PERCENTILES]
+    with style.figure(6.5, 4.2) as (fig, (ax,)):
+        for row in np.minimum(ratio[:HAIRS], FALLEN):
+            ax.plot(row, level, color=style.EDGE, alpha=0.15, linewidth=0.5)
+        low, middle, high = quantile
+        ax.fill_betweenx(level, low, high, color=style.HINGE, alpha=0.2, linewidth=0, label="16 to 84 % of the motions")
+        ax.plot(middle, level, "-", color=style.HINGE, linewidth=2.0, label="half of the motions")
+        i, j = np.nonzero(risen)
+        if len(i):
+            ax.plot(ratio[i, j], level[j], "o", color=style.GROUND, markersize=3,
+                    label="stands again above a level that overturned it")  # fmt: skip
+        ax.axvline(1.0, color=style.THRUST, linewidth=0.9)
+        ax.set_xlim(-0.02, FALLEN + 0.03)
+        ticks = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0, FALLEN]
+        ax.set_xticks(ticks, [*(f"{x:g}" for x in ticks[:-1]), "collapse"])
+        ax.set_xlabel("greatest rotation over the critical rotation")
+        ax.set_ylabel(f"{r.intensity}{f' [{unit}]' if unit else ''}")
+        style.legend_below(fig, ax)
+        return style.save(fig, folder, f"{name}-incremental"), (
+            f"Incremental curves of {min(len(ratio), HAIRS)} motions with the percentiles of all {r.motions}; "
+            f"{r.resurrections} have resurrections."
+        )
+
+
+def _durations(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    d, mean, deviation = (
+        run.array(name, k) for k in ("duration", "mean_peak_rotation_ratio", "deviation_peak_rotation_ratio")
+    )
+    p, low, high = (run.array(name, k) for k in ("collapse_probability", "lower", "upper"))
+    with style.figure(7.5, 3.6, columns=2) as (fig, (left, right)):
+        left.errorbar(d, mean, yerr=deviation, fmt="o-", color=style.HINGE, capsize=3, markersize=4)
+        left.set_ylim(bottom=0.0)
+        left.set_ylabel("greatest rotation over the critical one")
+        left.set_title("mean and standard deviation")
+        right.errorbar(
+            d, p, yerr=np.maximum([p - low, high - p], 0.0), fmt="o-", color=style.THRUST, capsize=3, markersize=4
+        )
+        right.set_ylim(-0.02, 1.02)
+        right.set_ylabel("probability of collapse")
+        right.set_title("share that falls, 95 % interval")
+        for ax in (left, right):
+            ax.set_xlabel("duration of the motion t_d [s]")
+        return [
+            (
+                style.save(fig, folder, f"{name}-durations"),
+                "Greatest rotation (Fig. 6-8) and probability of collapse against the duration.",
+            )
+        ]
+
+
+def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Figs 6-2, 6-3 and 6-4."""
+    r, arrays = run[name], run.arrays[name]
+    found = []
+    with style.figure(7.0, 4.6, rows=2, sharex=True, height_ratios=[1, 2]) as (fig, (ground, rotation)):
+        t = run.array(name, "time")
+        ground.plot(t, run.array(name, "ground") / GRAVITY, color=style.GROUND)
+        ground.set_ylabel("ground [g]")
+        rotation.plot(t, run.array(name, "rotation"), color=style.THRUST)
+        rotation.set_ylabel("rotation [rad]\n+ to +x")
+        rotation.set_xlabel("time [s]")
+        found.append(
+            (
+                style.save(fig, folder, f"{name}-motion"),
+                f"The motion that feeds most energy under a cap of {r.cap_g:.3f} g, and the response to it (Fig. 6-2).",
+            )
+        )
+    if "least_cap_ratio" not in arrays:
+        return found
+    with style.figure(6.0, 4.2) as (fig, (ax,)):
+        x, aspect, table = (
+            run.array(name, "initial_ratio"),
+            run.array(name, "aspect"),
+            run.array(name, "least_cap_ratio"),
+        )
+        drawn = ax.contourf(x, aspect, table, levels=np.linspace(0.0, 0.5, 11), cmap="YlOrBr_r", extend="max")
+        lines = ax.contour(x, aspect, table, levels=np.linspace(0.05, 0.5, 10), colors="k", linewidths=0.5)
+        ax.clabel(lines, fontsize=7)
+        fig.colorbar(drawn, ax=ax, label="least acceleration over uplift")
+        ax.plot(r.initial_rotation_ratio, 0.5, "k+")
+        ax.set_xlabel("initial rotation over the critical one")
+        ax.set_ylabel("B/H")
+        ax.grid(False)
+        found.append(
+            (
+                style.save(fig, folder, f"{name}-least-cap"),
+                "Least acceleration whose optimal motion overturns the block in the end (Fig. 6-3).",
+            )
+        )
+    with style.figure(8.0, 3.6, columns=2, sharey=True) as (fig, (left, right)):
+        s = run.array(name, "impulse_start")
+        for value, row in zip(
+            run.array(name, "impulse_period_ratio"), run.array(name, "energy_by_period"), strict=True
+        ):
+            left.plot(s, row, label=f"T_p = {value:g} T_n")
+        for value, row in zip(run.array(name, "impulse_rotation"), run.array(name, "energy_by_rotation"), strict=True):
+            right.plot(s, row, label=f"from {value:g} of the critical rotation")
+        left.set_ylabel("energy supplied over that at the start")
+        for ax in (left, right):
+            ax.axhline(0.0, color=style.EDGE, linewidth=0.8)
+            ax.set_xlabel("start of the impulse t_start/T_n")
+            ax.legend(fontsize=7)
+        found.append(
+            (
+                style.save(fig, folder, f"{name}-impulse"),
+                f"Energy that one sine impulse of {r.impulse_amplitude_g:.3f} g adds to free rocking (Fig. 6-4 a from a quarter of the critical rotation, b with T_p = T_n/2).",
+            )
+        )
+    return found
+
+
+def draw_rocking_spectrum(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Peak rotation over 2 pi/p for each slenderness."""
+    period, ratio, over = (run.array(name, k) for k in ("period", "peak_ratio", "overturned"))
+    with style.figure(7.0, 4.0) as (fig, (ax,)):
+        for member, row, fell in zip(run[name].family, ratio, over, strict=True):
+            line = ax.plot(period, row, ".-", markersize=3, label=member)[0]
+            ax.plot(period[fell == 1], np.full(int(fell.sum()), 1.03), "x", color=line.get_color(), markersize=5)
+        ax.axhline(1.0, color=style.EDGE, linewidth=0.8, linestyle=":")
+        ax.set_ylim(0.0, 1.1)
+        ax.set_xlabel("2 pi/p [s] (grows with the root of the size)")
+        ax.set_ylabel("greatest rotation over alpha")
+        ax.legend()
+        return [(style.save(fig, folder, name), "Rocking spectra of the motion; crosses: overturned.")]
+
+
+def draw_harmonic_map(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Rest, rocking and overturning over frequency and amplitude."""
+    r = run[name]
+    f, a, outcome, ratio = (run.array(name, k) for k in ("frequency", "amplitude", "outcome", "peak_ratio"))
+    with style.figure(7.0, 4.4) as (fig, (ax,)):
+        shown = np.where(outcome == RECOVERY, np.minimum(ratio, 1.0), np.nan)
+        drawn = ax.pcolormesh(f, a, shown.T, cmap="YlGnBu", vmin=0.0, vmax=1.0, shading="nearest", rasterized=True)
+        fell = np.where(outcome == COLLAPSE, 1.0, np.nan)
+        from matplotlib.colors import ListedColormap
+
+        ax.pcolormesh(f, a, fell.T, cmap=ListedColormap([style.MODES[3]]), shading="nearest", rasterized=True)
+        fig.colorbar(drawn, ax=ax, label="greatest rotation over the critical one")
+        ax.axhline(r.uplift_acceleration_g, color=style.EDGE, linestyle="--", linewidth=0.8)
+        ax.plot([], [], "s", color=style.MODES[3], label="overturned")
+        ax.legend(loc="upper left", frameon=True)
+        ax.set_xlabel("frequency [Hz]")
+        ax.set_ylabel("amplitude [g]")
+        ax.grid(False)
+        return [(style.save(fig, folder, name), f"Harmonic motion of {r.cycles} cycles; dashed: uplift.")]
+
+
+def draw_code_checks(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Demand over capacity of each rule."""
+    rows = [
+        (rule, c.demand / c.capacity, c.code)
+        for rule, c in run[name].checks.items()
+        if c.verdict in ("holds", "fails") and c.capacity > 0.0
+    ]
+    if not rows:
+        return []
+    with style.figure(6.5, 0.6 + 0.35 * len(rows)) as (fig, (ax,)):
+        for k, (_, value, code) in enumerate(rows):
+            ax.barh(k, value, color=style.STONE if not code else style.THRUST if value > 1.0 else style.SAFE)
+        ax.set_axisbelow(True)
+        ax.axvline(1.0, color="k", linewidth=0.9)
+        ax.set_yticks(range(len(rows)), [rule for rule, _, _ in rows])
+        ax.invert_yaxis()
+        ax.set_xlabel("demand over capacity")
+        return [(style.save(fig, folder, name), (
+            "Demand over capacity of each rule that applies; above 1 it fails. The checks of NTC at SLV are alternatives, of which one that "
+            f"holds suffices, and so are Ishiyama's; pale bars are formulas for comparison. {run[name].overall().statement}"
+        ))]  # fmt: skip

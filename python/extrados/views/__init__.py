@@ -1,0 +1,1 @@
+"""The views of a building: blocks, solids, rigid bodies, rocking mechanisms, finite elements, shells."""

@@ -1,0 +1,66 @@
+"""What the words of a deck alone say of how its building rocks, before any mechanics."""
+
+from extrados.model.errors import NoView
+from extrados.views.blocks import Masonry
+
+
+def rocks_as_block(building: Masonry) -> bool:
+    """Whether all of it rocks as one block: what is one, and a wall that is one pier."""
+    structure = building.structure
+    assert structure is not None
+    return structure.rocks_as == "block" or (structure.rocks_as == "piers" and len(building.pier_blocks().mass) == 1)
+
+
+def refuse_words(building: Masonry, linear: bool = False) -> None:
+    """NoView, with the key, where the words of a deck alone say that the building does not rock as one mechanism."""
+    wall, ratio = building.supports.abutting_wall, building.initial.rotation_ratio
+    assert building.structure is not None
+    if building.structure.rocks_as == "stack":
+        raise NoView(
+            "two stacked blocks rock in two coordinates, which only `rocking` and `dem` follow", ("structure", "kind")
+        )
+    if building.supports.stiffness is not None:
+        raise NoView(
+            "on a base that gives way a building moves in more than one coordinate, which `rocking`, `fragility`, "
+            "`failure-domain`, `failure-curves` and `harmonic-map` (of one block, column or wall) and `dem` follow; leave it "
+            "out, or give it to these analyses alone ([analysis.supports] below them)",
+            ("supports", "stiffness"),
+        )
+    block = rocks_as_block(building)
+    if building.joints.energy_ratio is not None and not block:
+        raise NoView(
+            "the energy ratio is that of a block: give restitution, the rate after over before an impact",
+            ("joints", "energy_ratio"),
+        )
+    if linear and not block:
+        raise NoView('form = "linear" is known of blocks and columns only', ("analysis", "form"))
+    if wall is not None and not block and building.supports.rebound is None:
+        raise NoView(
+            "what throws it back from a wall is known of blocks only: give [supports] rebound",
+            ("supports", "abutting_wall"),
+        )
+    if wall is not None and ratio and wall == ("right" if ratio > 0.0 else "left"):
+        raise NoView(f"it cannot start turned to the {wall}, where the wall stands", ("initial", "rotation_ratio"))
+
+
+def refuse_soft_base(building: Masonry) -> None:
+    """NoView, with the key, where the words of a deck alone say that nothing but `dem` follows it on a base that gives way."""
+    key = ("supports", "stiffness")
+    if not rocks_as_block(building):
+        raise NoView(
+            "rocking follows a base that gives way under one block, column or wall; leave it out, or give it to the analysis "
+            "`dem` alone ([analysis.supports] below it), which follows it under any stones",
+            key,
+        )
+    if building.restraints or building.supports.abutting_wall is not None:
+        raise NoView(
+            "on a base that gives way nothing but the base holds a block: leave out ties, dampers, hinges and the wall",
+            key,
+        )
+    if building.joints.energy_ratio is not None or "restitution" in building.joints.model_fields_set:
+        name = "restitution" if building.joints.energy_ratio is None else "energy_ratio"
+        raise NoView(
+            "on a base that gives way impacts follow from its springs and dashpots: leave out restitution and energy_ratio, "
+            "give [supports] damping_ratio",
+            ("joints", name),
+        )

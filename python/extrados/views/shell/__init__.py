@@ -1,0 +1,1 @@
+"""Flat shells in space: vaults, walls on a plan, mesh files."""

@@ -1,0 +1,87 @@
+"""Blocks in space of a building, by its kind of structure."""
+
+import numpy as np
+
+from extrados.model.errors import BadGeometry, NoView
+from extrados.model.files import LARGEST_FILE, read
+from extrados.model.geometry.compas import is_compas, read_compas
+from extrados.model.geometry.drawing import UNITS, parsed
+from extrados.model.geometry.solids.assembly import SolidAssembly, assemble
+from extrados.model.geometry.solids.columns import doweled, drums
+from extrados.model.geometry.solids.meshes import read_obj, read_solids, read_stl, stones_of
+from extrados.model.geometry.solids.sections import barrel, drawn_out
+from extrados.model.structures.arch import Arch
+from extrados.model.structures.blocks import SMALL, SOLID, Blocks
+from extrados.model.structures.masonry import Column, make_column
+from extrados.model.structures.spatial import Spatial
+from extrados.views.blocks import Masonry
+
+
+def solids_of_section(building: Masonry) -> SolidAssembly:
+    """The section of a plane structure, drawn out to its depth."""
+    return drawn_out(building.blocks())
+
+
+def solids_of_spatial(building: Masonry) -> SolidAssembly:
+    """The blocks of a kind that stands in space alone."""
+    assert isinstance(building.structure, Spatial)
+    return building.structure.solids(building.material.density)
+
+
+def solids_of_arch(building: Masonry) -> SolidAssembly:
+    """A barrel, whose courses may have several stones across and whose faces may be askew."""
+    arch = building.structure
+    assert isinstance(arch, Arch)
+    return barrel(arch.section(building.material.density), arch.stones_across, np.radians(arch.skew))
+
+
+def solids_of_column(building: Masonry) -> SolidAssembly:
+    """Drums, rectangular or round, with the dowels between them."""
+    column = building.structure
+    assert isinstance(column, Column)
+    density = building.material.density
+    if column.section == "round":
+        made = drums(column.width, column.drum_heights, column.top_width, column.sides, column.flute_depth, density)
+    else:
+        made = drawn_out(make_column(column.width, column.drum_heights, column.top_width, density, column.depth))
+    if column.dowels is None:
+        return made
+    bears = np.inf if column.dowels == "unbroken" else float(column.dowels)
+    return doweled(made, bears, column.dowel_reach or np.inf)
+
+
+def solids_of_blocks(building: Masonry) -> SolidAssembly:
+    """The solids of a file, or the section that it draws, drawn out to its depth."""
+    drawing = building.structure
+    assert isinstance(drawing, Blocks)
+    value = None
+    file = None if drawing.file is None else read(drawing.file, LARGEST_FILE, building.folder)
+    sort = "" if file is None else file.path.suffix.lower()
+    if file is not None and sort == ".json":
+        value = parsed(file)
+    if file is None or not (sort in SOLID or is_compas(value)):
+        return solids_of_section(building)
+    name = file.path.name
+    if drawing.layers is not None or drawing.layer or drawing.ground is not None or drawing.origin is not None:
+        raise BadGeometry(
+            f"{name}: layers, ground and origin belong to plane drawings; solids stand on foundation_levels"
+        )
+    if sort == ".obj":
+        meshes = read_obj(file.text(), name)
+    else:
+        meshes = read_stl(file.content, name) if sort == ".stl" else read_solids(value, name)
+    tolerance = drawing.contact_tolerance
+    if "contact_tolerance" not in drawing.model_fields_set:
+        points = np.concatenate([mesh.points for mesh in meshes])
+        tolerance = min(tolerance, SMALL * UNITS[drawing.unit or "m"] * float(np.ptp(points, axis=0).max()))
+    try:
+        stones = stones_of(meshes, building.material.density, drawing.unit, name, tolerance)
+    except BadGeometry as error:
+        try:  # prisms of one depth may be concave: their section is parted in convex pieces
+            whole = value is not None and read_compas(value, name, drawing.unit)[1] is not None
+        except NoView:
+            whole = False
+        if not whole:
+            raise error from None
+        return solids_of_section(building)
+    return assemble(stones, tolerance, drawing.foundation_levels, name)
