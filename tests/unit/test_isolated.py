@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from extrados.isolated import environment
+from extrados.schema.isolated import environment
 
 #: Modules that this program, its libraries or a new process load, early and late
 PLANTED = (

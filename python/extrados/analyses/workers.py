@@ -21,7 +21,7 @@ import numpy as np
 from extrados import interrupts
 from extrados.core.calls import cancel_requested
 from extrados.core.errors import Cancelled, status_code
-from extrados.isolated import environment, python_command
+from extrados.schema.isolated import environment, python_command
 
 LOOK = 0.05  # s between two looks whether the user has asked for the end
 ENDS = 5.0  # s: a process that has closed its pipe ends by then

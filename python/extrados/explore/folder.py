@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import Any
 
 from extrados.decks.reader import LARGEST
-from extrados.isolated import environment, python_command
 from extrados.results.store import SUMMARY, Stored, StoreError, read
 from extrados.schema import files
+from extrados.schema.isolated import environment, python_command
 from extrados.schema.places import CASES
 
 #: How deep decks and runs are looked for, how many are listed, how many folders are looked into

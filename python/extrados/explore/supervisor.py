@@ -14,7 +14,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from extrados.explore import server
-from extrados.isolated import environment, python_command
+from extrados.schema.isolated import environment, python_command
 
 #: Where pages are served unless that is taken
 PORT = 8737

@@ -26,6 +26,7 @@ from extrados.results.model import Array, Result, Streamed, TableData
 from extrados.results.typed import typed
 from extrados.results.verdict import KindResults
 from extrados.schema import files
+from extrados.schema.hdf5 import lies_elsewhere
 from extrados.schema.text import printable
 
 SUMMARY = "summary.json"
@@ -511,12 +512,6 @@ def _on_disk(path: Path, name: str, length: int, dtype: np.dtype) -> Streamed:
     return Streamed(length, dtype, pieces)
 
 
-def _elsewhere(store: Any, file: Any) -> bool:
-    """Whether the numbers of an array do not all lie in the file, as ours do: in files elsewhere, or one that stands for
-    gigabytes."""
-    return bool(store.file != file or store.external or store.is_virtual or store.nbytes > store.id.get_storage_size())
-
-
 def read(folder: str | Path) -> Stored:
     """Read a run's folder; StoreError where it is damaged."""
     import h5py
@@ -534,7 +529,7 @@ def read(folder: str | Path) -> Stored:
             for name, group in file.items():
                 arrays[name] = {}
                 for title, store in group.items():
-                    if store is None or _elsewhere(store, file):
+                    if store is None or lies_elsewhere(store, file):
                         raise StoreError(
                             f"{folder / STORE}: '{title}' does not lie in the file whole; extrados wrote no such one"
                         )

@@ -1,7 +1,7 @@
 """Files of foreign formats are read by a process of their own, with limits: what a hostile file does to a library ends there.
 
-The process gets the content and gives back values and arrays, which are checked for their size; it opens one file at a time,
-writes none, and has limits of memory and of the processor's time. What it raises as Unreadable is raised here.
+The process gets the content and gives back values and arrays, which are checked for their size; it opens few files, writes none,
+and has limits of memory and of the processor's time. What it raises as Unreadable is raised here.
 """
 
 import importlib
@@ -15,20 +15,21 @@ import subprocess
 import sys
 import tempfile
 import threading
-from collections.abc import Callable
-from typing import Any, BinaryIO
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import IO, Any, BinaryIO
 
 import numpy as np
 
-from extrados.isolated import environment, python_command
+from extrados.schema.isolated import environment, python_command
 
-#: Format -> module and function that read it: function(content, **options) -> values, lists, dictionaries, arrays
-READERS: dict[str, tuple[str, str]] = {}
 #: Memory [bytes] and time of the processor [s] that are left to a reader; both grow with the file
 ROOM, ROOM_PER_BYTE = 1_000_000_000, 12
 SECONDS, SECONDS_PER_BYTE = 30, 1e-6
 #: A reader that has not ended after so many times its time of the processor waits for something
 PATIENCE = 20
+LARGEST = 2_000_000_000  # bytes that a reader may give
+FILES = 4  # that are open at a time: numpy and HDF5 open one twice
 ARRAY = "\0array"  # the key under which an array's number stands; no text of a file begins so
 TUPLE = "\0tuple"
 
@@ -41,37 +42,52 @@ class Unreadable(Exception):
         self.at = at
 
 
-def read_contained(form: str, content: bytes, **options: Any) -> Any:
-    """What the reader of a format (READERS) finds in the content of a file; Unreadable says why it finds nothing."""
-    room = ROOM + ROOM_PER_BYTE * len(content)
-    seconds = SECONDS + int(SECONDS_PER_BYTE * len(content))
-    given = json.dumps({"form": form, "options": options, "room": room, "seconds": seconds})
-    with tempfile.TemporaryFile() as file:  # a file has no size that a pipe would block at
+def read_contained(reader: str, source: bytes | Path, **options: Any) -> Any:
+    """What a function of this package, "module:function", finds in the content of a file; Unreadable says why it finds nothing.
+
+    The function is given the content, or the path where that is given, and the options; it returns numbers, texts, arrays, and
+    lists, tuples and dictionaries of them.
+    """
+    content = source if isinstance(source, bytes) else b""
+    size = len(content) if isinstance(source, bytes) else source.stat().st_size
+    room, seconds = ROOM + ROOM_PER_BYTE * size, SECONDS + int(SECONDS_PER_BYTE * size)
+    path = None if isinstance(source, bytes) else str(source)
+    given = json.dumps({"reader": reader, "path": path, "options": options, "room": room, "seconds": seconds})
+    with tempfile.TemporaryFile() as file:  # a pipe of an unread content would block
         file.write(content)
         file.seek(0)
         child = subprocess.Popen(
             python_command("extrados.schema.contained", given), stdin=file, stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL, env=environment(OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1"),
         )  # fmt: skip
-        late = threading.Timer(PATIENCE * seconds, child.kill)
-        late.daemon = True
-        late.start()
-        try:
-            assert child.stdout is not None
-            answer = child.stdout.read(room + 1)
-        finally:
-            late.cancel()
+    assert child.stdout is not None
+    late = threading.Timer(PATIENCE * seconds, child.kill)
+    late.daemon = True
+    late.start()
+    try:
+        answer = b"".join(_pieces(child.stdout))
+    finally:
+        late.cancel()
+        child.stdout.close()  # a reader that would give more ends by that
+        if sys.exc_info()[0] is not None:
             child.kill()
-            code = child.wait()
-            child.stdout.close()
-    if len(answer) > room:
-        raise Unreadable(f"holds more than {room / 1e6:.0f} MB when it is read")
+        code = child.wait()
+    if len(answer) > LARGEST:
+        raise Unreadable(f"gives more than {LARGEST / 1e6:.0f} MB of numbers")
     if not answer:
         raise Unreadable(_reason(code, room, seconds))
     found = decode(answer)
     if "refused" in found:
         raise Unreadable(found["refused"], tuple(found["at"]))
     return found["value"]
+
+
+def _pieces(stream: IO[bytes]) -> Iterator[bytes]:
+    """What comes from a stream, up to LARGEST bytes and a piece."""
+    size = 0
+    while size <= LARGEST and (piece := stream.read(1 << 20)):
+        size += len(piece)
+        yield piece
 
 
 def _reason(code: int, room: int, seconds: int) -> str:
@@ -133,23 +149,24 @@ def decode(data: bytes) -> Any:
 
 
 def limit_process(room: int, seconds: int) -> None:
-    """From now on this process has `room` [bytes] more memory and `seconds` [s] of the processor, opens one file at a time
-    and writes none."""
+    """From now on this process has `room` [bytes] more memory and `seconds` [s] of the processor, opens FILES files at a
+    time and writes none."""
     with open("/proc/self/statm", encoding="ascii") as file:
         now = int(file.read().split()[0]) * resource.getpagesize()
     lowest = os.dup(0)
     os.close(lowest)
     for what, most in (
         (resource.RLIMIT_AS, now + room),
-        (resource.RLIMIT_CPU, seconds),
+        (resource.RLIMIT_CPU, seconds + 1),
         (resource.RLIMIT_FSIZE, 0),
         (resource.RLIMIT_CORE, 0),
-        (resource.RLIMIT_NOFILE, lowest + 1),
+        (resource.RLIMIT_NOFILE, lowest + FILES),
         (resource.RLIMIT_NPROC, 0),
     ):
         hard = resource.getrlimit(what)[1]
         most = most if hard == resource.RLIM_INFINITY else min(most, hard)
-        resource.setrlimit(what, (most, most))
+        # at its soft limit of time the process is told, at the hard one it is killed without a word
+        resource.setrlimit(what, (max(most - 1, 1) if what == resource.RLIMIT_CPU else most, most))
 
 
 def main() -> None:
@@ -157,9 +174,9 @@ def main() -> None:
     answer: BinaryIO = os.fdopen(os.dup(1), "wb")
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # libraries print
     given = json.loads(sys.argv[1])
-    module, name = READERS[given["form"]]
+    module, _, name = given["reader"].partition(":")
     reader: Callable[..., Any] = getattr(importlib.import_module(module), name)
-    content = sys.stdin.buffer.read()
+    content = sys.stdin.buffer.read() if given["path"] is None else given["path"]
     limit_process(given["room"], given["seconds"])
     try:
         found: dict[str, Any] = {"value": reader(content, **given["options"])}
@@ -172,4 +189,6 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    from extrados.schema import contained  # whose Unreadable is that of the readers
+
+    contained.main()
