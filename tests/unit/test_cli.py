@@ -47,6 +47,33 @@ def test_readme_deck(tmp_path) -> None:
         assert (tmp_path / "o" / name).stat().st_size > 0
 
 
+@pytest.mark.parametrize("command", ['"$1" -m extrados run - < deck.toml', '"$1" -m extrados run <(cat deck.toml)'])
+def test_a_deck_comes_from_a_pipe(command: str, tmp_path: Path) -> None:
+    """Its files are looked for in the current folder, its results are below results/stdin."""
+    deck(tmp_path, ARCH + '[motion]\nkind = "record"\nfile = "motion.csv"\n[analysis]\nkind = "tilt"\n')
+    (tmp_path / "motion.csv").write_text(
+        "time [s],acceleration [g]\n" + "".join(f"{0.01 * k:.2f},0.1\n" for k in range(50))
+    )
+    for words, code, said in (
+        ("", 0, "Results: results/stdin"),
+        ("tlit", 2, "stdin:11: analysis.kind: unknown kind 'tlit'"),
+    ):
+        if words:
+            (tmp_path / "deck.toml").write_text((tmp_path / "deck.toml").read_text().replace("tilt", words))
+        done = subprocess.run(
+            ["bash", "-c", f"{command} --no-figures", "bash", sys.executable], cwd=tmp_path, capture_output=True, text=True, timeout=120
+        )  # fmt: skip
+        assert done.returncode == code and said in done.stdout + done.stderr, done.stdout + done.stderr
+
+
+def test_a_pipe_that_never_ends_is_no_deck(tmp_path: Path) -> None:
+    done = subprocess.run(
+        ["bash", "-c", 'yes | "$1" -m extrados check -', "bash", sys.executable], cwd=tmp_path, capture_output=True, text=True,
+        timeout=120,
+    )  # fmt: skip
+    assert done.returncode == 2 and "at most" in done.stderr
+
+
 def test_exit_codes(tmp_path) -> None:
     wrong = extrados("run", deck(tmp_path, ARCH + '[analysis]\nkind = "tlit"\n'))
     assert wrong.returncode == 2 and "deck.toml:8: analysis.kind" in wrong.stderr and "Traceback" not in wrong.stderr

@@ -478,3 +478,77 @@ def test_a_frame_is_read_as_it_was_sent() -> None:
     for name, array in arrays.items():
         np.testing.assert_array_equal(found[name], array)
     assert found["d"].dtype == np.float64
+
+
+def test_idle_connections_shut_no_page_out(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "WHOLE_REQUEST", 1.0)
+    page = Page(folder)
+    try:
+        with contextlib.ExitStack() as stack:
+            links = []
+            for k in range(200):
+                link = stack.enter_context(socket.create_connection(("127.0.0.1", page.port), timeout=30))
+                link.sendall(b"" if k % 2 else f"POST /{TOKEN}/film HTTP/1.1\r\nHost: a".encode())
+                links.append(link)
+            assert status(page.request()) == 200
+            assert page.upgrade().startswith(b"HTTP/1.1 101")
+            for link in links:  # all of them are ended by the server
+                with contextlib.suppress(ConnectionError):
+                    while link.recv(4096):
+                        pass
+        until(lambda: not page.server.server_state.connections)
+    finally:
+        page.close()
+
+
+def test_a_request_that_comes_in_pieces_is_answered(page: Page) -> None:
+    with socket.create_connection(("127.0.0.1", page.port), timeout=30) as link:
+        for _ in range(2):  # the second one on the connection that was kept alive
+            for part in page.asked({"Connection": "keep-alive"}, f"/{TOKEN}/style.css").split(b"Host"):
+                link.sendall(part if part.startswith(b"GET") else b"Host" + part)
+                time.sleep(0.05)
+            found = b""
+            while b"\r\n\r\n" not in found:
+                found += link.recv(65536)
+            head, _, body = found.partition(b"\r\n\r\n")
+            assert status(head) == 200
+            length = int(head.lower().split(b"content-length: ")[1].split(b"\r\n")[0])
+            while len(body) < length:
+                body += link.recv(65536)
+
+
+def test_a_tab_may_be_led_to_the_page_and_nothing_else_may(page: Page) -> None:
+    """What a browser sends where it follows the file that `extrados explore` wrote for it."""
+    led = {"Sec_Fetch_Site": "cross-site", "Sec_Fetch_Mode": "navigate", "Sec_Fetch_Dest": "document"}
+    assert status(page.request(**led)) == 200
+    assert status(page.request(**{**led, "Sec_Fetch_Dest": "iframe"})) == 403
+    assert status(page.request("/", **led)) == 403
+    assert status(page.request(f"/{TOKEN}/film", "POST", b"x", **led)) == 403
+    assert b"101" not in page.upgrade(**led)[:20]
+
+
+def test_the_token_stands_in_a_file_of_its_user_alone() -> None:
+    from extrados.explore.supervisor import write_pointer
+
+    pointer = write_pointer("http://127.0.0.1:1/secret/")
+    assert pointer.stat().st_mode & 0o777 == 0o600
+    assert 'url=http://127.0.0.1:1/secret/"' in pointer.read_text()
+    pointer.unlink()
+
+
+def test_two_pages_that_save_one_deck_leave_one_of_the_two(tmp_path: Path) -> None:
+    from extrados.explore.folder import Folder
+
+    texts = [f"# {k}\n" * 20_000 for k in range(4)]
+
+    def save(text: str) -> None:
+        for _ in range(20):
+            Folder(tmp_path).save("deck.toml", text, {}, replace=True)
+
+    threads = [threading.Thread(target=save, args=(text,)) for text in texts]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(120)
+    assert (tmp_path / "deck.toml").read_text() in texts
+    assert [path.name for path in tmp_path.iterdir()] == ["deck.toml"]

@@ -1,11 +1,13 @@
 """Plain columns in many layouts: each is read right or refused with what was seen; none is read wrong."""
 
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from extrados.motions.formats.recognise import read_records
 from extrados.motions.formats.record import ACCELERATION, RecordError
 from extrados.motions.records import Treatment, read_record, record_motion
 
@@ -309,3 +311,26 @@ def test_numbers_of_a_header_before_real_records(records: Path, tmp_path, prefix
             )
             back = read_record(tmp_path / "r.txt", columns="series").values
             np.testing.assert_allclose(back, values, atol=6e-4)
+
+
+@pytest.mark.parametrize("layout", ["{t:.2f} {a:.6f}\n", "{a:.6f}\n", "{a:.6f} {a:.6f} {a:.6f}\n", "{t:.2f},{a:.6E}\n"])
+def test_a_file_that_is_cut_inside_its_last_number_is_refused(layout: str, tmp_path: Path) -> None:
+    text = "step 0.01 s, acceleration in g\n" * ("{t" not in layout)
+    text += "".join(layout.format(t=0.01 * k, a=0.1 * math.sin(0.3 * k + 0.1)) for k in range(60))
+    path = tmp_path / "motion.txt"
+    columns = "components" if layout.count("{a") > 1 else None
+    for whole in (text, text.rstrip("\n"), text.replace("\n", "\r\n")):
+        path.write_text(whole, newline="")
+        assert read_records(path, columns)[0].values.size == 60
+    for lost in (2, 4):
+        path.write_text(text[:-lost], newline="")
+        with pytest.raises(RecordError, match="fewer decimals than those above it: the file is cut off"):
+            read_records(path, columns)
+
+
+def test_a_whole_file_may_end_with_a_short_number(tmp_path: Path) -> None:
+    """Records of PEER end with .0 where all other numbers have seven decimals."""
+    rows = "".join(f"{0.01 * k:.2f} {0.1 * math.sin(0.3 * k + 0.1):.6f}\n" for k in range(60))
+    path = tmp_path / "motion.txt"
+    path.write_text(rows + "0.60 .0\n")
+    assert read_records(path)[0].values.size == 61

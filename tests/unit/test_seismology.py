@@ -5,9 +5,11 @@ import sys
 import numpy as np
 import pytest
 
+from extrados.motions.formats import seismology
 from extrados.motions.formats.recognise import read_record
 from extrados.motions.formats.record import RecordError
 from extrados.motions.records import Treatment, record_motion
+from extrados.schema.contained import Unreadable
 
 
 def _trace():
@@ -50,9 +52,14 @@ def test_damaged_and_several_traces(tmp_path) -> None:
         np.testing.assert_array_equal(record.values, trace.data)  # the cut fell into the second trace
 
 
-def test_without_obspy(tmp_path, monkeypatch) -> None:
+def test_without_obspy(monkeypatch) -> None:
     monkeypatch.setitem(sys.modules, "obspy", None)
+    with pytest.raises(Unreadable, match=r"pip install 'extrados\[seismo\]'"):
+        seismology.parse(b"000001D ABC" + bytes(500))
+
+
+def test_what_is_no_record_is_refused_with_its_file(tmp_path) -> None:
     path = tmp_path / "x.mseed"
     path.write_bytes(b"000001D ABC" + bytes(500))
-    with pytest.raises(RecordError, match=r"pip install 'extrados\[seismo\]'"):
+    with pytest.raises(RecordError, match=r"x\.mseed: (miniSEED and SAC need obspy|obspy cannot read it)"):
         read_record(path)

@@ -2,6 +2,7 @@
 
 import errno
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -363,3 +364,47 @@ def test_results_of_another_version_are_told(key, value, words, tmp_path, with_f
     (run / store.SUMMARY).write_text(json.dumps(summary))
     with pytest.raises(store.StoreError, match=re.escape(words)):
         write_report(run)
+
+
+@pytest.mark.parametrize(
+    ("out", "words"),
+    [
+        (".", "holds the current folder"),
+        ("..", "holds the current folder"),
+        ("/", "holds the current folder"),
+        ("/proc", "mounted file system"),
+        ("x" * 248, "more than 200 bytes"),
+        ("é" * 101, "more than 200 bytes"),
+    ],
+)
+def test_a_place_for_no_results_is_refused_before_a_long_run(
+    out: str, words: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(store.StoreError, match=words):
+        store.prepare(Path(out))
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_name_of_the_longest_kind_can_be_written_twice(tmp_path: Path) -> None:
+    out = tmp_path / ("x" * store.LONGEST_NAME)
+    for _ in range(2):
+        store.prepare(out)
+        with store.NewFolder(out) as folder:
+            store.write(folder, HEAD, [sample()])
+    (out / "mine").touch()
+    with store.NewFolder(out) as folder:
+        store.write(folder, HEAD, [sample()])
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+@pytest.mark.parametrize("mask", [0o077, 0o022, 0o002])
+def test_a_folder_has_the_permissions_that_the_umask_leaves(mask: int, tmp_path: Path) -> None:
+    before = os.umask(mask)
+    try:
+        with store.NewFolder(tmp_path / "run") as folder:
+            store.write(folder, HEAD, [sample()])
+    finally:
+        os.umask(before)
+    assert (tmp_path / "run").stat().st_mode & 0o777 == 0o777 & ~mask
+    assert (tmp_path / "run" / store.SUMMARY).stat().st_mode & 0o777 == 0o666 & ~mask

@@ -10,10 +10,10 @@ from extrados.schema.table import Table, key, override_of
 if TYPE_CHECKING:
     from extrados.views.building import Building
 
-MaterialOverride = override_of(Material)
-JointsOverride = override_of(Joints)
-SupportsOverride = override_of(Supports)
-InitialOverride = override_of(Initial)
+MaterialOverride = override_of(Material, __name__)
+JointsOverride = override_of(Joints, __name__)
+SupportsOverride = override_of(Supports, __name__)
+InitialOverride = override_of(Initial, __name__)
 #: The tables of a building that an analysis may override for itself
 OVERRIDES = ("material", "joints", "supports", "initial")
 

@@ -21,6 +21,7 @@ import numpy as np
 from extrados import interrupts
 from extrados.core.calls import cancel_requested
 from extrados.core.errors import Cancelled, status_code
+from extrados.schema.isolated import environment, python_command
 
 LOOK = 0.05  # s between two looks whether the user has asked for the end
 ENDS = 5.0  # s: a process that has closed its pipe ends by then
@@ -68,18 +69,16 @@ def processes(job: Any, count: int) -> Iterator[Elsewhere]:
     """The job in `count` processes, which end with the block."""
     started: list[Worker] = []
     # They find what we find
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
+    found = environment(PYTHONPATH=os.pathsep.join(path for path in sys.path if path))
     free: queue.SimpleQueue[Worker] = queue.SimpleQueue()
     try:
         for _ in range(count):
             ours, theirs = Pipe()
             with theirs:
                 number = theirs.fileno()
-                command = [sys.executable, "-m", "extrados.analyses.workers", str(number)]
+                command = python_command("extrados.analyses.workers", str(number))
                 started.append(
-                    Worker(
-                        subprocess.Popen(command, stdin=subprocess.DEVNULL, pass_fds=[number], env=environment), ours
-                    )
+                    Worker(subprocess.Popen(command, stdin=subprocess.DEVNULL, pass_fds=[number], env=found), ours)
                 )
             ours.send(job)
             free.put(started[-1])

@@ -2,7 +2,9 @@
 
 import difflib
 import hashlib
+import os
 import re
+import stat
 import tomllib
 from dataclasses import dataclass, field
 from functools import cache
@@ -28,6 +30,8 @@ from extrados.views.building import Building
 
 LARGEST = 1_000_000  # bytes
 MOST_COMPLAINTS = 50
+#: Names of pipes that this process was given, which are open already: none is waited for
+PIPE = re.compile(r"-|/dev/stdin|/dev/fd/\d+")
 #: Tables that say what the building is besides its geometry
 PROPERTIES: dict[str, type[Table]] = {"material": Material, "joints": Joints, "supports": Supports, "initial": Initial}
 #: What the report says of a deck in words
@@ -118,14 +122,31 @@ class Deck:
 
 
 def read_deck(path: str | Path) -> Deck:
-    """The deck in a file; DeckError lists every complaint."""
+    """The deck in a file, or in a pipe ("-", and what a shell makes of <(command)), whose files are looked for in the current
+    folder; DeckError lists every complaint."""
     path = Path(path)
     name = str(path)
+    if PIPE.fullmatch(name) and (raw := _piped(name)) is not None:
+        return read_text(raw, "stdin")
     try:
         raw = files.read(path, LARGEST).content
     except files.BadFile as error:
         raise DeckError([str(error)]) from None
     return read_text(raw, name, path.resolve().parent)
+
+
+def _piped(name: str) -> bytes | None:
+    """What a pipe that this process was given holds; None where it is a file."""
+    try:
+        with open(0 if name == "-" else name, "rb", closefd=name != "-") as stream:
+            if stat.S_ISREG(os.fstat(stream.fileno()).st_mode) and name != "-":
+                return None
+            raw = stream.read(LARGEST + 1)
+    except OSError as error:
+        raise DeckError([f"{name}: cannot be read: {error.strerror or error}"]) from None
+    if len(raw) > LARGEST:
+        raise DeckError([f"{name}: is more than {LARGEST / 1e6:g} MB; at most as many are read"])
+    return raw
 
 
 def read_text(raw: bytes, name: str = "deck.toml", folder: Path | None = None) -> Deck:
@@ -193,7 +214,7 @@ class _Checker:
         structure = self.section("structure", data.get("structure"), ("structure",))
         motion = self.section("motion", data.get("motion"), ("motion",))
         given = data.get("analysis")
-        if given is None or given == []:
+        if given is None or (isinstance(given, list) and not given):
             self.complain((), f"no [analysis]: expected one of {_words(kinds.ANALYSES)}")
             given = []
         tables = given if isinstance(given, list) else [given]

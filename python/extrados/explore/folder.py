@@ -4,9 +4,9 @@ import contextlib
 import os
 import queue
 import re
+import secrets
 import signal
 import subprocess
-import sys
 import threading
 import time
 import tomllib
@@ -17,6 +17,7 @@ from typing import Any
 from extrados.decks.reader import LARGEST
 from extrados.results.store import SUMMARY, Stored, StoreError, read
 from extrados.schema import files
+from extrados.schema.isolated import environment, python_command
 from extrados.schema.places import CASES
 
 #: How deep decks and runs are looked for, how many are listed, how many folders are looked into
@@ -143,9 +144,7 @@ class Folder:
                 elif place.read_bytes() != content:
                     raise NotThere(f"{name} is there already, with other content: save the deck in another folder")
             target.parent.mkdir(parents=True, exist_ok=True)
-            scratch = target.with_name(f".{target.name}.{os.getpid()}")
-            scratch.write_text(text, encoding="utf-8", newline="")
-            scratch.replace(target)
+            _replace(target, text)
         except OSError as error:
             raise NotThere(f"{path}: could not be written: {error.strerror or error}") from None
         return target.relative_to(self.root).as_posix()
@@ -167,7 +166,7 @@ class Folder:
         the end ("", True). What is left of it is ended when nobody listens any more."""
         target = self.inside(deck)
         child = subprocess.Popen(
-            [sys.executable, "-m", "extrados", "run", str(target.relative_to(self.root)), "--no-figures"], cwd=self.root,
+            python_command("extrados", "run", str(target.relative_to(self.root)), "--no-figures"), cwd=self.root, env=environment(),
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace",
         )  # fmt: skip
         lines: queue.Queue[str | None] = queue.Queue()
@@ -203,6 +202,17 @@ class Folder:
                 if child.poll() is None:
                     child.kill()
                     child.wait()
+
+
+def _replace(target: Path, text: str) -> None:
+    """Write a text in place of a file, whole or not at all; two writers at once do not mix. OSError where it fails."""
+    scratch = target.with_name(f".{secrets.token_hex(8)}.part")
+    try:
+        with scratch.open("x", encoding="utf-8", newline="") as file:
+            file.write(text)
+        scratch.replace(target)
+    finally:
+        scratch.unlink(missing_ok=True)
 
 
 _presets: list[dict[str, str]] | None = None

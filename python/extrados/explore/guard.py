@@ -100,7 +100,9 @@ class Guard:
             return 403, "requests of other sites are not answered"
         if not origin and (socket or scope["method"] not in ("GET", "HEAD")):
             return 403, "a request that does not say its origin is not answered"
-        if heads.get(b"sec-fetch-site", [b"none"])[0] not in (b"none", b"same-origin"):
+        # A tab that goes to the page from the file of `supervisor` is no danger: it needs the token, and reads nothing
+        opens = scope.get("method") == "GET" and heads.get(b"sec-fetch-dest") == [b"document"]
+        if heads.get(b"sec-fetch-site", [b"none"])[0] not in (b"none", b"same-origin") and (socket or not opens):
             return 403, "requests of other sites are not answered"
         if not socket and scope["method"] not in ("GET", "HEAD", "POST"):
             return 405, "only GET and POST are known"

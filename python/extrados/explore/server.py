@@ -50,6 +50,8 @@ TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".s
 MOST_WAITING = 200
 #: Seconds for which a page may leave unread what it is sent
 UNREAD = 30.0
+#: Seconds within which a request is there as a whole; connections without a whole request, of 64 that are served at once
+WHOLE_REQUEST, MOST_IDLE = 30.0, 32
 
 
 class Inbox:
@@ -280,6 +282,52 @@ def _socket_protocol() -> type[asyncio.Protocol]:
     return Protocol
 
 
+def _http_protocol() -> type[asyncio.Protocol]:
+    """uvicorn's HTTP protocol with a limit for connections whose request is not whole yet.
+
+    Such a connection ends WHOLE_REQUEST seconds after it was made, or after the first part of a later request; of more than
+    MOST_IDLE at once the oldest ends. uvicorn itself would wait without limit, and idle connections would shut pages out.
+    """
+    import h11
+    from uvicorn.protocols.http.h11_impl import H11Protocol
+
+    idle: dict[Any, asyncio.TimerHandle] = {}  # the oldest first
+
+    class Protocol(H11Protocol):
+        def connection_made(self, transport: asyncio.Transport) -> None:
+            super().connection_made(transport)
+            self._note_idle()
+
+        def data_received(self, data: bytes) -> None:
+            super().data_received(data)
+            if self.conn.their_state in (h11.IDLE, h11.SEND_BODY):
+                self._note_idle()
+            else:
+                self._note_whole()
+
+        def connection_lost(self, exc: Exception | None) -> None:
+            super().connection_lost(exc)
+            self._note_whole()
+
+        def _note_idle(self) -> None:
+            if self in idle:
+                return
+            if len(idle) >= MOST_IDLE:
+                next(iter(idle))._drop()
+            idle[self] = asyncio.get_running_loop().call_later(WHOLE_REQUEST, self._drop)
+
+        def _drop(self) -> None:
+            self.connections.discard(self)  # those that are served are counted before the loop has closed this one
+            self._note_whole()
+            self.transport.abort()
+
+        def _note_whole(self) -> None:
+            if (timer := idle.pop(self, None)) is not None:
+                timer.cancel()
+
+    return Protocol
+
+
 def configured(sock: socket.socket, token: str, folder: Path, deck: str | None = None) -> "uvicorn.Config":
     """How uvicorn serves pages on a listening socket: bounded in all that a stranger could send."""
     import uvicorn
@@ -289,7 +337,7 @@ def configured(sock: socket.socket, token: str, folder: Path, deck: str | None =
         application(token, hosts_of(port), folder, deck), log_level="warning", access_log=False, server_header=False,
         ws=_socket_protocol(), ws_max_size=LARGEST_MESSAGE, ws_per_message_deflate=False, ws_ping_interval=20.0,
         ws_ping_timeout=60.0, limit_concurrency=64, timeout_keep_alive=10, timeout_graceful_shutdown=1,
-        h11_max_incomplete_event_size=16_384, lifespan="off", proxy_headers=False, http="h11", loop="asyncio",
+        h11_max_incomplete_event_size=16_384, lifespan="off", proxy_headers=False, http=_http_protocol(), loop="asyncio",
     )  # fmt: skip
 
 

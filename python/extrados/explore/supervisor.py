@@ -3,17 +3,18 @@
 The socket and the token belong to this process, which computes nothing and hence does not die of it.
 """
 
+import atexit
 import json
-import os
 import signal
 import subprocess
-import sys
+import tempfile
 import time
 import webbrowser
 from collections.abc import Callable
 from pathlib import Path
 
 from extrados.explore import server
+from extrados.schema.isolated import environment, python_command
 
 #: Where pages are served unless that is taken
 PORT = 8737
@@ -36,19 +37,17 @@ def explore(
         say(f"Page:    {address}")
         say(f"Folder:  {folder}")
         say("Ctrl-C ends it.")
-        environment = {
-            **os.environ,
-            "EXTRADOS_EXPLORE": json.dumps(
-                {"socket": sock.fileno(), "token": token, "folder": str(folder), "deck": deck}
-            ),
-        }
+        given = {"socket": sock.fileno(), "token": token, "folder": str(folder), "deck": deck}
         deaths: list[float] = []
+        pointer = write_pointer(address) if browser else None
         while True:
             child = subprocess.Popen(
-                [sys.executable, "-m", "extrados.explore.server"], pass_fds=[sock.fileno()], env=environment
+                python_command("extrados.explore.server"),
+                pass_fds=[sock.fileno()],
+                env=environment(EXTRADOS_EXPLORE=json.dumps(given)),
             )
-            if browser and not deaths:
-                webbrowser.open(address)
+            if pointer and not deaths:
+                webbrowser.open(pointer.as_uri())
             try:
                 code = child.wait()
             except KeyboardInterrupt:
@@ -63,6 +62,16 @@ def explore(
                 return 3
             say(f"the server died (code {code}): it is begun anew, and open pages come back with their state")
             time.sleep(0.2 * len(deaths))
+
+
+def write_pointer(address: str) -> Path:
+    """A file that only this user can read and that leads to the page: what stands on a browser's command line, everybody on the
+    machine can read. It is removed at the end of this process."""
+    handle, name = tempfile.mkstemp(prefix="extrados-", suffix=".html")
+    atexit.register(lambda: Path(name).unlink(missing_ok=True))
+    with open(handle, "w", encoding="ascii") as file:
+        file.write(f'<meta http-equiv="refresh" content="0; url={address}"><a href="{address}">extrados</a>\n')
+    return Path(name)
 
 
 def _end(child: subprocess.Popen) -> None:

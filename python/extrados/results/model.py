@@ -35,6 +35,10 @@ class Streamed:
     def __getitem__(self, index: Any) -> Any:
         return np.asarray(self)[index]
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A pickle holds the numbers themselves: its reader may be on another machine."""
+        return np.asarray, (np.asarray(self),)
+
 
 @dataclass(frozen=True)
 class Array:
@@ -72,6 +76,11 @@ class StreamedTable(TableData):
     def __init__(self, make: Callable[[], Iterator[dict[str, Any]]], units: dict[str, str]):
         super().__init__({}, units)
         object.__setattr__(self, "pieces", make)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """A pickle holds the rows themselves: its reader may be on another machine."""
+        pieces = list(self.pieces())
+        return TableData, ({name: np.concatenate([p[name] for p in pieces]) for name in pieces[0]}, self.units)
 
 
 @dataclass

@@ -8,11 +8,12 @@ import io
 import json
 import logging
 import os
+import secrets
 import shutil
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,7 @@ from extrados.results.model import Array, Result, Streamed, TableData
 from extrados.results.typed import typed
 from extrados.results.verdict import KindResults
 from extrados.schema import files
+from extrados.schema.hdf5 import lies_elsewhere
 from extrados.schema.text import printable
 
 SUMMARY = "summary.json"
@@ -32,6 +34,7 @@ STORE = "results.h5"
 CSV_ROWS = 10_000  # turned into text at a time
 #: Of arrays so many numbers are written or read at a time; results.h5 of more bytes leaves longer ones on disk
 LARGE, SMALL = 100_000, 8_000_000
+LONGEST_NAME = 200  # bytes of a folder's name: of the 255 that file systems take some are for what is added to it
 LARGEST_SUMMARY = 200_000_000  # bytes: a hundred times those of the longest that was seen
 REPORT = "report.html"
 #: Axes along which x, y and z stand
@@ -88,6 +91,14 @@ def arrays_of(results: list[Result]) -> dict[str, dict[str, Array]]:
 def prepare(out: Path) -> None:
     """Refuse early, before a long run, what could not be written after it."""
     out = Path(os.path.abspath(out))
+    if Path.cwd().is_relative_to(out):
+        raise StoreError(f"{out}: holds the current folder; name a folder for the results alone, such as --out results")
+    if os.path.ismount(out):
+        raise StoreError(
+            f"{out}: is a mounted file system, which cannot be replaced; name a folder within it with --out"
+        )
+    if len(os.fsencode(out.name)) > LONGEST_NAME:
+        raise StoreError(f"{out}: the name has more than {LONGEST_NAME} bytes; name a shorter one with --out")
     _refuse_no_folder(out)
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
@@ -111,8 +122,8 @@ class NewFolder:
         _refuse_no_folder(self.out)
         try:
             self.out.parent.mkdir(parents=True, exist_ok=True)
-            self.scratch = Path(tempfile.mkdtemp(prefix=f".{self.out.name}.", dir=self.out.parent))
-            self.scratch.chmod(0o755)
+            self.scratch = self.out.with_name(f".{self.out.name}.{secrets.token_hex(4)}")
+            self.scratch.mkdir()  # with the permissions that the user's umask leaves
         except OSError as error:
             raise StoreError(f"{self.out}: cannot write here: {reason(error)}") from None
         return self.scratch
@@ -501,12 +512,6 @@ def _on_disk(path: Path, name: str, length: int, dtype: np.dtype) -> Streamed:
     return Streamed(length, dtype, pieces)
 
 
-def _elsewhere(store: Any, file: Any) -> bool:
-    """Whether the numbers of an array do not all lie in the file, as ours do: in files elsewhere, or one that stands for
-    gigabytes."""
-    return bool(store.file != file or store.external or store.is_virtual or store.nbytes > store.id.get_storage_size())
-
-
 def read(folder: str | Path) -> Stored:
     """Read a run's folder; StoreError where it is damaged."""
     import h5py
@@ -524,7 +529,7 @@ def read(folder: str | Path) -> Stored:
             for name, group in file.items():
                 arrays[name] = {}
                 for title, store in group.items():
-                    if store is None or _elsewhere(store, file):
+                    if store is None or lies_elsewhere(store, file):
                         raise StoreError(
                             f"{folder / STORE}: '{title}' does not lie in the file whole; extrados wrote no such one"
                         )
@@ -539,7 +544,7 @@ def read(folder: str | Path) -> Stored:
         if untold := set(arrays) - {row["name"] for row in summary["analyses"]}:
             raise StoreError(f"{folder / STORE}: holds '{min(untold)}', of which {SUMMARY} says nothing")
         head = {key: value for key, value in summary.items() if key != "analyses"}
-        return Stored(folder, lambda: head, summary["analyses"], arrays)
+        return Stored(folder, partial(dict, head), summary["analyses"], arrays)
     except files.BadFile as error:
         raise StoreError(f"{error}; {folder} holds no results of extrados") from None
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:

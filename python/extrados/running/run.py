@@ -5,6 +5,7 @@ import shutil
 import signal
 import threading
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -38,7 +39,7 @@ class Run(Stored):
         when = computed()
         run = cls(
             None,
-            lambda: _head(deck, parts) | {"computed": when},
+            partial(_head, deck, parts, when),
             store.rows(results),
             store.arrays_of(results),
             store.typed_of(results),
@@ -89,7 +90,7 @@ class Run(Stored):
         return self.folder
 
 
-def _head(deck: Deck, parts: list[Result]) -> dict[str, Any]:
+def _head(deck: Deck, parts: list[Result], when: dict[str, str]) -> dict[str, Any]:
     """What summary.json says besides the analyses."""
     resolved = deck.resolved()
     resolved["analysis"] += [part.asked for part in parts]
@@ -106,6 +107,7 @@ def _head(deck: Deck, parts: list[Result]) -> dict[str, Any]:
             **described(deck),
             "resolved": resolved,
         },
+        "computed": when,
     }
 
 

@@ -52,14 +52,17 @@ class _Built(Table):
     model_config = ConfigDict(defer_build=False)
 
 
-def override_of(model: type[Table]) -> type[Table]:
+def override_of(model: type[Table], module: str) -> type[Table]:
     """The table by which an analysis replaces values of a building's table for itself: every key optional.
 
-    Rules over several keys are those of `model`, which the two together must meet.
+    Rules over several keys are those of `model`, which the two together must meet. `module`: where it stands, by the name
+    <model>Override, so that it can be pickled.
     """
     fields: dict[str, Any] = {}
     for name, field in model.model_fields.items():
         bounded: Any = Annotated[(field.annotation, *field.metadata)] if field.metadata else field.annotation
         asked = Field(None, description=field.description, json_schema_extra=field.json_schema_extra)
         fields[name] = (bounded | None, asked)
-    return create_model(f"{model.__name__}Override", __base__=_Built, __doc__=model.__doc__, **fields)
+    return create_model(
+        f"{model.__name__}Override", __base__=_Built, __doc__=model.__doc__, __module__=module, **fields
+    )

@@ -219,7 +219,7 @@ def _describe(
     _tables(job, swept, per_motion, options, result)
     hazard = None if options.hazard is None else (hazard_curve(options.hazard, context.deck.folder), options.hazard)
     if job.levels is not None:
-        seen = arranged(job.levels, swept.members, motions, swept.arrays)
+        seen = arranged(job.levels, swept.members, swept.arrays)
         with np.errstate(invalid="ignore"):
             for name, key in (("slips", "sliding_share"), ("strays", "hinges_elsewhere_share")):
                 where = swept.members % len(job.levels)

@@ -59,14 +59,18 @@ class Stripes:
         return found
 
 
-def arranged(levels: np.ndarray, members: np.ndarray, motions: int, rows: dict[str, np.ndarray]) -> Stripes:
-    """Stripes of the members of an ensemble, motion by motion with all their levels; missing ones count as failed."""
+def arranged(levels: np.ndarray, members: np.ndarray, rows: dict[str, np.ndarray]) -> Stripes:
+    """Stripes of the members of an ensemble, motion by motion with all their levels; missing ones of a motion count as failed.
+
+    Motions without any finished member take no room: of an interrupted run of many motions few are there.
+    """
     order, n = np.argsort(levels, kind="stable"), len(levels)
+    motions, of_member = np.unique(members // n, return_inverse=True)
 
     def grid(values: np.ndarray, missing: float) -> np.ndarray:
-        full = np.full(motions * n, missing, dtype=values.dtype)
-        full[members] = values
-        return full.reshape(motions, n)[:, order]
+        full = np.full((len(motions), n), missing, dtype=values.dtype)
+        full[of_member, members % n] = values
+        return full[:, order]
 
     return Stripes(
         levels[order], grid(rows["outcome"], FAILED), grid(rows["peak_ratio"], np.nan), grid(rows["pga"], np.nan)

@@ -4,7 +4,7 @@ import io
 import itertools
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from extrados.model.errors import BadGeometry
 from extrados.model.geometry.drawing import GROUND_LAYER, MOST_BLOCKS, UNITS, Drawing, Layer, Polygon
 from extrados.model.geometry.linework import net_of, place_in
 from extrados.model.geometry.polygons import inside, signed_area
+from extrados.schema.contained import Unreadable, read_contained
 from extrados.schema.files import File
 
 # DXF $INSUNITS -> our unit
@@ -56,7 +57,7 @@ def read_dxf(
     join_tolerance: float = 1e-3,
     sagitta: float = SAGITTA,
 ) -> Drawing:
-    """Blocks, ground and marks of a drawing. Needs the extra `dxf` (ezdxf).
+    """Blocks, ground and marks of a drawing. Needs the extra `dxf` (ezdxf), which reads in a process of its own.
 
     layers: those to read as stones, all where it is None. meaning: layers that are something else than plain stones;
     GROUND is the ground. Ends of loose lines within `join_tolerance` [m] are one point; `sagitta` [m]: how far
@@ -65,7 +66,35 @@ def read_dxf(
     until `unit` is given.
     """
     name = file.path.name
-    document = _document(file.content, name)
+    try:
+        found = read_contained(
+            "extrados.model.geometry.dxf:parse_dxf", file.content, name=name, unit=unit, layers=layers,
+            meaning={layer: asdict(one) for layer, one in (meaning or {}).items()}, join_tolerance=join_tolerance, sagitta=sagitta,
+        )  # fmt: skip
+    except Unreadable as error:
+        raise BadGeometry(str(error) if error.at else f"{name}: {error}", error.at or ("structure",)) from None
+    return Drawing(**{**found, "blocks": [Polygon(**block) for block in found["blocks"]]})
+
+
+def parse_dxf(content: bytes, name: str, meaning: Mapping[str, Mapping[str, Any]], **how: Any) -> dict[str, Any]:
+    """The fields of the Drawing in the content of a file; run by the process that reads. Unreadable says what is wrong."""
+    try:
+        return asdict(drawing_of(content, name, meaning={k: Layer(**one) for k, one in meaning.items()}, **how))
+    except BadGeometry as error:
+        raise Unreadable(str(error), error.at) from None
+
+
+def drawing_of(
+    content: bytes,
+    name: str,
+    unit: str | None = None,
+    layers: list[str] | None = None,
+    meaning: Mapping[str, Layer] | None = None,
+    join_tolerance: float = 1e-3,
+    sagitta: float = SAGITTA,
+) -> Drawing:
+    """The drawing in the content of a file, as `read_dxf` has it, read by this process."""
+    document = _document(content, name)
     scale = UNITS[unit or _unit(name, int(document.header.get("$INSUNITS", 0)))]
     known = {k.upper(): v for k, v in (meaning or {}).items()}
     known.setdefault(GROUND_LAYER, Layer("ground"))

@@ -13,6 +13,7 @@ LARGEST = 50_000_000  # bytes: three hours at 200 samples a second, ten times wh
 
 LONGEST_WORDS = 2000  # characters of a header line that are looked at
 LONGEST_NUMBER = 60  # characters
+ALIKE = 20  # numbers of equally many decimals by which a last one with fewer is known to be cut off
 SHORTEST_STEP, LONGEST_STEP = 1e-4, 0.5  # s: sampling steps that a file of a strong motion may have
 
 #: Units a file or a deck may name, in SI. gal is cm/s^2.
@@ -52,10 +53,11 @@ class Record:
 
 @dataclass(frozen=True)
 class Lines:
-    """The lines of a file, counted from 0; complaints count from 1 as editors do."""
+    """The lines of a file, counted from 0; complaints count from 1 as editors do. ended: whether the last one has its end."""
 
     path: Path
     lines: list[str]
+    ended: bool = True
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -107,6 +109,7 @@ class Lines:
 
     def numbers(self, rows: list[tuple[int, list[str]]]) -> np.ndarray:
         """All tokens of (line, tokens) rows as one array; the first bad token is named with its line."""
+        self._refuse_cut_number(rows)
         tokens = [token for _, row in rows for token in row]
         if all(map(_PLAIN.match, tokens)) and max(map(len, tokens), default=0) <= LONGEST_NUMBER:
             try:
@@ -116,6 +119,20 @@ class Lines:
             except ValueError:
                 pass
         return np.array([self.number(token, at) for at, row in rows for token in row])
+
+    def _refuse_cut_number(self, rows: list[tuple[int, list[str]]]) -> None:
+        """RecordError where the last number of the file has fewer decimals than all of those above it, which have equally many,
+        and its line has no end."""
+        if self.ended or len(rows) <= ALIKE or rows[-1][0] < len(self.lines) - 1:
+            return
+        decimals = {len(row[-1].strip().partition(".")[2]) for _, row in rows[-1 - ALIKE : -1]}
+        at, last = rows[-1][0], rows[-1][1][-1].strip()
+        if len(decimals) == 1 and len(last.partition(".")[2]) < max(decimals):
+            raise self.error(
+                at,
+                f"the last number '{last[:30]}' has fewer decimals than those above it: the file is cut off there; complete it, "
+                "or delete the last line",
+            )
 
     def blanks(self, start: int, stop: int | None = None) -> list[tuple[int, list[str]]]:
         """Rows of tokens between blanks; empty lines are left out."""
@@ -188,7 +205,8 @@ def read_lines(file: File) -> Lines:
         line = raw[: raw.index(b"\0")].count(b"\n") + 1
         raise RecordError(f"{path}:{line}: is a binary file; expected text")
     text = raw.decode("utf-8-sig", errors="replace")
-    return Lines(path, re.split(r"\r\n|\n|\r", text.rstrip("\r\n \t\x1a")))
+    ended = text.endswith(("\n", "\r", "\x1a"))
+    return Lines(path, re.split(r"\r\n|\n|\r", text.rstrip("\r\n \t\x1a")), ended)
 
 
 def said_in(lines: list[str]) -> tuple[str, str]:

@@ -6,6 +6,7 @@ import warnings
 import numpy as np
 
 from extrados.motions.formats.record import Record, RecordError
+from extrados.schema.contained import Unreadable, read_contained
 from extrados.schema.files import File
 
 
@@ -18,27 +19,38 @@ def recognises(file: File) -> bool:
 
 
 def read(file: File) -> list[Record]:
-    """One record per trace, without a unit: the deck says what the numbers are."""
+    """One record per trace, without a unit: the deck says what the numbers are. A process of its own reads."""
     path = file.path
+    try:
+        found = read_contained("extrados.motions.formats.seismology:parse", file.content)
+    except Unreadable as error:
+        raise RecordError(f"{path}: {error}") from None
+    return [Record(path.stem, values, step, None, component=trace) for values, step, trace in found]
+
+
+def parse(content: bytes) -> list[tuple[np.ndarray, float, str]]:
+    """Samples, step [s] and name of each trace; run by the process that reads. Unreadable says what is wrong."""
     try:
         import obspy
     except ImportError:
-        raise RecordError(f"{path}: miniSEED and SAC need obspy: pip install 'extrados[seismo]'") from None
+        raise Unreadable("miniSEED and SAC need obspy: pip install 'extrados[seismo]'") from None
     try:
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
-            stream = obspy.read(io.BytesIO(file.content))
+            stream = obspy.read(io.BytesIO(content))
+    except MemoryError:
+        raise
     except Exception as error:  # obspy raises many kinds on broken files
-        raise RecordError(f"{path}: obspy cannot read it: {type(error).__name__}: {str(error)[:200]}") from None
+        raise Unreadable(f"obspy cannot read it: {type(error).__name__}: {str(error)[:200]}") from None
     damage = [str(w.message) for w in said if issubclass(w.category, UserWarning)]
     if damage:
-        raise RecordError(f"{path}: is damaged, obspy says: {damage[0][:200]}")
-    records = []
+        raise Unreadable(f"is damaged, obspy says: {damage[0][:200]}")
+    found = []
     for trace in stream:
         values: np.ndarray = np.ma.filled(np.ma.asarray(trace.data, dtype=float), np.nan)
         if not np.isfinite(values).all():
-            raise RecordError(f"{path}: trace {trace.id} has gaps or values that are not finite")
-        records.append(Record(path.stem, values, float(trace.stats.delta), None, component=trace.id))
-    if not records:
-        raise RecordError(f"{path}: holds no traces")
-    return records
+            raise Unreadable(f"trace {trace.id} has gaps or values that are not finite")
+        found.append((values, float(trace.stats.delta), str(trace.id)))
+    if not found:
+        raise Unreadable("holds no traces")
+    return found

@@ -1,57 +1,27 @@
 """Walls from mesh files, read by meshio (the extra `mesh`)."""
 
-import contextlib
-import io
-import re
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from extrados.model.description import Description
 from extrados.model.errors import BadGeometry, blaming
 from extrados.model.files import read
+from extrados.model.geometry.mesh_files import ForeignMesh, read_mesh_file
 from extrados.model.structures.walls import MeshFile
-from extrados.schema.files import File
 from extrados.views.mesh.mesh import Mesh, build_mesh, element_areas
 from extrados.views.mesh.options import MeshOptions
 
-if TYPE_CHECKING:
-    import meshio
-
-
-#: Formats that keep a mesh in several files: meshio would open whatever path the first one names
-IN_PARTS = {".xdmf", ".xmf", ".node", ".ele"}
-_INCLUDE = re.compile(rb"^\s*\*\s*include\b", re.IGNORECASE | re.MULTILINE)
 KINDS = {"triangle": "T3", "triangle6": "T6", "quad": "Q4", "quad8": "Q8"}
 LARGEST = 500_000_000  # bytes
-EXPECTED = "expected a complete file of gmsh, Abaqus, VTU or another format that meshio reads, with the file ending of that format"
 #: Farther from the origin no place of a building is [m]: map coordinates (UTM: up to 1e7 m north) must be moved to the
 #: building first
 FARTHEST = 1e6
 
 
-def open_mesh(wall: MeshFile, building: Description) -> tuple[str, "meshio.Mesh"]:
+def open_mesh(wall: MeshFile, building: Description) -> tuple[str, ForeignMesh]:
     """The name of the file and what meshio finds in it, places in its own unit; BadGeometry says what is wrong."""
-    try:
-        import meshio
-    except ImportError:
-        raise BadGeometry("reading meshes needs meshio: pip install 'extrados[mesh]'") from None
     file = read(wall.file, LARGEST, building.folder)
-    path = file.path
-    _refuse_parts(file)
-    try:
-        # meshio prints its warnings and ends the process on some errors
-        quiet = io.StringIO()
-        with file.copied() as copy, contextlib.redirect_stdout(quiet), contextlib.redirect_stderr(quiet):
-            mesh = meshio.read(copy)
-    except SystemExit:
-        raise BadGeometry(f"{path.name}: is not a mesh that meshio reads; {EXPECTED}") from None
-    except Exception as error:
-        text = re.sub(r"'?\S*extrados-\S*'?", "the file", str(error))  # the name of the copy
-        raise BadGeometry(
-            f"{path.name}: is not a mesh that meshio reads: {text or 'unknown format'}; {EXPECTED}"
-        ) from None
-    points = np.asarray(mesh.points, dtype=float)
+    path, mesh = file.path, read_mesh_file(file)
+    points = mesh.points
     if not np.isfinite(points).all():
         raise BadGeometry(f"{path.name}: node {int(np.argwhere(~np.isfinite(points))[0, 0]) + 1} has no finite place")
     far = np.abs(points).max(initial=0.0) * wall.scale
@@ -107,9 +77,3 @@ def read_mesh(wall: MeshFile, building: Description, options: MeshOptions) -> Me
         order = {"T3": [0, 2, 1], "T6": [0, 2, 1, 5, 4, 3], "Q4": [0, 3, 2, 1], "Q8": [0, 3, 2, 1, 7, 6, 5, 4]}[kind]
         connect = connect[:, order]
     return build_mesh(wall, building, options, xy, kind, connect, float(np.sqrt(np.median(np.abs(area)))))
-
-
-def _refuse_parts(file: File) -> None:
-    """BadGeometry where the file draws on others: only what the deck names is read."""
-    if file.path.suffix.lower() in IN_PARTS or _INCLUDE.search(file.content):
-        raise BadGeometry(f"{file.path.name}: the mesh lies in several files; save it as one")

@@ -7,7 +7,7 @@ from extrados.model.files import LARGEST_FILE, read
 from extrados.model.geometry.compas import is_compas, read_compas
 from extrados.model.geometry.drawing import UNITS, parsed
 from extrados.model.geometry.solids.assembly import SolidAssembly, assemble
-from extrados.model.geometry.solids.meshes import read_obj, read_solids, read_stl, stones_of
+from extrados.model.geometry.solids.meshes import read_meshes, read_solids, stones_of
 from extrados.model.structures.blocks import SMALL, SOLID, Blocks
 from extrados.views.blocks import Masonry
 from extrados.views.solids.sections import solids_of_section
@@ -29,10 +29,7 @@ def solids_of_blocks(building: Masonry) -> SolidAssembly:
         raise BadGeometry(
             f"{name}: layers, ground and origin belong to plane drawings; solids stand on foundation_levels"
         )
-    if sort == ".obj":
-        meshes = read_obj(file.text(), name)
-    else:
-        meshes = read_stl(file.content, name) if sort == ".stl" else read_solids(value, name)
+    meshes = read_meshes(file) if sort in (".obj", ".stl") else read_solids(value, name)
     tolerance = drawing.contact_tolerance
     if "contact_tolerance" not in drawing.model_fields_set:
         points = np.concatenate([mesh.points for mesh in meshes])

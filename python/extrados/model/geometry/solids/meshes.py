@@ -4,7 +4,8 @@ import itertools
 import re
 import struct
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,8 @@ from extrados.model.geometry.drawing import UNITS
 from extrados.model.geometry.solids.assembly import MOST_SOLIDS, MOST_TOLD, Stone
 from extrados.model.geometry.solids.contacts import near_pairs
 from extrados.model.geometry.solids.polyhedra import ManyFaces, Polyhedron, fitted, hull, moments, overlap_depth
+from extrados.schema.contained import Unreadable, read_contained
+from extrados.schema.files import BadFile, File
 
 MOST_VERTICES = 2_000_000
 MOST_CORNERS = 2_000  # of a convex body: bodies that overlap are compared edge by edge
@@ -35,6 +38,28 @@ class Mesh:
     faces: list[list[int]] = field(default_factory=list)
     stone: str = ""
     ground: bool = False
+
+
+def read_meshes(file: File) -> list[Mesh]:
+    """Meshes of an OBJ or STL file, read by a process of its own; BadGeometry says what is wrong."""
+    name, sort = file.path.name, file.path.suffix.lower()
+    try:
+        found = read_contained("extrados.model.geometry.solids.meshes:parse_meshes", file.content, name=name, sort=sort)
+    except Unreadable as error:
+        raise BadGeometry(str(error) if error.at else f"{name}: {error}", error.at or ("structure",)) from None
+    return [Mesh(**mesh) for mesh in found]
+
+
+def parse_meshes(content: bytes, name: str, sort: str) -> list[dict[str, Any]]:
+    """The fields of each Mesh of an OBJ or STL; run by the process that reads. Unreadable says what is wrong."""
+    try:
+        if sort == ".stl":
+            return [asdict(mesh) for mesh in read_stl(content, name)]
+        return [asdict(mesh) for mesh in read_obj(File(Path(name), content).text(), name)]
+    except BadGeometry as error:
+        raise Unreadable(str(error), error.at) from None
+    except BadFile as error:
+        raise Unreadable(str(error)) from None
 
 
 def read_obj(text: str, name: str) -> list[Mesh]:
