@@ -4,7 +4,7 @@ PYTHON := .venv/bin/python
 # An import after a pull may build anew; meson then requires numpy-config and ninja on the path.
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
-.PHONY: browser pictures run test verify bench oldest lint format wheel setup table-5-3 impact-map docs references coverage release clean
+.PHONY: browser pictures run test verify bench oldest lint format wheel setup table-5-3 impact-map docs coverage release clean
 
 run: setup
 	@.venv/bin/extrados run $(DECK)
@@ -43,10 +43,7 @@ coverage: setup  ## share of lines of Python, Fortran and C that the quick suite
 release: setup  ## VERSION=0.2.0: sets the version in all files, dates the changelog, commits, tags, packs the sources
 	@$(PYTHON) tools/release.py $(VERSION)
 
-references: setup  ## references of decks and results, and the facts of `explain`, from their models
-	@$(PYTHON) tools/references.py
-
-docs: references  ## the documentation site in build/site, with offline search; installs its requirements
+docs: setup  ## the documentation site in build/site, with offline search; installs its requirements
 	@$(PYTHON) tools/site.py
 
 pictures: setup  ## pictures of README and docs (docs/pictures) from decks of cases/; NAME="arch page" selects some

@@ -109,7 +109,9 @@ def line(found: Found) -> str:
 
 def table(rows: Iterable[Found]) -> list[str]:
     """Rows one by one."""
-    head = "| case | change | quantity | expected | found | source |\n|---|---|---|---|---|---|"
+    rows = list(rows)
+    last = "why there is no outside value" if rows and rows[0].row.kind == "regression" else "source"
+    head = f"| case | change | quantity | expected | found | {last} |\n|---|---|---|---|---|---|"
     return [head, *map(line, rows), ""]
 
 

@@ -16,6 +16,8 @@ def main() -> None:
     gc.set_threshold(MANY)
     # Looking for plugins of pydantic, which has none here, reads the metadata of every package that is installed
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+    # OpenBLAS takes a buffer for each thread as it is loaded; the threads are those of the core, and sums have one order
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from extrados.cli import main
 
     main()

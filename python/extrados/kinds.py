@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any
 
-from extrados import room  # which also looks at the room for SciPy before it is loaded
+from extrados import room
 
 
 @dataclass(frozen=True)

@@ -51,9 +51,9 @@ class Maker:
 
     @cached_property
     def __doc__(self) -> str:  # type: ignore[override]
-        from extrados.decks import manual
+        from extrados.decks.explain import table_facts
 
-        [told] = [t for t in manual.stored() if (t.section, t.kind) == (self.section, self.kind)]
+        told = table_facts(self.section, self.kind, self.table)
         rows = [
             f"{name} : {key.facts or 'see its own keys'}\n    {key.about}"
             for name, key in told.keys.items()

@@ -2,8 +2,8 @@
 
 Each [[expect]] row has quantity ("rocking.impact_times_s[0]"), value (null cannot be written in TOML: use
 "none"), tolerance (absolute) or relative_tolerance, kind (exact | thesis | experiment | peer | calibration | regression),
-source, and optionally `change`, deck keys with other values ("structure.thickness" = 0.12, "none" leaves one out). `slow = true` at
-the top moves a case to `make verify`.
+source, and optionally `note` and `change`, deck keys with other values ("structure.thickness" = 0.12, "none" leaves one out). A
+regression compares the program with itself and has no source: `why` says why there is no outside value. `slow = true` at the top moves a case to `make verify`.
 """
 
 import re
@@ -32,7 +32,7 @@ class Row:
     tolerance: float
     relative: bool
     kind: str
-    source: str
+    source: str  # of a regression: why there is no outside value
     change: tuple[tuple[str, Any], ...]
     note: str
 
@@ -75,16 +75,18 @@ def load_cases() -> list[Case]:
                 "relative_tolerance",
                 "kind",
                 "source",
+                "why",
                 "change",
                 "note",
             }
-            if set(row) - known or row["kind"] not in KINDS or not row["source"]:
+            origin = "why" if row["kind"] == "regression" else "source"
+            if set(row) - known or row["kind"] not in KINDS or not row.get(origin) or {"why", "source"} <= set(row):
                 raise ValueError(f"{path}: bad row {row}")
             relative = "relative_tolerance" in row
             rows.append(
                 Row(
                     row["quantity"], row["value"], row.get("relative_tolerance", row.get("tolerance", 0.0)), relative,
-                    row["kind"], row["source"], tuple(sorted(row.get("change", {}).items())), row.get("note", ""),
+                    row["kind"], row[origin], tuple(sorted(row.get("change", {}).items())), row.get("note", ""),
                 )
             )  # fmt: skip
         deck = path.with_name(path.name.replace(".expect.toml", ".toml"))

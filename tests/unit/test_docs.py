@@ -1,8 +1,6 @@
 """The documentation shows decks that are right and names tests and cases that exist."""
 
 import re
-import subprocess
-import sys
 import tomllib
 from pathlib import Path
 
@@ -50,33 +48,6 @@ def test_what_the_docs_name_exists(page: Path) -> None:
         assert f"def {function}(" in tests or list((ROOT / "tests").rglob(f"{function}.py")), function
     for link in re.findall(r"\]\(([\w./-]+\.\w+)(?:#[\w-]+)?\)", text):
         assert (page.parent / link).exists(), link
-
-
-def test_every_difference_is_shown_by_a_case_or_a_test() -> None:
-    """Each row against the dissertation names one that exists; of the rows on this program's changes each case is there."""
-    text = (ROOT / "docs" / "differences.md").read_text(encoding="utf-8")
-    first, _, second = text.partition("## What changed in this program")
-    tests = "".join(file.read_text(encoding="utf-8") for file in (ROOT / "tests").rglob("test_*.py"))
-    rows = re.findall(r"^\| (?!where|-)(.*) \|$", first, re.M)
-    assert len(rows) > 25
-    for row in rows:
-        cases = [name for name in re.findall(r"`cases/([\w/-]+)`", row) if (ROOT / "cases" / f"{name}.toml").exists()]
-        named = [
-            name
-            for name in re.findall(r"\b(test_\w+)", row)
-            if f"def {name}(" in tests or list((ROOT / "tests").rglob(f"{name}.py"))
-        ]
-        assert cases or named, row
-    folders = "|".join(place.name for place in (ROOT / "cases").iterdir())
-    changed = re.findall(rf"`((?:{folders})/[\w*-]+)`", second)
-    assert changed and not [name for name in changed if not list((ROOT / "cases").glob(f"{name}.toml"))]
-
-
-def test_the_verification_book_names_cases_that_exist() -> None:
-    book = (ROOT / "docs" / "verification.md").read_text(encoding="utf-8")
-    folders = "|".join(place.name for place in (ROOT / "cases").iterdir())
-    named = set(re.findall(rf"^\| ((?:{folders})/[\w-]+) \|", book, re.M))
-    assert named and not [name for name in named if not (ROOT / "cases" / f"{name}.toml").exists()]
 
 
 def test_the_readme_quotes_the_verification_book() -> None:
@@ -136,26 +107,3 @@ def test_every_case_has_expected_rows_of_a_quantity(deck: Path, monkeypatch: pyt
 
     rows = tomllib.loads(deck.with_suffix(".expect.toml").read_text(encoding="utf-8"))["expect"]
     assert rows and all(quantity_of(row["quantity"]) for row in rows)
-
-
-def test_the_deck_reference_is_up_to_date() -> None:
-    made = subprocess.run(
-        [sys.executable, "-m", "extrados.cli", "explain", "--manual"], capture_output=True, text=True, check=True
-    )
-    assert made.stdout == (ROOT / "docs" / "decks.md").read_text(encoding="utf-8"), "run `make references`"
-
-
-def test_the_conda_recipe_has_the_libraries_of_the_project() -> None:
-    """By the names of PyPI: two are called otherwise on conda-forge."""
-    asked = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    recipe = (ROOT / "tools" / "conda" / "recipe.yaml").read_text(encoding="utf-8")
-    run = re.search(r"^  run:\n((?:    - .*\n)+)", recipe, re.M)
-    assert run is not None
-    known = {line.removeprefix("    - ").replace(" ", "") for line in run[1].splitlines()}
-    assert f"python{asked['requires-python']}" in known
-    known -= {f"python{asked['requires-python']}"}
-    renamed = {"matplotlib-base": "matplotlib", "typst-py": "typst"}
-    for theirs, ours in renamed.items():
-        known = {line.replace(theirs, ours) for line in known}
-    assert known == set(asked["dependencies"])
-    assert f'version: "{asked["version"]}"' in recipe

@@ -56,6 +56,24 @@ def test_nothing_is_left_beside_where_the_disk_fails_after_the_exchange(
     assert store.read(out)["rocking-spectrum"].overturned
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems exchange folders in two steps")
+def test_results_are_there_at_every_moment_of_their_replacement(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Old or new, whenever the run is killed: no rename takes the folder away before the next one is in its place."""
+    out, rename = tmp_path / "run", Path.rename
+
+    def watched(path: Path, to: Path) -> Path:
+        made = rename(path, to)
+        assert out.is_dir()
+        return made
+
+    monkeypatch.setattr(Path, "rename", watched)
+    for _ in range(2):
+        with store.NewFolder(out) as folder:
+            store.write(folder, HEAD, [sample()])
+
+
 def _fail() -> None:
     raise OSError(errno.EIO, "the disk")
 

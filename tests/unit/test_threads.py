@@ -1,9 +1,7 @@
 """Calls in threads of their own, and signals that come while they end."""
 
-import _thread
 import signal
 import threading
-from collections.abc import Callable
 
 import pytest
 
@@ -26,24 +24,11 @@ def test_a_call_goes_on_beside_who_began_it() -> None:
     assert worker.result() and worker.over(0.0)
 
 
-def test_a_thread_that_found_no_memory_to_begin(monkeypatch: pytest.MonkeyPatch) -> None:
-    """It ends before its first line; threading.Thread.start would wait for it for ever."""
-
-    def start(function: Callable[..., object], arguments: tuple[object, ...]) -> int:
-        return 1
-
-    monkeypatch.setattr(_thread, "start_new_thread", start)
-    with pytest.raises(MemoryError, match="a thread could not begin"):
-        calls.long_call(lambda: 7)
-    with pytest.raises(MemoryError, match="a thread could not begin"), calls.within(1.0):
-        pass
-
-
 def test_a_thread_that_the_system_refuses(monkeypatch: pytest.MonkeyPatch) -> None:
-    def start(function: Callable[..., object], arguments: tuple[object, ...]) -> int:
+    def start(_: threading.Thread) -> None:
         raise RuntimeError("can't start new thread")
 
-    monkeypatch.setattr(_thread, "start_new_thread", start)
+    monkeypatch.setattr(threading.Thread, "start", start)
     with pytest.raises(MemoryError, match="not enough memory: can't start new thread"):
         calls.long_call(lambda: 7)
 

@@ -8,11 +8,13 @@ from pathlib import Path
 import pytest
 
 from extrados import kinds
-from extrados.decks import manual, synonyms
+from extrados.decks import explain, manual, synonyms
+from extrados.results import explain as result_models
 from extrados.results import manual as of_results
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-TABLES = manual.stored()
+TABLES = explain.facts()
+RESULTS = result_models.everything()
 
 
 @pytest.mark.parametrize("line", synonyms.SYNONYMS, ids=lambda line: line.words[0])
@@ -20,7 +22,7 @@ def test_every_pointer_leads_somewhere(line: synonyms.Synonym) -> None:
     assert not line.page or (DOCS / line.page).is_file()
     for place in line.see:
         if place.startswith("results."):
-            of_results.explain(place, of_results.stored())
+            of_results.explain(place, RESULTS)
         else:
             alone = synonyms.Synonym(line.words, "", (place,), "")
             assert manual._pointed(alone, TABLES).strip().count("\n") >= 1, place

@@ -2,7 +2,7 @@
 
 import time
 
-from extrados import interrupts, kinds
+from extrados import interrupts, kinds, room
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import concluded, faulty
 from extrados.analyses.context import Context, Refused
@@ -64,6 +64,8 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
         context.warnings = []
         if wrong := complaints(context, options, building):
             raise Refused("; ".join(wrong), WHOLE)
+        if not room.has(room.NEEDED):
+            raise MemoryError(f"not enough memory: an analysis needs {room.NEEDED >> 20} MB of address space")
         result = kinds.load(kinds.ANALYSES[options.kind].driver)(context, options)
         _check(result)
         result.warnings = [*context.warnings, *result.warnings]

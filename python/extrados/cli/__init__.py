@@ -1,6 +1,7 @@
 """The command line. Exit codes: 0 done; 2 the deck is wrong; 3 refused or failed; 130 or 143 interrupted (Ctrl-C, SIGTERM)."""
 
 import contextlib
+import io
 import logging
 import os
 import signal
@@ -57,7 +58,8 @@ def main() -> None:
     _open_streams()
     logging.basicConfig(level=logging.WARNING, format="%(message)s")
     for stream in (sys.stdout, sys.stderr):
-        stream.reconfigure(errors="backslashreplace")  # a terminal may know ASCII alone
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # a terminal may know ASCII alone
     code: int | str | None = 0
     try:
         try:

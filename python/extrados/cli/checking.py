@@ -39,12 +39,9 @@ def check(
         for remark in checked.ignored:
             out_console.say(f"warning: {remark}")
         folder = out or deck.default_out.with_name(f"{deck.default_out.name}-check")
-        if checked.inspection is not None:
-            _tell_survey(checked, folder, asked=out is not None)
-        if checked.solids is not None:
-            _tell_solids(checked, folder, asked=out is not None or getattr(deck.structure, "file", None) is not None)
-        if checked.plan is not None:
-            _tell_plan(checked, folder)
+        _tell_survey(checked, folder, asked=out is not None)
+        _tell_solids(checked, folder, asked=out is not None or getattr(deck.structure, "file", None) is not None)
+        _tell_plan(checked, folder)
     for line in complaints:
         err_console.say(line)
     if complaints:
@@ -60,6 +57,8 @@ def _tell_survey(checked: "Checked", folder: Path, asked: bool) -> None:
     from extrados.running.check import write_check
 
     inspection = checked.inspection
+    if inspection is None:
+        return
     for line in (*checked.notes, *(f"warning: {remark}" for remark in checked.remarks)):
         out_console.say(line)
     amiss = [row for row in checked.places if row.status != "closed"]
@@ -80,12 +79,12 @@ def _tell_survey(checked: "Checked", folder: Path, asked: bool) -> None:
     if not checked.places and not asked:
         return
     try:
-        picture, table = write_check(checked, folder)
+        picture, places = write_check(checked, folder)
     except OSError as error:
         err_console.say(f"{folder}: the picture could not be written: {error.strerror or error}")
         return
     out_console.say(f"Picture: {picture}")
-    out_console.say(f"List:    {table}")
+    out_console.say(f"List:    {places}")
 
 
 def _tell_plan(checked: "Checked", folder: Path) -> None:
@@ -94,6 +93,8 @@ def _tell_plan(checked: "Checked", folder: Path) -> None:
     from extrados.schema.constants import GRAVITY
 
     mesh = checked.plan
+    if mesh is None:
+        return
     for remark in checked.remarks:
         out_console.say(f"warning: {remark}")
     walls = f"{len(mesh.walls)} wall{'s' if len(mesh.walls) > 1 else ''}, " if mesh.walls else ""
@@ -112,6 +113,8 @@ def _tell_solids(checked: "Checked", folder: Path, asked: bool) -> None:
     from extrados.running.check import write_solids
 
     solids = checked.solids
+    if solids is None:
+        return
     for line in (*checked.notes, *(f"warning: {remark}" for remark in checked.remarks)):
         out_console.say(line)
     out_console.say(

@@ -19,9 +19,10 @@ def _kinds(begun: str) -> list[str]:
 
 def _words(begun: str) -> list[str]:
     """What `explain` knows that begins so."""
-    from extrados.decks import manual, synonyms
+    from extrados.decks import synonyms
+    from extrados.decks.explain import facts
 
-    tables = manual.stored()
+    tables = facts()
     known = [table.kind or table.section for table in tables]
     known += [f"{table.kind or table.section}.{name}" for table in tables for name in table.keys]
     known += [name.rsplit(".", 1)[-1] for table in tables for name in table.keys] + synonyms.words()
@@ -56,17 +57,20 @@ def explain(
 ) -> None:
     """Say what a deck key, a kind or a result means: unit, default, bounds, source; and where a thing is found."""
     told: Any
+    found: Any
     key = " ".join(words or [])
     if results or key.split(".")[0] == "results":
         from extrados.results import manual as told
+        from extrados.results.explain import everything as found
     else:
         from extrados.decks import manual as told
+        from extrados.decks.explain import facts as found
 
     if manual or results or not key:
-        print(told.manual(told.stored()))
+        print(told.manual(found()))
         return
     try:
-        print(told.explain(key, told.stored()))
+        print(told.explain(key, found()))
     except KeyError as error:
         err_console.say(error.args[0])
         raise typer.Exit(WRONG_DECK) from None
@@ -81,14 +85,13 @@ def new(
     """Print a commented starter deck that runs as it is."""
     if kind is None:
         from extrados import kinds
-        from extrados.decks import manual
+        from extrados.decks.explain import summary
+        from extrados.decks.manual import first_sentence
 
-        tables = manual.stored()
-        for section in kinds.TABLES:
+        for section, there in kinds.TABLES.items():
             out_console.say(f"{section}:", "bold")
-            for table in tables:
-                if table.section == section:
-                    out_console.say(f"  {table.kind:16} {manual.first_sentence(table.summary)}")
+            for name in there:
+                out_console.say(f"  {name:16} {first_sentence(summary(kinds.table(section, name)))}")
         return
     from extrados.decks.explain import starter
 

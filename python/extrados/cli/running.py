@@ -3,13 +3,17 @@
 import json
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from extrados import interrupts
 from extrados.cli.terminal import NOT_DONE, WRONG_DECK, err_console, errors, out_console, progress_shown, usable_threads
 from extrados.schema.text import printable
+
+if TYPE_CHECKING:
+    from extrados.results.model import Result
+    from extrados.running.run import Run
 
 
 def run(
@@ -41,12 +45,14 @@ def run(
             progress = progress_shown(quiet or as_json)
             tell = (lambda text: None) if quiet or as_json else out_console.say
             context = Context(deck, usable_threads(threads), progress, tell, resume=resume, scheduler=scheduler)
+            place = out or deck.default_out
             try:
-                found = run_to(context, out or deck.default_out, figures=False)
+                found = run_to(context, place, figures=False)
             finally:
                 progress.stop()
+            place = found.folder or place  # beside it where it holds what is not ours
             if as_json:
-                print(json.dumps(json.loads((found.folder / "summary.json").read_bytes()), indent=2))
+                print(json.dumps(json.loads((place / "summary.json").read_bytes()), indent=2))
             elif not quiet:
                 _tell(found, deck.title, len(deck.analyses))
             codes = {"ok": 0, "refused": NOT_DONE, "failed": NOT_DONE, "interrupted": interrupts.exit_code()}
@@ -55,7 +61,7 @@ def run(
                     err_console.say(f"{result.kind}: {result.status}: {result.reason}")
                 worst = max(worst, codes[result.status])
             stopped = any(result.status == "interrupted" for result in found.results)
-            _draw(found.folder, figures and not stopped, quiet or as_json)
+            _draw(place, figures and not stopped, quiet or as_json)
             if stopped:
                 break
     raise typer.Exit(worst)
@@ -81,7 +87,7 @@ def motion(
     from extrados.decks.reader import make_deck
     from extrados.running.run import run_to
 
-    record = {
+    record: dict[str, float | str] = {
         "kind": "record",
         "file": file if file.startswith("extrados:") else str(Path(file).absolute()),
         "baseline": baseline,
@@ -94,13 +100,14 @@ def motion(
         name = Path(file.removeprefix("extrados:")).stem
         folder = out or Path("results") / (name if name.strip(".") else "motion")
         found = run_to(Context(deck, default_threads()), folder, figures=False)
+        folder = found.folder or folder  # beside it where it holds what is not ours
         if as_json:
-            print(json.dumps(json.loads((found.folder / "summary.json").read_bytes()), indent=2))
+            print(json.dumps(json.loads((folder / "summary.json").read_bytes()), indent=2))
         else:
             _motion_page(found.results[0])
             _tell(found, deck.title)
         status = found.results[0].status
-        _draw(found.folder, figures and status != "interrupted", as_json)
+        _draw(folder, figures and status != "interrupted", as_json)
     raise typer.Exit({"ok": 0, "interrupted": interrupts.exit_code()}.get(status, NOT_DONE))
 
 
@@ -141,7 +148,7 @@ def assess(
     raise typer.Exit(0 if all(one.status == "ok" for one in rows) else NOT_DONE)
 
 
-def _tell(run, title: str, count: int | None = None) -> None:
+def _tell(run: "Run", title: str, count: int | None = None) -> None:
     """The answers of a run, of its first `count` analyses: those of the deck, without what these have asked for."""
     if title:
         out_console.say(title, "bold")
@@ -176,7 +183,7 @@ def _draw(folder: Path, figures: bool, quiet: bool) -> None:
         out_console.say(f"Figures: {folder / 'figures'}")
 
 
-def _motion_page(result) -> None:
+def _motion_page(result: "Result") -> None:
     """The numbers of one motion as a table."""
     from rich.table import Table
 

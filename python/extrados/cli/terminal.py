@@ -2,7 +2,7 @@
 
 import functools
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -45,7 +45,7 @@ out_console, err_console = _Console(stderr=False), _Console(stderr=True)
 class Commands(typer.Typer):
     """Commands that a signal ends without a traceback, whatever they are doing, be it an import."""
 
-    def command(self, *words: Any, **options: Any) -> Callable[[Callable], Callable]:
+    def command(self, *words: Any, **options: Any) -> Callable[[Callable], Callable]:  # type: ignore[override]
         add = super().command(*words, **options)
 
         def guarded(function: Callable) -> Callable:
@@ -64,7 +64,7 @@ class Commands(typer.Typer):
 
 
 @contextmanager
-def errors(json_out: bool = False):
+def errors(json_out: bool = False) -> Iterator[None]:
     """Every error a user can cause ends as a message and an exit code, never as a traceback."""
     from extrados.decks.reader import DeckError
     from extrados.results.store import StoreError

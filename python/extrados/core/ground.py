@@ -40,6 +40,28 @@ class Ground:
         """1, or 2 with a vertical one."""
         return int(self.samples.shape[0] if self.samples is not None else _given("linear", self.linear).shape[1])
 
+    def sample(self, time: np.ndarray, channel: int = 0) -> np.ndarray:
+        """Acceleration (n) [m/s^2] of a channel at the times `time` (n) [s]; zero outside the motion."""
+        if self.samples is not None:
+            axis = self.start + self.step * np.arange(self.samples.shape[1])
+            return np.interp(time, axis, self.samples[channel], left=0.0, right=0.0)
+        breaks, linear = _given("breaks", self.breaks), _given("linear", self.linear)
+        k = np.clip(np.searchsorted(breaks, time, side="right") - 1, 0, len(breaks) - 2)
+        tau = time - breaks[k]
+        value = linear[k, channel, 0] + linear[k, channel, 1] * tau
+        for i in range(self.terms):
+            a, b, w, phi = _given("harmonic", self.harmonic)[k, channel, i].T
+            value = value + (a + b * tau) * np.sin(w * tau + phi)
+        return np.where((time >= breaks[0]) & (time < breaks[-1]), value, 0.0)
+
+    @property
+    def fine_step(self) -> float:
+        """A step [s] that follows the segments and the fastest sine; that of the samples where there are any."""
+        if self.samples is not None:
+            return self.step
+        fastest = float(np.abs(_given("harmonic", self.harmonic)[..., 2]).max(initial=0.0)) if self.terms else 0.0
+        return min(0.01, float(np.diff(_given("breaks", self.breaks)).min()) / 50, np.pi / 32 / max(fastest, 1e-9))
+
     @property
     def terms(self) -> int:
         """Sines on each segment."""

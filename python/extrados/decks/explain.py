@@ -154,12 +154,11 @@ def _length(about: dict[str, Any]) -> str:
 
 def facts() -> list[TableFacts]:
     """All that the tables say of themselves, in the order of the manual."""
-    return [
-        _table_facts(section, kind, model) for section, there in sections().items() for kind, model in there.items()
-    ]
+    return [table_facts(section, kind, model) for section, there in sections().items() for kind, model in there.items()]
 
 
-def _table_facts(section: str, kind: str, model: type[Table]) -> TableFacts:
+def table_facts(section: str, kind: str, model: type[Table]) -> TableFacts:
+    """All that one table says of itself."""
     schema = model.model_json_schema()
     unless_preset = {name for way in schema.get("anyOf", []) for name in way["required"] if name != "preset"}
     keys = {}
@@ -168,10 +167,11 @@ def _table_facts(section: str, kind: str, model: type[Table]) -> TableFacts:
         keys[name] = KeyFacts(about.get("description", ""), about.get("source", ""), _facts(about), required)
     keys.pop("kind", None)
     header = f"[[{section}]]" if section in PLURAL else f"[{section}]"
-    return TableFacts(section, header, kind, _summary(model), keys)
+    return TableFacts(section, header, kind, summary(model), keys)
 
 
-def _summary(model: type[Table]) -> str:
+def summary(model: type[Table]) -> str:
+    """The table in one line."""
     return " ".join((model.__doc__ or "").split())
 
 
@@ -217,7 +217,7 @@ _STARTER = {
 def _section(model: type[Table], header: str, kind: str = "", starter: Mapping[str, str] | None = None) -> list[str]:
     """A table of a starter deck: keys that need a value have it, the others stand commented out."""
     starter = model.starter if starter is None else starter
-    lines = [f"# {_summary(model)}", header] + ([f'kind = "{kind}"'] if kind else [])
+    lines = [f"# {summary(model)}", header] + ([f'kind = "{kind}"'] if kind else [])
     for name, about in _properties(model).items():
         if name == "kind" or (kind and name in OVERRIDES):
             continue

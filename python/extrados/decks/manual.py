@@ -1,21 +1,13 @@
-"""What is told of deck keys: `explain` and the reference manual, from what the tables say of themselves.
-
-The facts are kept beside this file, since to load all tables takes longer than anyone waits for the meaning of a word;
-`make references` writes them anew, and a test holds them to the tables.
-"""
+"""The text of `extrados explain` on deck keys and the deck reference, from the facts of the deck tables (`decks.explain`)."""
 
 import difflib
-import json
 import re
 import textwrap
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
-from pathlib import Path
+from dataclasses import dataclass
 
 from extrados import kinds
 from extrados.decks import synonyms
-
-STORED = Path(__file__).with_name("facts.json")
 
 
 @dataclass(frozen=True)
@@ -39,19 +31,6 @@ class TableFacts:
     kind: str
     summary: str
     keys: dict[str, KeyFacts]
-
-
-def stored() -> list[TableFacts]:
-    """The facts as they were written last."""
-    return [
-        TableFacts(**{**t, "keys": {name: KeyFacts(**key) for name, key in t["keys"].items()}})
-        for t in json.loads(STORED.read_bytes())
-    ]
-
-
-def written(tables: Sequence[TableFacts]) -> str:
-    """Facts as they are stored."""
-    return json.dumps([asdict(table) for table in tables], indent=1, ensure_ascii=False) + "\n"
 
 
 def explain(word: str, tables: Sequence[TableFacts]) -> str:
@@ -126,7 +105,7 @@ def manual(tables: Sequence[TableFacts]) -> str:
     lines = [
         "# Deck reference",
         "",
-        "Generated from the deck models (`extrados explain --manual`); do not edit.",
+        "Generated from the deck tables by `extrados explain --manual`.",
         "",
     ]
     section = ""

@@ -18,7 +18,7 @@ def rotated(first: np.ndarray, second: np.ndarray, angle: float) -> np.ndarray:
 
 def peaks(horizontal: np.ndarray) -> np.ndarray:
     """RotD50 and RotD100 of the peak of two components (2, points): median and greatest over all directions."""
-    return np.percentile([np.abs(rotated(*horizontal, angle)).max() for angle in ANGLES], (50, 100))
+    return np.percentile([np.abs(rotated(horizontal[0], horizontal[1], angle)).max() for angle in ANGLES], (50, 100))
 
 
 def spectra(horizontal: np.ndarray, step: float, periods: np.ndarray, damping: float, threads: int = 1) -> np.ndarray:
@@ -26,7 +26,11 @@ def spectra(horizontal: np.ndarray, step: float, periods: np.ndarray, damping: f
     parts = np.array_split(ANGLES, max(1, -(-len(ANGLES) * horizontal.shape[1] // _BATCH)))
     psa = [
         core.response_spectra(
-            np.stack([rotated(*horizontal, angle) for angle in part]), step, periods, [damping], threads=threads
+            np.stack([rotated(horizontal[0], horizontal[1], angle) for angle in part]),
+            step,
+            periods,
+            [damping],
+            threads=threads,
         ).psa[:, 0]
         for part in parts
         if len(part)

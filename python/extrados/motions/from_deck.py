@@ -10,7 +10,7 @@ from extrados.core.ground import Ground
 from extrados.motions import code_spectra, pulses, records
 from extrados.motions import tables as models
 from extrados.motions.compatible import CompatibleSet, NotMatched
-from extrados.motions.formats.record import RecordError
+from extrados.motions.formats.record import Record, RecordError
 from extrados.motions.generated import GeneratedSet, generated
 from extrados.motions.motion import Motion
 from extrados.schema.spectrum import CodeSpectrum
@@ -126,16 +126,22 @@ def compatible_set(model: models.Compatible, folder: Path) -> CompatibleSet:
 
 def code_spectrum(model: CodeSpectrum, folder: Path, damping: float = 0.05) -> code_spectra.Spectrum:
     """The spectrum of a deck's table; those of ASCE 7 and of a table are of 5 % whatever the damping."""
+    # which keys a code needs the table has checked
     match model.code:
         case "EN1998-1" | "EN1998-2":
-            return code_spectra.en1998(int(model.code[-1]), model.ground, model.acceleration, damping)
+            return code_spectra.en1998(int(model.code[-1]), model.ground, model.acceleration, damping)  # type: ignore[arg-type]
         case "NTC":
             return code_spectra.ntc(
-                model.ground, model.acceleration, model.amplification, model.corner_period, model.topography, damping
+                model.ground,
+                model.acceleration,  # type: ignore[arg-type]
+                model.amplification,
+                model.corner_period,
+                model.topography,
+                damping,
             )
         case "ASCE7":
-            return code_spectra.asce7(model.sds, model.sd1, model.long_period)
-    return code_spectra.read_table(model.table, folder)
+            return code_spectra.asce7(model.sds, model.sd1, model.long_period)  # type: ignore[arg-type]
+    return code_spectra.read_table(model.table, folder)  # type: ignore[arg-type]
 
 
 def target_of(model: models.Compatible, folder: Path) -> code_spectra.Spectrum:
@@ -172,7 +178,7 @@ def _treatment(model: models.Treated) -> records.Treatment:
 def _record(model: models.Components, treatment: records.Treatment, folder: Path) -> Motion:
     seen = {(records.locate(model.file, folder), model.channel)}
 
-    def component(file: str | None, channel: int | str | None) -> records.Record | None:
+    def component(file: str | None, channel: int | str | None) -> Record | None:
         if file is None and channel is None:
             return None
         file = model.file if file is None else file

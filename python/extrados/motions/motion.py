@@ -38,22 +38,13 @@ class Motion:
         """What is left of a record with two horizontal components: the part a quarter turn from that in the plane."""
         if self.horizontal is None:
             return None
-        return Ground(samples=rotated(*self.horizontal, self.angle + 90.0)[None], step=self.ground.step)
+        return Ground(
+            samples=rotated(self.horizontal[0], self.horizontal[1], self.angle + 90.0)[None], step=self.ground.step
+        )
 
     def sample(self, time: np.ndarray, channel: int = 0) -> np.ndarray:
         """Acceleration at the given times [m/s^2]; zero outside the motion."""
-        g = self.ground
-        time = np.asarray(time, dtype=float)
-        if g.samples is not None:
-            axis = g.start + g.step * np.arange(g.samples.shape[1])
-            return np.interp(time, axis, g.samples[channel], left=0.0, right=0.0)
-        k = np.clip(np.searchsorted(g.breaks, time, side="right") - 1, 0, len(g.breaks) - 2)
-        tau = time - g.breaks[k]
-        value = g.linear[k, channel, 0] + g.linear[k, channel, 1] * tau
-        for i in range(g.terms):
-            a, b, w, phi = g.harmonic[k, channel, i].T
-            value = value + (a + b * tau) * np.sin(w * tau + phi)
-        return np.where((time >= g.breaks[0]) & (time < g.breaks[-1]), value, 0.0)
+        return self.ground.sample(np.asarray(time, dtype=float), channel)
 
     def series(self, step: float | None = None) -> tuple[np.ndarray, np.ndarray]:
         """Times [s] and horizontal accelerations [m/s^2]; sampled motions keep their own step."""
@@ -61,9 +52,7 @@ class Motion:
         if g.samples is not None and step is None:
             return g.start + g.step * np.arange(g.samples.shape[1]), g.samples[0].copy()
         if step is None:
-            fastest = float(np.abs(g.harmonic[..., 2]).max(initial=0.0)) if g.terms else 0.0
-            step = min(0.01, float(np.diff(g.breaks).min()) / 50, np.pi / 32 / max(fastest, 1e-9))
-            step = max(step, self.end / MOST_SAMPLES)
+            step = max(g.fine_step, self.end / MOST_SAMPLES)
         time = np.arange(0.0, self.end + 0.5 * step, step)
         return time, self.sample(time)
 

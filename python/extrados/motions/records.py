@@ -167,7 +167,7 @@ def record_motion(
             rows, step = processing.resample(rows, step, do.resample), do.resample
         horizontal = None if second is None else rows[:2]
         if horizontal is not None:
-            rows = np.concatenate([rotated(*horizontal, angle)[None, :], rows[2:]])
+            rows = np.concatenate([rotated(horizontal[0], horizontal[1], angle)[None, :], rows[2:]])
         factor = do.scale
         measures = {"pga": do.pga, "pgv": do.pgv, "arias": do.arias, "sa": do.sa}
         if any(v is not None for v in measures.values()):

@@ -1,15 +1,9 @@
-"""What is told of results: `explain results.KIND` and the reference manual, from what the models say of themselves.
-
-The facts are kept beside this file, as those of the deck tables are (`decks.manual`).
-"""
+"""The text of `extrados explain results.KIND` and the results reference, from the facts of the models (`results.explain`)."""
 
 import difflib
-import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
-from pathlib import Path
+from dataclasses import dataclass
 
-STORED = Path(__file__).with_name("facts.json")
 #: How `explain` knows the results from the deck
 SECTION = "results"
 
@@ -39,24 +33,6 @@ class ResultFacts:
 
     beside: Mapping[str, ShapeFacts]
     kinds: Mapping[str, Sequence[ShapeFacts]]
-
-
-def stored() -> ResultFacts:
-    """The facts as they were written last."""
-
-    def shape(found: dict) -> ShapeFacts:
-        return ShapeFacts(found["summary"], [Fact(**fact) for fact in found["facts"]])
-
-    found = json.loads(STORED.read_bytes())
-    return ResultFacts(
-        {name: shape(one) for name, one in found["beside"].items()},
-        {kind: [shape(one) for one in shapes] for kind, shapes in found["kinds"].items()},
-    )
-
-
-def written(results: ResultFacts) -> str:
-    """Facts as they are stored."""
-    return json.dumps(asdict(results), indent=1, ensure_ascii=False) + "\n"
 
 
 def explain(word: str, results: ResultFacts) -> str:
@@ -105,7 +81,7 @@ def manual(results: ResultFacts) -> str:
     lines = [
         "# Results reference",
         "",
-        "Generated from the result models (`extrados explain --results`); do not edit. Keys are those of `summary.json`;",
+        "Generated from the result models by `extrados explain --results`. Keys are those of `summary.json`;",
         "`[]` stands for the rows of a list, `.NAME` for the entries of a table of names. From Python they read as",
         '`run["tilt"].collapse_acceleration_g` or `run["tilt"]["collapse_acceleration_g"]`.',
         "",

@@ -17,10 +17,10 @@ def read(text: Lines) -> list[Record]:
         raise text.error(len(text) - 1, f"ends within the {HEADER} header lines: the file is cut off")
     keys: dict[str, tuple[int, str]] = {}
     for at in range(HEADER):
-        key, colon, value = text[at].partition(":")
+        key, colon, entry = text[at].partition(":")
         if not colon:
             raise text.error(at, f"'{text[at][:30]}' is no header line; expected 'KEY: value'")
-        keys[key.strip()] = (at, value.strip())
+        keys[key.strip()] = (at, entry.strip())
 
     def value(key: str) -> tuple[int, str]:
         if key not in keys:

@@ -42,11 +42,12 @@ def read(text: Lines) -> list[Record]:
         raise text.error(
             0, f"the header names {quantity}, the suffix {text.path.suffix} stands for {other}; rename the file"
         )
-    rows, have = [], 0
-    for line, row in text.blanks(at + 1):
+    rows: list[tuple[int, list[str]]] = []
+    have = 0
+    for number, row in text.blanks(at + 1):
         if have >= count and not re.match(r"[+-]?\.?\d", row[0]):
             break  # words after the data, such as '*** End Data ***'
-        rows.append((line, row))
+        rows.append((number, row))
         have += len(row)
     values, notes = text.check_count(text.numbers(rows), count, at)
     if count < 3:

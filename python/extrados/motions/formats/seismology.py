@@ -35,7 +35,7 @@ def read(file: File) -> list[Record]:
         raise RecordError(f"{path}: is damaged, obspy says: {damage[0][:200]}")
     records = []
     for trace in stream:
-        values = np.ma.filled(np.ma.asarray(trace.data, dtype=float), np.nan)
+        values: np.ndarray = np.ma.filled(np.ma.asarray(trace.data, dtype=float), np.nan)
         if not np.isfinite(values).all():
             raise RecordError(f"{path}: trace {trace.id} has gaps or values that are not finite")
         records.append(Record(path.stem, values, float(trace.stats.delta), None, component=trace.id))

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.spatial import ConvexHull, QhullError
 
 FLAT = 1e-7  # facets of a hull whose normals and offsets (over its size) differ less are one face
 
@@ -127,6 +126,8 @@ class ManyFaces(ValueError):
 def hull(points: np.ndarray, flat: float = FLAT, most: float = np.inf) -> Polyhedron:
     """The convex hull of points (n, 3); facets that turn by less than `flat` are one face. ValueError where it has no volume,
     ManyFaces where it has more than `most`: their number times that of the facets is the work."""
+    from scipy.spatial import ConvexHull, QhullError  # takes a third of a second to load, and few decks need a hull
+
     points = np.asarray(points, dtype=float)
     middle, size = points.mean(axis=0), float(np.ptp(points, axis=0).max())
     try:
