@@ -35,7 +35,7 @@ module sla_interface
       procedure :: sliders
       procedure :: turned_back
       procedure :: undecided
-      procedure :: hold
+      procedure :: set_held
       procedure :: advance
       procedure :: excess
       procedure :: elastic
@@ -293,12 +293,12 @@ contains
       yes = code == code_slide .and. abs(lambda - group%stuck(point)) <= same * abs(lambda)
    end function undecided
 
-   pure subroutine hold(group, point, held)
+   pure subroutine set_held(group, point, held)
       class(interface_group), intent(inout) :: group
       integer, intent(in) :: point
       real(wp), intent(in) :: held(2)
       group%held(:, point) = held
-   end subroutine hold
+   end subroutine set_held
 
    pure function excess(group, u) result(energy)
       class(interface_group), intent(in) :: group

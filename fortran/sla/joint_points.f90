@@ -27,7 +27,7 @@ module sla_joint_points
       code_close => sla_event_close, code_open => sla_event_open, code_wear => sla_event_wear, &
       code_slide => sla_event_slide, code_stick => sla_event_stick
    use common_status, only : status_ok, status_out_of_memory
-   use sla_group, only : point_group, scan_result, unbounded, linear_bound, offer_hi, most_entries
+   use sla_group, only : friction_group, scan_result, unbounded, linear_bound, offer_hi, most_entries
    use sla_tables, only : tooth_tables
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -59,7 +59,7 @@ module sla_joint_points
       real(wp) :: ripple = 0.02_wp              !! see `turned`
    end type joint_law
 
-   type, abstract, extends(point_group) :: joint_points
+   type, abstract, extends(friction_group) :: joint_points
       type(joint_law) :: law
       type(tooth_tables) :: teeth
       real(wp), allocatable :: normal(:, :)      !! (2, elements) from the lower to the upper side
