@@ -3,35 +3,28 @@ module dem_model
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
    use dem_bodies, only : body, body_set, body_turn
-   use dem_clock, only : model_clock, begin_step, end_step
+   use dem_clock, only : begin_step, end_step
    use dem_contacts, only : contact_pair, contact_set, overlap, measure, choose_edges
-   use dem_joint, only : joint_law
+   use dem_jointed, only : jointed_model
    use dem_law, only : act
    use dem_loading, only : move_rate
-   use dem_rigid, only : rigid_solver
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: block_model, rigid_contacts, advance, critical_step, prepare, predict, move, finish
+   public :: block_model, advance, critical_step, prepare, predict, move, finish
 
-   !> Contacts without springs, see dem_moreau
-   type, extends(rigid_solver) :: rigid_contacts
-      real(wp), allocatable :: place(:, :)     !! (5, bodies) where the old velocities lead to
-      integer, allocatable :: point(:, :)      !! (2, pairs) number of each contact point in the problem
-   end type rigid_contacts
-
-   type, extends(model_clock) :: block_model
+   type, extends(jointed_model) :: block_model
       type(body_set) :: set
       type(contact_set) :: contacts
-      type(joint_law), allocatable :: law(:)
-      type(joint_law), allocatable :: own_law(:)      !! while joints are braced: as they are
       real(wp) :: gravity(2) = 0.0_wp          !! [m/s^2]
       real(wp) :: mass_damping = 0.0_wp        !! alpha [1/s]
       real(wp) :: pull(2) = 0.0_wp             !! body force of the last step [m/s^2]
       real(wp) :: pull_before(2) = 0.0_wp      !! and of the one before
       real(wp) :: base(2) = 0.0_wp             !! velocity of the ground [m/s], moving base only
       real(wp) :: base_place(2) = 0.0_wp       !! its displacement [m]
-      type(rigid_contacts) :: rigid
+      ! Contacts without springs, see dem_moreau
+      real(wp), allocatable :: ahead(:, :)     !! (5, bodies) where the old velocities lead to
+      integer, allocatable :: number(:, :)     !! (2, pairs) of each contact point in the problem, 0: it cannot press
    end type block_model
 
 contains

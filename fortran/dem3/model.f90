@@ -2,10 +2,10 @@
 module dem3_model
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
-   use dem_clock, only : model_clock, begin_step, end_step
+   use dem_clock, only : begin_step, end_step
    use dem_energy, only : energy_terms
    use dem_joint, only : joint_law
-   use dem_rigid, only : rigid_solver
+   use dem_jointed, only : jointed_model
    use dem3_bodies, only : body, body_set, cross, place, spin_of, turn_freely
    use dem3_dowels, only : act_dowel, dowel, dowel_energy
    use dem3_law, only : act, bond, contact_pair, contact_point, drop_points, elastic_energy, find_points
@@ -13,24 +13,16 @@ module dem3_model
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: solid_model, rigid_contacts, set_distances, search, set_mortar, colour, advance, critical_step, &
+   public :: solid_model, set_distances, search, set_mortar, colour, advance, critical_step, &
       energy_now, prepare, predict, move, look_anew
 
-   !> Contacts without springs, see dem3_moreau
-   type, extends(rigid_solver) :: rigid_contacts
-      type(body), allocatable :: next(:)              !! (bodies) where the old velocities lead to
-      integer, allocatable :: number(:)               !! of each contact point in the problem, 0 where it cannot press
-   end type rigid_contacts
-
-   type, extends(model_clock) :: solid_model
+   type, extends(jointed_model) :: solid_model
       type(body_set) :: set
       type(contact_pair), allocatable :: pair(:)
       integer :: pairs = 0
       integer, allocatable :: sweep(:)                !! the pairs by colours
       integer, allocatable :: colour_first(:)         !! first of each colour in the sweep; then what has none
       integer :: colours = 0
-      type(joint_law), allocatable :: law(:)          !! the first is that of contacts that form later
-      type(joint_law), allocatable :: own_law(:)      !! while joints are braced: as they are
       integer, allocatable :: law_of(:, :)            !! (3, joints): two bodies, the lower first, law; ascending
       type(dowel), allocatable :: dowels(:)
       real(wp) :: way(3) = [1.0_wp, 0.0_wp, 0.0_wp]   !! of the horizontal ground motion
@@ -44,7 +36,9 @@ module dem3_model
       real(wp) :: wander = 0.0_wp                     !! a body that has moved farther is asked for that [m]
       real(wp) :: lost(2) = 0.0_wp                    !! by friction and dashpots of pairs that are no more [J]
       real(wp) :: support_work = 0.0_wp               !! of them [J]
-      type(rigid_contacts) :: rigid
+      ! Contacts without springs, see dem3_moreau
+      type(body), allocatable :: ahead(:)             !! (bodies) where the old velocities lead to
+      integer, allocatable :: number(:)               !! of each contact point in the problem, 0: it cannot press
    end type solid_model
 
    !> Of the skin: a narrower gap is filled by mortar
