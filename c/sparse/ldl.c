@@ -16,7 +16,7 @@
 #include "extrados.h"
 #include "four.h"
 
-enum { most_vectors = 4, most_changes = 5, most_ahead = 16384 /* bytes */, most_threads = 4 };
+enum { most_vectors = 4, most_changes = extrados_most_changes, most_ahead = 16384 /* bytes */, most_threads = 4 };
 
 struct extrados_sparse {
   cholmod_common common;

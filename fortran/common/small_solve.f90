@@ -1,7 +1,7 @@
 !> Small dense systems by LAPACK.
 module common_small_solve
    use common_kinds, only : wp
-   use common_status, only : status_ok, status_singular
+   use common_status, only : status_ok, status_invalid_argument, status_singular
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -19,14 +19,16 @@ module common_small_solve
 
 contains
 
-   !> Solve a x = b for a square matrix of order up to 16
+   !> Solve a x = b for a square matrix of a few rows
    subroutine small_solve(a, b, status)
       real(wp), intent(inout) :: a(:, :)     !! matrix; overwritten by its factors
       real(wp), intent(inout) :: b(:)        !! right-hand side in, solution out
-      integer(c_int), intent(out) :: status  !! status_singular where no solution exists
-      integer :: pivot(16), info, n
+      integer(c_int), intent(out) :: status  !! singular; invalid_argument where a is not square with as many rows as b
+      integer :: pivot(size(b)), info, n
 
       n = size(b)
+      status = status_invalid_argument
+      if (size(a, 1) /= n .or. size(a, 2) /= n) return
       call dgesv(n, 1, a, size(a, 1), pivot, b, n, info)
       status = merge(status_ok, status_singular, info == 0)
    end subroutine small_solve

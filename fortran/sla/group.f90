@@ -39,6 +39,7 @@ module sla_group
       component, along, admitted, report_rows, state_rows
 
    real(wp), parameter :: unbounded = huge(1.0_wp)
+   !> Freedoms of an element; vectors of an event, as many as the factor takes (extrados_most_changes)
    integer, parameter :: most_entries = 24, most_rank = 5
    !> Rows of a point's report, see plane and bar
    integer, parameter :: report_rows = 19
