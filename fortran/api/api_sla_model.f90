@@ -13,7 +13,7 @@ contains
    !> Nodal forces of a uniform body force in each element
    subroutine body_force(kind, nx, ny, nodes, xy, per, elements, connect, density, force, bad, status)
       use common_status, only : status_bad_index
-      use sla_loads, only : distribute
+      use sla_loads, only : distribute_force
       integer(c_int), intent(in) :: kind
       integer(c_int), intent(in) :: nx
       integer(c_int), intent(in) :: ny
@@ -31,7 +31,7 @@ contains
       bad = 0
       status = status_bad_index
       if (any(connect < 1) .or. any(connect > nodes)) return
-      call distribute(kind, nx, ny, xy, connect, density, force, bad, status)
+      call distribute_force(kind, nx, ny, xy, connect, density, force, bad, status)
    end subroutine body_force
 
    !> A model on nodes; equation 0 is held, the last `moved` are those of supports that move

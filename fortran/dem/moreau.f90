@@ -3,9 +3,9 @@ module dem_moreau
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
    use dem_bodies, only : body
-   use dem_contacts, only : contact_pair, overlap, measure, choose_edges
-   use dem_law, only : point_force, point_frame, frame_of, hand_over, relative
-   use dem_model, only : block_model, predict, prepare
+   use dem_contacts, only : contact_pair, overlap, measure_overlap, choose_edges
+   use dem_law, only : point_force, point_frame, frame_of, hand_over, find_relative_velocity
+   use dem_model, only : block_model, predict_velocity, prepare_step
    use dem_rigid, only : number_bodies, parting, solve_step
    use nonsmooth_impulses, only : along_normal, along_tangent, impulse_problem, in_plane, problem_room
    use, intrinsic :: iso_c_binding, only : c_int
@@ -71,7 +71,7 @@ contains
       integer(c_int), intent(out) :: status         !! not_finite where a velocity is no number, else ok
       integer :: k
 
-      call prepare(model)
+      call prepare_step(model)
       if (model%quasi_static) then
          do k = 1, size(model%set%item)
             associate (b => model%set%item(k))
@@ -84,7 +84,7 @@ contains
       end if
       associate (rigid => model%rigid, problem => model%rigid%problem)
          do k = 1, size(model%set%item)
-            call predict(model, model%set%item(k))
+            call predict_velocity(model, model%set%item(k))
             associate (b => model%set%item(k))
                if (b%fixed) then
                   model%ahead(:, k) = led_to(b, model%step, [b%px, b%py, b%pspin])
@@ -133,11 +133,11 @@ contains
          model%number(:, k) = 0
          if (pair%careful) call choose_edges(model%set, model%contacts%skin, pair, distance)
          associate (a => model%set%item(pair%bodies(1)), b => model%set%item(pair%bodies(2)))
-            call measure(pair, a, b, now)
+            call measure_overlap(pair, a, b, now)
             if (now%width <= 0.0_wp) return
             call place_body(model%ahead(:, pair%bodies(1)), a_next)
             call place_body(model%ahead(:, pair%bodies(2)), b_next)
-            call measure(pair, a_next, b_next, next)
+            call measure_overlap(pair, a_next, b_next, next)
             do i = 1, 2
                if (min(now%gap(i), next%gap(i)) > model%contacts%skin) cycle
                frame = frame_of(now, i, a, b)
@@ -210,7 +210,7 @@ contains
 
       associate (problem => model%rigid%problem)
          associate (a => model%set%item(pair%bodies(1)), b => model%set%item(pair%bodies(2)))
-            call measure(pair, a, b, now)
+            call measure_overlap(pair, a, b, now)
             do i = 1, 2
                force = point_force()
                if (point(i) > 0) then
@@ -220,7 +220,7 @@ contains
                associate (was => pair%point(i))
                   if (.not. (was%closed .or. force%normal > 0.0_wp .or. abs(force%shear) > 0.0_wp)) cycle
                   frame = frame_of(now, i, a, b)
-                  call relative(frame, b%vx - a%vx, b%vy - a%vy, a%spin, b%spin, u_n, u_t)
+                  call find_relative_velocity(frame, b%vx - a%vx, b%vy - a%vy, a%spin, b%spin, u_n, u_t)
                   was%damping_loss = was%damping_loss - 0.5_wp * model%drift * (was%spring_n + force%normal) * u_n
                   was%friction_loss = was%friction_loss - 0.5_wp * model%drift * (was%spring_s + force%shear) * u_t
                   call hand_over(model%kick, model%drift, frame, was, force, a, b, pair%support_work)

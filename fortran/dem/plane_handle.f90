@@ -5,7 +5,7 @@ module dem_plane_handle
    use common_status, only : status_ok, status_bad_index, status_invalid_argument, status_not_ready, &
       status_out_of_memory, status_wrong_handle
    use dem_bodies, only : body_set, body_set_new, body_turn
-   use dem_contacts, only : overlap, measure
+   use dem_contacts, only : overlap, measure_overlap
    use dem_handle, only : built_model, model_register, model_take
    use dem_loading, only : loading, support_move
    use dem_model, only : block_model
@@ -246,7 +246,7 @@ contains
       found = 0
       do k = 1, model%contacts%pairs
          associate (pair => model%contacts%pair(k))
-            call measure(pair, model%set%item(pair%bodies(1)), model%set%item(pair%bodies(2)), now)
+            call measure_overlap(pair, model%set%item(pair%bodies(1)), model%set%item(pair%bodies(2)), now)
             do i = 1, 2
                if (.not. pair%point(i)%closed) cycle
                found = found + 1

@@ -5,15 +5,15 @@ module dem_plane_run
       stop_left => dem_stop_left, stop_overlap => dem_stop_overlap
    use common_status, only : status_ok, status_invalid_argument, status_not_finite, status_out_of_memory
    use dem_bodies, only : body
-   use dem_contacts, only : contact_pair, overlap, measure
+   use dem_contacts, only : contact_pair, overlap, measure_overlap
    use dem_energy, only : energy_terms
    use dem_jointed, only : jointed_model
    use dem_law, only : elastic_energy
-   use dem_model, only : block_model, advance, critical_step, finish, move
+   use dem_model, only : block_model, advance_model, critical_step, finish_step, move_body
    use dem_moreau, only : greatest_speed, number_model_unknowns => number_unknowns, &
       solve_model_contacts => solve_contacts
    use dem_simulation, only : simulation, model_sizes, slides_not
-   use dem_search, only : search
+   use dem_search, only : search_pairs
    use dem_tape, only : tape
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
@@ -63,7 +63,7 @@ contains
          status = status_not_finite
          if (.not. all(abs(model%set%item%x) + abs(model%set%item%y) <= huge(1.0_wp))) return
          if (first_time) model%contacts%skin = 0.02_wp * model%set%size
-         call search(model%set, model%contacts, first_time, status)
+         call search_pairs(model%set, model%contacts, first_time, status)
          run%record%pairs = model%contacts%pairs
       end associate
       if (first_time .and. status == status_ok) call refuse_overlaps(run)
@@ -80,7 +80,7 @@ contains
       class(block_simulation), intent(inout) :: run
       integer, intent(in) :: count
       integer(c_int), intent(out) :: status
-      call advance(run%model, count, run%options%threads)
+      call advance_model(run%model, count, run%options%threads)
       status = status_ok
    end subroutine advance_springs
 
@@ -100,9 +100,9 @@ contains
       class(block_simulation), intent(inout) :: run
       integer :: k
       do k = 1, size(run%model%set%item)
-         call move(run%model, run%model%set%item(k), run%model%stale)
+         call move_body(run%model, run%model%set%item(k), run%model%stale)
       end do
-      call finish(run%model)
+      call finish_step(run%model)
    end subroutine move_bodies
 
    !> Ledger at the time of the last forces
@@ -233,7 +233,7 @@ contains
       associate (set => run%model%set, contacts => run%model%contacts)
          do k = 1, contacts%pairs
             associate (pair => contacts%pair(k))
-               call measure(pair, set%item(pair%bodies(1)), set%item(pair%bodies(2)), now)
+               call measure_overlap(pair, set%item(pair%bodies(1)), set%item(pair%bodies(2)), now)
                if (now%width <= 0.5_wp * contacts%skin .or. maxval(now%gap) > -0.5_wp * contacts%skin) cycle
                run%record%reason = stop_overlap
                run%record%blamed = pair%bodies

@@ -10,8 +10,8 @@ module dem3_moreau
    use dem_rigid, only : number_bodies, parting, solve_step
    use dem3_bodies, only : body, cross, turn_freely
    use dem3_law, only : contact_pair, contact_point
-   use dem3_model, only : look_anew, predict, prepare, solid_model
-   use dem3_patch, only : measure
+   use dem3_model, only : look_anew, predict_velocity, prepare_step, solid_model
+   use dem3_patch, only : measure_feature
    use nonsmooth_impulses, only : along_normal, along_tangent, impulse_problem, in_space, problem_room
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -95,7 +95,7 @@ contains
       integer(c_int), intent(out) :: status         !! out_of_memory, not_finite where a velocity is no number, or ok
       integer :: k, first
 
-      call prepare(model)
+      call prepare_step(model)
       associate (rigid => model%rigid, problem => model%rigid%problem)
          do k = 1, size(model%set%item)
             associate (b => model%set%item(k))
@@ -103,7 +103,7 @@ contains
                   b%v = 0.0_wp
                   b%swing = 0.0_wp
                end if
-               call predict(model, b)
+               call predict_velocity(model, b)
                model%ahead(k) = b
                if (b%fixed) cycle
                model%ahead(k)%x = b%x + model%step * b%v
@@ -177,8 +177,9 @@ contains
       associate (a => model%set%item(who(1)), b => model%set%item(who(2)), rigid => model%rigid, &
                  problem => model%rigid%problem)
          do i = 1, pair%points
-            call measure(pair%point(i)%what, model%ahead(who(1)), model%ahead(who(2)), normal, next_gap, next_at)
-            call measure(pair%point(i)%what, a, b, normal, gap, at)
+            call measure_feature(pair%point(i)%what, model%ahead(who(1)), model%ahead(who(2)), normal, next_gap, &
+               next_at)
+            call measure_feature(pair%point(i)%what, a, b, normal, gap, at)
             if (min(gap, next_gap) > model%margin) cycle
             n = problem%points + 1
             problem%points = n
@@ -221,7 +222,7 @@ contains
          do i = 1, pair%points
             associate (point => pair%point(i))
                if (number(i) == 0 .and. .not. point%closed) cycle
-               call measure(point%what, a, b, normal, gap, at)
+               call measure_feature(point%what, a, b, normal, gap, at)
                force = 0.0_wp
                if (number(i) > 0) then
                   frame = frame_of(normal)

@@ -12,7 +12,8 @@ module dem3_run
    use dem3_law, only : contact_point
    use dem3_moreau, only : greatest_speed, number_model_unknowns => number_unknowns, &
       solve_model_contacts => solve_contacts
-   use dem3_model, only : advance, colour, critical_step, model_energy => energy_now, move, search, &
+   use dem3_model, only : advance_model, colour_pairs, critical_step, model_energy => energy_now, move_body, &
+      search_pairs, &
       set_distances, set_mortar, solid_model
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
@@ -65,7 +66,7 @@ contains
             if (.not. all(abs(model%set%item(k)%x) <= huge(1.0_wp))) return
          end do
          if (first_time) call set_distances(model)
-         call search(model, status)
+         call search_pairs(model, status)
          if (status /= status_ok) return
          run%record%pairs = model%pairs
          if (first_time) call set_mortar(model)
@@ -84,7 +85,7 @@ contains
       class(solid_simulation), intent(inout) :: run
       integer, intent(in) :: count
       integer(c_int), intent(out) :: status
-      call advance(run%model, count, run%options%threads)
+      call advance_model(run%model, count, run%options%threads)
       status = merge(status_out_of_memory, status_ok, any(run%model%pair(:run%model%pairs)%lacks_memory))
    end subroutine advance_springs
 
@@ -104,7 +105,7 @@ contains
       class(solid_simulation), intent(inout) :: run
       integer :: k
       do k = 1, size(run%model%set%item)
-         call move(run%model, run%model%set%item(k), run%model%stale)
+         call move_body(run%model, run%model%set%item(k), run%model%stale)
       end do
       call end_step(run%model%model_clock)
    end subroutine move_bodies
@@ -343,7 +344,7 @@ contains
                if (allocated(pair%point)) call on%pass(pair%point, storage_size(pair%point))
             end associate
          end do
-         if (on%mode == loading .and. .not. on%short) call colour(model, status)
+         if (on%mode == loading .and. .not. on%short) call colour_pairs(model, status)
       end associate
    end subroutine walk_state
 

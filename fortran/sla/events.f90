@@ -27,7 +27,7 @@ module sla_events
    use sla_regions, only : regions_bring, regions_home
    use sla_state, only : load_work, monitor_set
    use sla_release, only : hold_state, set_free
-   use sla_scan, only : bring_all, choose, crossed, scan_model, scan_scaled
+   use sla_scan, only : bring_all, choose_event, crossed, scan_model, scan_scaled
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -109,18 +109,18 @@ contains
          else if (scaled%point /= 0) then
             model%loop%scale = scaled%value
             scaled%value = model%loop%lambda_held
-            call choose(model, scaled)
+            call choose_event(model, scaled)
          else if (found%empty%point /= 0) then
             found%empty%value = model%loop%lambda
             if (found%hi%point == 0 .and. found%lo%point == 0) reason = stop_all_empty
-            call choose(model, found%empty)
+            call choose_event(model, found%empty)
          else if (equilibrium .and. found%hi%value < unbounded) then
-            call choose(model, found%hi)
+            call choose_event(model, found%hi)
          else if (found%lo%value > -unbounded .and. .not. equilibrium) then
             ! Force release holds the load: what has its lower limit above it (a crack that closes, a point that touches
             ! its strength) is damaged at the load reached
             if (model%stop%release .and. model%ledger%recorded) found%lo%value = model%loop%lambda
-            call choose(model, found%lo)
+            call choose_event(model, found%lo)
          else
             reason = stop_unbounded    ! only lower limits: the load can grow for ever
          end if

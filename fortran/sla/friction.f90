@@ -19,7 +19,7 @@ module sla_friction
    implicit none
    private
    public :: friction_store, friction_balance, friction_flexibility, friction_follow
-   public :: eliminate, find_sliders, product_of
+   public :: eliminate_system, find_sliders, product_of
 
    !> Pivot of the unsymmetric system, whose diagonal is near one, below which the joints slide on without more load
    real(wp), parameter :: least_pivot = 1.0e-9_wp
@@ -71,7 +71,7 @@ contains
             product_of(point(j)%across, point(j), ub(1:))] + point(j)%law(2) * &
             [product_of(point(j)%slip, point(j), ua(1:)), product_of(point(j)%slip, point(j), ub(1:))] - point(j)%held
       end do
-      call eliminate(coupling, change, status)
+      call eliminate_system(coupling, change, status)
       if (status /= status_ok) return
       force = 0.0_wp
       do j = 1, m
@@ -85,7 +85,7 @@ contains
       end do
       fh(1:, :) = fh(1:, :) + force
       answer(:, :) = force(1:n, :)
-      call solve(stiffness, answer, status)
+      call solve_vectors(stiffness, answer, status)
       ua(1:n) = ua(1:n) + answer(:, 1)
       ub(1:n) = ub(1:n) + answer(:, 2)
    end subroutine friction_balance
@@ -177,7 +177,7 @@ contains
          x = 0.0_wp
          call add_force(point(k)%slip, point(k), x(:, 1))
          call add_force(point(k)%across, point(k), x(:, 2))
-         call solve(stiffness, x, status)
+         call solve_vectors(stiffness, x, status)
          if (status /= status_ok) return
          do j = 1, i
             jump(:, j, i) = [product_of(all_of(j)%across, all_of(j), x(:, 1)), &
@@ -216,7 +216,7 @@ contains
             if (event%index(i) <= n) z(event%index(i), k) = event%w(i, k)
          end do
       end do
-      if (r > 0) call solve(stiffness, z, status)
+      if (r > 0) call solve_vectors(stiffness, z, status)
       if (status /= status_ok) return
       do k = 1, r
          do i = 1, r
@@ -234,7 +234,7 @@ contains
       do j = 1, m
          copy(:, :) = small(1:r, 1:r)
          left(:, 1) = moved(2, :, j)
-         call eliminate(copy, left, status)
+         call eliminate_system(copy, left, status)
          if (status /= status_ok) return
          do i = 1, m
             do k = 1, r
@@ -247,7 +247,7 @@ contains
    end subroutine friction_follow
 
    !> Displacements of some loads
-   subroutine solve(stiffness, x, status)
+   subroutine solve_vectors(stiffness, x, status)
       type(stiffness_matrix), intent(in) :: stiffness
       real(wp), intent(inout), contiguous :: x(:, :)
       integer(c_int), intent(out) :: status
@@ -258,7 +258,7 @@ contains
          call stiffness_solve(stiffness, x(:, j:last), status)
          if (status /= status_ok) return
       end do
-   end subroutine solve
+   end subroutine solve_vectors
 
    !> Add the entries of a point to forces of the equations
    pure subroutine add_force(entries, point, force)
@@ -287,7 +287,7 @@ contains
    end function product_of
 
    !> Gaussian elimination with row pivots, column by column; the right sides become the answers
-   pure subroutine eliminate(a, b, status)
+   pure subroutine eliminate_system(a, b, status)
       real(wp), intent(inout), contiguous :: a(:, :)
       real(wp), intent(inout), contiguous :: b(:, :)
       integer(c_int), intent(out) :: status
@@ -302,10 +302,10 @@ contains
          end if
          if (best /= k) then
             do j = k, n
-               call swap(a(k, j), a(best, j))
+               call swap_values(a(k, j), a(best, j))
             end do
             do j = 1, size(b, 2)
-               call swap(b(k, j), b(best, j))
+               call swap_values(b(k, j), b(best, j))
             end do
          end if
          a(k + 1:, k) = a(k + 1:, k) / a(k, k)
@@ -322,14 +322,14 @@ contains
             b(1:k - 1, j) = b(1:k - 1, j) - b(k, j) * a(1:k - 1, k)
          end do
       end do
-   end subroutine eliminate
+   end subroutine eliminate_system
 
-   pure subroutine swap(a, b)
+   pure subroutine swap_values(a, b)
       real(wp), intent(inout) :: a, b
       real(wp) :: kept
       kept = a
       a = b
       b = kept
-   end subroutine swap
+   end subroutine swap_values
 
 end module sla_friction

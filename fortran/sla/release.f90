@@ -5,7 +5,7 @@ module sla_release
    use sla_group, only : scan_result
    use sla_ledger, only : follow_supports
    use sla_model, only : element_model
-   use sla_scan, only : bring_all, choose, scan_way
+   use sla_scan, only : bring_all, choose_event, scan_way
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -60,10 +60,10 @@ contains
       part = 1.0_wp
       if (found%empty%point /= 0) then
          part = 0.0_wp
-         call choose(model, found%empty)
+         call choose_event(model, found%empty)
       else if (found%hi%value < 1.0_wp) then
          part = max(found%hi%value, 0.0_wp)
-         call choose(model, found%hi)
+         call choose_event(model, found%hi)
       end if
       lambda = model%ledger%lambda
       model%loop%lambda = lambda

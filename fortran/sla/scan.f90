@@ -11,7 +11,7 @@ module sla_scan
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: scan_model, scan_scaled, scan_way, bring_all, crossed, choose
+   public :: scan_model, scan_scaled, scan_way, bring_all, crossed, choose_event
 
    integer, parameter :: few = 100                    !! regions that are looked at sooner by one thread
 
@@ -47,7 +47,7 @@ contains
                         k = tree%part(k)%lowest - 1
                         cycle
                      end if
-                     call bring(model, k, count, status)
+                     call bring_region(model, k, count, status)
                      if (status /= status_ok) return
                   end if
                   k = k - 1
@@ -126,7 +126,7 @@ contains
       integer :: i, k
 
       guess = near
-      call loosen(found, guess)
+      call loosen_limits(found, guess)
       !$omp parallel do schedule(static) default(none) &
       !$omp shared(model, ua, ub, noise, guess, first, last) private(i, k) &
       !$omp num_threads(model%threads) if(model%threads > 1 .and. last - first > few)
@@ -146,8 +146,10 @@ contains
       do i = first, last
          associate (part => model%search%part(i))
             found%bounded = found%bounded .or. part%bounded
-            if (part%hi%point /= 0 .and. wins(part%hi, part%hi%value, found%hi, found%hi%value)) found%hi = part%hi
-            if (part%lo%point /= 0 .and. wins(part%lo, -part%lo%value, found%lo, -found%lo%value)) found%lo = part%lo
+            if (part%hi%point /= 0 .and. takes_place(part%hi, part%hi%value, found%hi, &
+               found%hi%value)) found%hi = part%hi
+            if (part%lo%point /= 0 .and. takes_place(part%lo, -part%lo%value, found%lo, &
+               -found%lo%value)) found%lo = part%lo
             if (part%empty%point == 0) cycle
             if (found%empty%point == 0 .or. part%empty%value > found%empty%value .or. &
                 (.not. part%empty%value < found%empty%value .and. earlier(part%empty, found%empty))) then
@@ -177,7 +179,7 @@ contains
    end subroutine scan_run
 
    !> Does a limit take the place of another one: it is less, or the same of an earlier point
-   pure function wins(new, value, old, least) result(better)
+   pure function takes_place(new, value, old, least) result(better)
       type(bound), intent(in) :: new
       real(wp), intent(in) :: value          !! of the new, the least wins
       type(bound), intent(in) :: old
@@ -185,7 +187,7 @@ contains
       logical :: better
       better = below(value, least)
       if (.not. better .and. old%point /= 0 .and. .not. below(least, value)) better = earlier(new, old)
-   end function wins
+   end function takes_place
 
    !> Does a point come before another
    pure function earlier(a, b) result(first)
@@ -200,12 +202,12 @@ contains
       type(scan_result) :: guess
 
       guess = scan_result()
-      call join(model%search%upper)
-      call join(model%search%lower)
+      call join_limits(model%search%upper)
+      call join_limits(model%search%lower)
 
    contains
 
-      subroutine join(place)
+      subroutine join_limits(place)
          type(point_place), intent(in) :: place
          type(scan_result) :: found
          integer :: e
@@ -215,14 +217,14 @@ contains
             e = 1 + (place%point - 1) / (group%points / group%elements)
             found = scan_result()
             call group%scan(e, e, model%solution%ua, model%solution%ub, model%loop%lambda, model%search%noise, found)
-            call loosen(found, guess)
+            call loosen_limits(found, guess)
          end select
-      end subroutine join
+      end subroutine join_limits
 
    end function guess_limits
 
    !> Limits that leave room for equals of those found
-   pure subroutine loosen(found, guess)
+   pure subroutine loosen_limits(found, guess)
       type(scan_result), intent(in) :: found
       type(scan_result), intent(inout) :: guess
       real(wp), parameter :: room = 1.0e-9_wp
@@ -230,7 +232,7 @@ contains
          max(room * abs(found%hi%value), tiny(room)))
       if (found%lo%point /= 0) guess%lo%value = max(guess%lo%value, found%lo%value - &
          max(room * abs(found%lo%value), tiny(room)))
-   end subroutine loosen
+   end subroutine loosen_limits
 
    !> Do the limits leave no multiplier, by more than rounding? A joint that closes at zero stress would open again at
    !> the same load, then close, many times over.
@@ -244,12 +246,12 @@ contains
    end function crossed
 
    !> The point to damage next and its multiplier
-   pure subroutine choose(model, chosen)
+   pure subroutine choose_event(model, chosen)
       type(element_model), intent(inout) :: model
       type(bound), intent(in) :: chosen
       model%loop%pending = point_event(chosen%group, chosen%point, chosen%code)
       model%loop%lambda = chosen%value
-   end subroutine choose
+   end subroutine choose_event
 
    !> The region of the first freedom of a point's element
    pure function element_region(model, place) result(k)
@@ -281,7 +283,7 @@ contains
                count = count + 1
                model%search%list(count) = k
             else if (model%search%wanted(k)) then
-               call bring(model, k, count, status)
+               call bring_region(model, k, count, status)
                if (status /= status_ok) return
             end if
          end do
@@ -290,7 +292,7 @@ contains
    end subroutine bring_wanted
 
    !> Bring one region up to date and put it on the list
-   subroutine bring(model, k, count, status)
+   subroutine bring_region(model, k, count, status)
       type(element_model), intent(inout) :: model
       integer, intent(in) :: k
       integer, intent(inout) :: count
@@ -299,7 +301,7 @@ contains
          model%solution%z, status)
       count = count + 1
       model%search%list(count) = k
-   end subroutine bring
+   end subroutine bring_region
 
    !> Bring all regions up to date
    subroutine bring_all(model, status)
@@ -309,7 +311,7 @@ contains
       status = status_ok
       count = 0
       do k = size(model%search%tree%part), 1, -1
-         if (model%search%tree%part(k)%seen /= model%search%tree%now) call bring(model, k, count, status)
+         if (model%search%tree%part(k)%seen /= model%search%tree%now) call bring_region(model, k, count, status)
          if (status /= status_ok) return
       end do
       model%search%tree%part(:)%patience = 0

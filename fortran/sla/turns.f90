@@ -14,7 +14,7 @@ module sla_turns
    use common_kinds, only : wp
    use common_lists, only : code_slide => sla_event_slide, code_stick => sla_event_stick
    use common_status, only : status_ok, status_out_of_memory
-   use sla_friction, only : friction_flexibility, friction_store, eliminate, find_sliders, product_of
+   use sla_friction, only : friction_flexibility, friction_store, eliminate_system, find_sliders, product_of
    use sla_group, only : event_vectors, friction_group, group_holder, point_event, slider
    use sla_stiffness, only : stiffness_matrix
    use, intrinsic :: iso_c_binding, only : c_int
@@ -75,7 +75,7 @@ contains
          side(i, i) = 1.0_wp
       end do
       side(:, m + 1) = -g0
-      call eliminate(g, side, status)
+      call eliminate_system(g, side, status)
       if (status /= status_ok) then     ! all of them stuck are a mechanism
          status = status_ok
          return
