@@ -112,7 +112,7 @@ contains
       type(element_model), pointer :: model
       call model_take(handle, stage_new, stage_loaded, model, status)
       if (status /= status_ok) return
-      model%stop = stop_rules(lambda=load, displacement=displacement, fraction=fraction, compliance=compliance, &
+      model%rules = stop_rules(lambda=load, displacement=displacement, fraction=fraction, compliance=compliance, &
          refuse_overload=refuse_overload /= 0, proportional=variant == proportional, release=variant == release, &
          target=target, side=side, already=already, far=far)
       call handle_leave(handle)

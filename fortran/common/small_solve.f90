@@ -7,6 +7,8 @@ module common_small_solve
    private
    public :: small_solve
 
+   integer, parameter :: most_rows = 16
+
    interface
       subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
          import :: wp
@@ -19,16 +21,16 @@ module common_small_solve
 
 contains
 
-   !> Solve a x = b for a square matrix of a few rows
+   !> Solve a x = b for a square matrix of at most `most_rows` rows
    subroutine small_solve(a, b, status)
       real(wp), intent(inout) :: a(:, :)     !! matrix; overwritten by its factors
       real(wp), intent(inout) :: b(:)        !! right-hand side in, solution out
-      integer(c_int), intent(out) :: status  !! singular; invalid_argument where a is not square with as many rows as b
-      integer :: pivot(size(b)), info, n
+      integer(c_int), intent(out) :: status  !! singular; invalid_argument where a and b do not fit
+      integer :: pivot(most_rows), info, n
 
       n = size(b)
       status = status_invalid_argument
-      if (size(a, 1) /= n .or. size(a, 2) /= n) return
+      if (n > most_rows .or. size(a, 1) /= n .or. size(a, 2) /= n) return
       call dgesv(n, 1, a, size(a, 1), pivot, b, n, info)
       status = merge(status_ok, status_singular, info == 0)
    end subroutine small_solve

@@ -136,7 +136,7 @@ contains
       call move_alloc(first, built%law_first)
       call move_alloc(higher, built%law_body)
       call move_alloc(number, built%law_number)
-      built%highest_law = maxval([0_c_int, law])
+      built%highest_law = max(0, int(maxval(law)))
       status = status_ok
    end subroutine set_joints
 

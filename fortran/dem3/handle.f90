@@ -115,7 +115,7 @@ contains
       if (failed /= 0) return
       law_of(:, :) = joint
       call move_alloc(law_of, built%law_of)
-      built%highest_law = maxval([0_c_int, joint(3, :)])
+      built%highest_law = max(0, int(maxval(joint(3, :))))
       status = status_ok
    end subroutine set_joints
 

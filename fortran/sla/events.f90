@@ -68,7 +68,7 @@ contains
             status = status_cancelled
             return
          end if
-         if (model%stop%release .and. model%loop%pending%group /= 0) call hold_state(model, status)
+         if (model%rules%release .and. model%loop%pending%group /= 0) call hold_state(model, status)
          if (status /= status_ok) return
          if (model%loop%pending%group /= 0) then
             call change_state(model, driven, turned, reason, status)
@@ -89,20 +89,20 @@ contains
          model%search%lower = point_place(found%lo%group, found%lo%point)
          equilibrium = found%empty%point == 0 .and. .not. crossed(found)
          first_of_stage = .not. model%ledger%recorded
-         if (model%stop%refuse_overload .and. .not. model%ledger%recorded .and. .not. equilibrium) then
+         if (model%rules%refuse_overload .and. .not. model%ledger%recorded .and. .not. equilibrium) then
             status = status_beyond_strength
             return
          end if
          if (.not. found%bounded) reason = stop_unbounded
          model%loop%scale = 1.0_wp
          scaled = bound()
-         if (model%stop%proportional .and. .not. equilibrium .and. found%bounded) then
+         if (model%rules%proportional .and. .not. equilibrium .and. found%bounded) then
             call scan_scaled(model, scaled, status)
          end if
          if (status /= status_ok) return
          call meet_target(model, found, monitors, at, met)
-         if (equilibrium .and. model%stop%lambda < unbounded .and. found%hi%value >= model%stop%lambda .and. &
-             found%lo%value <= model%stop%lambda) then
+         if (equilibrium .and. model%rules%lambda < unbounded .and. found%hi%value >= model%rules%lambda .and. &
+             found%lo%value <= model%rules%lambda) then
             reason = stop_load
          else if (equilibrium .and. met) then
             reason = stop_displacement
@@ -119,14 +119,14 @@ contains
          else if (found%lo%value > -unbounded .and. .not. equilibrium) then
             ! Force release holds the load: what has its lower limit above it (a crack that closes, a point that touches
             ! its strength) is damaged at the load reached
-            if (model%stop%release .and. model%ledger%recorded) found%lo%value = model%loop%lambda
+            if (model%rules%release .and. model%ledger%recorded) found%lo%value = model%loop%lambda
             call choose_event(model, found%lo)
          else
             reason = stop_unbounded    ! only lower limits: the load can grow for ever
          end if
          if (reason == stop_load .or. reason == stop_displacement) then
             model%loop%pending = point_event()
-            call account_state(model, merge(model%stop%lambda, at, reason == stop_load), status)
+            call account_state(model, merge(model%rules%lambda, at, reason == stop_load), status)
          else if (reason == stop_unbounded) then
             return
          else
@@ -139,13 +139,13 @@ contains
             model%loop%lambda * model%loop%slope
          if (equilibrium) then
             model%loop%lambda_held = model%loop%lambda
-            reached = merge(log%reals(log_reals, log%count), model%loop%lambda + model%stop%already, driven)
-            if (abs(log%monitors(1, log%count) - model%loop%start_displacement) > model%stop%far) reason = stop_far
+            reached = merge(log%reals(log_reals, log%count), model%loop%lambda + model%rules%already, driven)
+            if (abs(log%monitors(1, log%count) - model%loop%start_displacement) > model%rules%far) reason = stop_far
             if (reached > model%loop%peak .and. reason == stop_none) then
                model%loop%peak = reached
                model%loop%peak_displacement = log%monitors(1, log%count)
             end if
-            if (abs(log%monitors(1, log%count)) >= model%stop%displacement) reason = stop_displacement
+            if (abs(log%monitors(1, log%count)) >= model%rules%displacement) reason = stop_displacement
             if (reason == stop_none) then
                call judge_fall(model, reached, log%monitors(1, log%count), fallen)
                if (fallen) reason = stop_fraction
@@ -174,7 +174,7 @@ contains
       logical, intent(out) :: fallen
       real(wp) :: way
       fallen = .false.
-      associate (loop => model%loop, fraction => model%stop%fraction)
+      associate (loop => model%loop, fraction => model%rules%fraction)
          if (fraction < 0.0_wp .or. .not. loop%peak > 0.0_wp) return
          way = sign(1.0_wp, loop%slope) * (displacement - loop%start_displacement)
          if (reached >= fraction * loop%peak) then
@@ -194,7 +194,7 @@ contains
       type(element_model), intent(in) :: model
       logical, intent(in) :: driven
       logical :: yes
-      associate (loop => model%loop, ratio => model%stop%compliance, work => model%solution%work)
+      associate (loop => model%loop, ratio => model%rules%compliance, work => model%solution%work)
          if (driven) then
             yes = loop%first_constant > 0.0_wp .and. .not. work%aa <= ratio * loop%first_constant
          else
@@ -214,7 +214,7 @@ contains
       real(wp) :: start, slope
       met = .false.
       lambda = 0.0_wp
-      if (.not. abs(model%stop%side) > 0.0_wp) return
+      if (.not. abs(model%rules%side) > 0.0_wp) return
       associate (ratio => monitors%ratio(1), work => model%solution%work, support => model%support%work)
          if (abs(ratio) > 0.0_wp .and. .not. model%sliding%active) then
             start = ratio * (work%ab - support%ba)
@@ -224,8 +224,8 @@ contains
             slope = monitors%sum_of(1, model%solution%ub)
          end if
       end associate
-      if (.not. model%stop%side * slope > 0.0_wp) return
-      lambda = (model%stop%target - start) / slope
+      if (.not. model%rules%side * slope > 0.0_wp) return
+      lambda = (model%rules%target - start) / slope
       met = found%empty%point == 0 .and. lambda >= found%lo%value .and. lambda <= found%hi%value
    end subroutine meet_target
 
@@ -271,7 +271,8 @@ contains
       if (driven) then
          nowhere = nowhere .or. too_soft(model, driven)
       else
-         nowhere = nowhere .or. .not. abs(model%solution%work%bb) <= model%stop%compliance * model%loop%first_compliance
+         nowhere = nowhere .or. &
+            .not. abs(model%solution%work%bb) <= model%rules%compliance * model%loop%first_compliance
       end if
       if (.not. (nowhere .or. circle)) return
       if (nowhere) then

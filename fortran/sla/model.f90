@@ -43,7 +43,7 @@ module sla_model
       type(energy_ledger) :: ledger
       type(force_release) :: release
       type(residual_checks) :: checks
-      type(stop_rules) :: stop
+      type(stop_rules) :: rules
    end type element_model
 
 contains
