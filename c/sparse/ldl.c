@@ -6,6 +6,9 @@
  * way; the caller says through which supernodes the solution goes backward.
  *
  * The equations come in factor order: the caller renumbers them once by extrados_sparse_order.
+ *
+ * Why: an event by CHOLMOD's refactorisation takes 61 times as long at 4,800 equations, 113 times at 20,000
+ * (`python tests/bench sla`).
  */
 #include <cholmod.h>
 #include <math.h>
