@@ -13,6 +13,7 @@ contains it. Compared are the results of summary.json and the arrays of results.
 import argparse
 import json
 import math
+import os
 import subprocess
 import sys
 import time
@@ -41,6 +42,9 @@ def decks(parts: list[str]) -> list[str]:
 def run(folder: Path, parts: list[str], processes: int, limit: float) -> None:
     """Run the decks into the folder, one subfolder each; a deck that takes longer than the limit [s] is named and left."""
 
+    # NumPy's products share out their sums among the threads of OpenBLAS, which changes the last digits
+    one_thread = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+
     def run_deck(name: str) -> None:
         out = folder / name
         if (out / "summary.json").exists():
@@ -49,7 +53,7 @@ def run(folder: Path, parts: list[str], processes: int, limit: float) -> None:
         command = [sys.executable, "-m", "extrados", "run", str(CASES / f"{name}.toml"), "--out", str(out),
                    "--no-figures", "--quiet", "--threads", "1"]  # fmt: skip
         try:
-            code = str(subprocess.run(command, timeout=limit, capture_output=True).returncode)
+            code = str(subprocess.run(command, timeout=limit, capture_output=True, env=one_thread).returncode)
         except subprocess.TimeoutExpired:
             code = "stopped"
         print(f"{name}: {code}, {time.monotonic() - start:.1f} s", flush=True)
