@@ -28,7 +28,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 CASES = ROOT / "cases"
 #: Results that measure the machine
-TIMES = ("seconds", "seconds_per_event")
+TIMES = ("seconds", "seconds_per_event", "sections_per_second")
 
 
 def decks(parts: list[str]) -> list[str]:
