@@ -47,7 +47,7 @@ EXTRADOS_API int extrados_blas_load(void);
 /* threads.c: as many of `wanted` threads as can be started now, at least 1. */
 EXTRADOS_API int extrados_threads(int wanted);
 
-/* random.c: GSL returns errors instead of ending the process, BLAS has its first buffer. */
+/* start.c: GSL returns errors instead of ending the process, BLAS has its first buffer. */
 EXTRADOS_API int extrados_library_init(void);
 
 /* ldl.c: a symmetric sparse system, lower triangle by columns, 0-based. `order` gives the fill-reducing
@@ -62,7 +62,8 @@ EXTRADOS_API void extrados_sparse_free(void **handle);
  * that is not positive). */
 EXTRADOS_API int extrados_sparse_factor(void *handle, const double *value, double *ratio, int64_t *weakest);
 EXTRADOS_API int extrados_sparse_solve(void *handle, int vectors, double *z);
-/* K + sum sign(k) w(k) w(k)' for up to 4 changes with `count` entries each at `index` (0-based, of one element), in
+enum { extrados_most_changes = 5 }; /* of one event: most_rank of fortran/sla/group.f90 */
+/* K + sum sign(k) w(k) w(k)' for up to extrados_most_changes changes with `count` entries each at `index` (0-based, of one element), in
  * one walk up the elimination tree. On its way right-hand sides b with entries at the same places go forward through
  * the new factor: z gets them over D at the equations of the path. `least`: smallest det(K + w w') / det(K) of the
  * changes. After not_positive_definite the factor must be made anew. */

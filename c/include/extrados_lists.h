@@ -94,6 +94,12 @@
   ENTRY(10, slide, "sliding") \
   ENTRY(11, stick, "sticking")
 
+/* What happens after a tooth and where equilibrium is lost, see stop_rules in fortran/sla/state.f90 */
+#define EXTRADOS_SLA_VARIANT_LIST(ENTRY) \
+  ENTRY(0, load_unload, "load-unload") \
+  ENTRY(1, proportional, "proportional") \
+  ENTRY(2, force_release, "force-release")
+
 /* Why a run of events ended */
 #define EXTRADOS_SLA_STOP_LIST(ENTRY) \
   ENTRY(0, none, "") \
@@ -142,6 +148,7 @@
   LIST(sla_law, EXTRADOS_SLA_LAW_LIST) \
   LIST(sla_cracking, EXTRADOS_SLA_CRACKING_LIST) \
   LIST(sla_event, EXTRADOS_SLA_EVENT_LIST) \
+  LIST(sla_variant, EXTRADOS_SLA_VARIANT_LIST) \
   LIST(sla_stop, EXTRADOS_SLA_STOP_LIST) \
   LIST(shell_through, EXTRADOS_SHELL_THROUGH_LIST) \
   LIST(envelope, EXTRADOS_ENVELOPE_LIST) \

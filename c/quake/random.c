@@ -1,15 +1,8 @@
 /* Seeded random numbers for generated earthquakes (thesis section 6.3.1: random phases). */
-#include <gsl/gsl_errno.h>
 #include <gsl/gsl_rng.h>
 #include <math.h>
 
 #include "extrados_quake.h"
-
-/* GSL's default handler aborts the process; called once when the module loads. */
-int extrados_library_init(void) {
-  gsl_set_error_handler_off();
-  return extrados_blas_load();
-}
 
 /* Mersenne twister. Its seed has 32 bits, so seeds drawn at random would make two of 10,000 motions equal in one
  * set out of a hundred: within a set the map from motion to seed is one to one instead. */

@@ -3,6 +3,9 @@
  * Column j of the lower triangle stands in band[j (width + 1)], from its diagonal down. LAPACK's dpbtrf does the same, but
  * OpenBLAS shares blocks of thirty equations among threads, which costs more than it gains where others compute. Eight
  * columns are factored at a time and taken off all columns they reach (Golub and Van Loan 2013, section 4.3.5).
+ *
+ * In one thread each, LAPACK takes 1.8 times as long at a width of 30, 1.1 to 1.2 times at 80, 0.8 times at 290
+ * (`python tests/bench solvers`).
  */
 #include <math.h>
 #include <stdlib.h>

@@ -1,12 +1,12 @@
 !> Discrete elements of the plane: blocks behind a handle, built in steps, and what a run leaves of them.
 !>
-!> create, laws, joints, start, moves, surroundings; then api_dem_run; then bodies and contacts tell more of the last
-!> run. Body numbers are 1-based; mass 0 marks a support.
+!> create, laws (api_dem_run), joints, start, moves, surroundings; then the run (api_dem_run); then bodies and contacts.
+!> Body numbers are 1-based; mass 0 marks a support.
 module api_dem
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: create, laws, joints, start, moves, surroundings, bodies, contacts
+   public :: create, joints, start, moves, surroundings, bodies, contacts
 
 contains
 
@@ -27,32 +27,6 @@ contains
       integer(c_int), intent(out) :: status
       call blocks_new(centroid, mass, inertia, owner, first, vertex, outer, handle, status)
    end subroutine create
-
-   !> Types of joints; the first is that of contacts that form later
-   subroutine laws(handle, nlaw, law, status)
-      use common_handles, only : handle_leave
-      use common_status, only : status_ok, status_out_of_memory
-      use dem_plane_handle, only : built_blocks, blocks_take, set_laws
-      use dem_joint, only : joint_law
-      integer(c_int64_t), intent(in) :: handle
-      integer(c_int), intent(in) :: nlaw
-      real(c_double), intent(in) :: law(6, nlaw)              !! see joint_law
-      integer(c_int), intent(out) :: status
-      type(built_blocks), pointer :: built
-      type(joint_law), allocatable :: given(:)
-      integer :: k, failed
-      call blocks_take(handle, built, status)
-      if (status /= status_ok) return
-      allocate (given(nlaw), stat=failed)
-      status = status_out_of_memory
-      if (failed == 0) then
-         do k = 1, nlaw
-            given(k) = joint_law(law(1, k), law(2, k), law(3, k), law(4, k), law(5, k), law(6, k))
-         end do
-         call set_laws(built, given, status)
-      end if
-      call handle_leave(handle)
-   end subroutine laws
 
    !> Joints with a type of their own
    subroutine joints(handle, njoint, pair, law, status)

@@ -1,13 +1,13 @@
 !> Discrete elements in space: blocks behind a handle, built in steps, and what a run leaves of them.
 !>
-!> create, laws, dowels if any, surroundings; then api_dem_run; then bodies, attitudes and slips tell more of the last
-!> run.
+!> create, laws (api_dem_run), joints, dowels if any, surroundings; then the run (api_dem_run); then bodies, attitudes,
+!> slips.
 !> Body numbers are 1-based; mass 0 marks a support.
 module api_dem3
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: create, laws, dowels, surroundings, bodies, attitudes, slips
+   public :: create, joints, dowels, surroundings, bodies, attitudes, slips
 
 contains
 
@@ -33,34 +33,21 @@ contains
          loop_first, loop, handle, status)
    end subroutine create
 
-   !> Types of joints, the first that of contacts that form later; and pairs of bodies whose joint has another
-   subroutine laws(handle, nlaw, law, njoint, joint, status)
+   !> Pairs of bodies whose joint has a type of its own
+   subroutine joints(handle, njoint, joint, status)
       use common_handles, only : handle_leave
-      use common_status, only : status_ok, status_out_of_memory
-      use dem3_handle, only : built_solids, set_laws, solids_take
-      use dem3_law, only : joint_law
+      use common_status, only : status_ok
+      use dem3_handle, only : built_solids, set_joints, solids_take
       integer(c_int64_t), intent(in) :: handle
-      integer(c_int), intent(in) :: nlaw
-      real(c_double), intent(in) :: law(6, nlaw)              !! see joint_law
       integer(c_int), intent(in) :: njoint
-      integer(c_int), intent(in) :: joint(3, njoint)          !! two bodies, the lower first, and the law
+      integer(c_int), intent(in) :: joint(3, njoint)          !! two bodies, the lower first, and the law; ascending
       integer(c_int), intent(out) :: status
       type(built_solids), pointer :: built
-      type(joint_law), allocatable :: given(:)
-      integer :: k, failed
       call solids_take(handle, built, status)
       if (status /= status_ok) return
-      allocate (given(nlaw), stat=failed)
-      status = status_out_of_memory
-      if (failed == 0) then
-         do k = 1, nlaw
-            given(k) = joint_law(law(1, k), law(2, k), law(3, k), cohesion=law(5, k), tension=law(6, k), &
-               damping=law(4, k))
-         end do
-         call set_laws(built, given, joint, status)
-      end if
+      call set_joints(built, joint, status)
       call handle_leave(handle)
-   end subroutine laws
+   end subroutine joints
 
    !> Dowels across joints
    subroutine dowels(handle, n, body, place, axis, value, status)

@@ -1,26 +1,67 @@
 !> Runs of discrete elements, of the plane (built by api_dem) or of space (api_dem3).
 !>
-!> options and rigid; then start and run, as often as wanted; then summary, effort and history tell the last run. A run
-!> that pauses goes on where run is called again; its state can be kept, and taken back by resume instead of start.
+!> laws, options and rigid; then start and run, as often as wanted; then summary, effort and history of the last run.
+!> A run that pauses continues where run is called again; its state can be kept, and given to resume instead of start.
 module api_dem_run
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: options, rigid, start, run, state_size, state, resume, summary, effort, history
+   public :: laws, options, rigid, start, run, state_size, state, resume, summary, effort, history
 
 contains
 
+   !> Types of joints; the first is that of contacts that form later
+   subroutine laws(handle, nlaw, normal_stiffness, shear_stiffness, friction, cohesion, tension, damping, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_out_of_memory
+      use dem_handle, only : built_model, model_take, set_laws
+      use dem_joint, only : joint_law
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: nlaw
+      real(c_double), intent(in) :: normal_stiffness(nlaw)    !! units as in joint_law
+      real(c_double), intent(in) :: shear_stiffness(nlaw)
+      real(c_double), intent(in) :: friction(nlaw)
+      real(c_double), intent(in) :: cohesion(nlaw)
+      real(c_double), intent(in) :: tension(nlaw)
+      real(c_double), intent(in) :: damping(nlaw)
+      integer(c_int), intent(out) :: status
+      class(built_model), pointer :: built
+      type(joint_law), allocatable :: given(:)
+      integer :: failed
+      call model_take(handle, built, status)
+      if (status /= status_ok) return
+      allocate (given(nlaw), stat=failed)
+      status = status_out_of_memory
+      if (failed == 0) then
+         given%normal_stiffness = normal_stiffness
+         given%shear_stiffness = shear_stiffness
+         given%friction = friction
+         given%cohesion = cohesion
+         given%tension = tension
+         given%damping = damping
+         call set_laws(built, given, status)
+      end if
+      call handle_leave(handle)
+   end subroutine laws
+
    !> How to run
-   subroutine options(handle, limits, settle_steps, stop_at_rest, threads, status)
+   subroutine options(handle, end_time, step, fraction, settle_tolerance, settlement, collapse, residual_limit, &
+                      settle_damping, collapse_turn, collapse_drop, settle_steps, stop_at_rest, threads, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok
       use dem_handle, only : built_model, model_take, set_options
-      use dem_run, only : run_options
+      use dem_simulation, only : run_options
       integer(c_int64_t), intent(in) :: handle
-      !> End time [s], step [s] or 0, fraction of the critical step, settling tolerance, farthest settlement [m] or 0,
-      !> collapse [m] or 0, limit of the energy residual, beta while it settles [s], rotation [rad] and
-      !> loss of height [m] of a body that has collapsed
-      real(c_double), intent(in) :: limits(10)
+      real(c_double), intent(in) :: end_time                  !! [s]; of all of them see run_options
+      real(c_double), intent(in) :: step                      !! [s], or 0
+      real(c_double), intent(in) :: fraction                  !! of the critical step
+      real(c_double), intent(in) :: settle_tolerance
+      real(c_double), intent(in) :: settlement                !! farthest [m], or 0
+      real(c_double), intent(in) :: collapse                  !! [m], or 0
+      real(c_double), intent(in) :: residual_limit
+      real(c_double), intent(in) :: settle_damping            !! [s]
+      real(c_double), intent(in) :: collapse_turn             !! [rad]
+      real(c_double), intent(in) :: collapse_drop             !! [m]
       integer(c_int), intent(in) :: settle_steps              !! at most; 0: no settling
       integer(c_int), intent(in) :: stop_at_rest              !! 1: end once all is quiet
       integer(c_int), intent(in) :: threads
@@ -28,8 +69,10 @@ contains
       class(built_model), pointer :: built
       call model_take(handle, built, status)
       if (status /= status_ok) return
-      call set_options(built, run_options(limits(1), limits(2), limits(3), limits(4), limits(5), limits(6), limits(7), &
-         limits(8), limits(9), limits(10), int(settle_steps), stop_at_rest /= 0, int(threads)), status)
+      call set_options(built, run_options(end_time=end_time, step=step, fraction=fraction, &
+         settle_tolerance=settle_tolerance, settlement=settlement, collapse=collapse, residual_limit=residual_limit, &
+         settle_damping=settle_damping, collapse_turn=collapse_turn, collapse_drop=collapse_drop, &
+         settle_steps=int(settle_steps), stop_at_rest=stop_at_rest /= 0, threads=int(threads)), status)
       call handle_leave(handle)
    end subroutine options
 
@@ -114,7 +157,7 @@ contains
       use common_handles, only : handle_leave
       use common_status, only : status_ok
       use dem_handle, only : paused_run_take
-      use dem_run, only : simulation
+      use dem_simulation, only : simulation
       use dem_state, only : state_words
       integer(c_int64_t), intent(in) :: handle
       integer(c_int64_t), intent(out) :: words
@@ -132,7 +175,7 @@ contains
       use common_handles, only : handle_leave
       use common_status, only : status_ok
       use dem_handle, only : paused_run_take
-      use dem_run, only : simulation
+      use dem_simulation, only : simulation
       use dem_state, only : state_save
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: words                     !! see state_size
@@ -168,24 +211,24 @@ contains
    subroutine summary(handle, counts, measures, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok
-      use dem_clock, only : model_clock
       use dem_handle, only : run_take
-      use dem_run, only : simulation
+      use dem_jointed, only : jointed_model
+      use dem_simulation, only : simulation
       integer(c_int64_t), intent(in) :: handle
       !> Points, reason (list dem_stop), two bodies that caused it, settling steps, searches, most pairs, steps
       integer(c_int), intent(out) :: counts(8)
       real(c_double), intent(out) :: measures(4)              !! least step, critical step, stop time [s], residual
       integer(c_int), intent(out) :: status
       class(simulation), pointer :: run
-      type(model_clock), pointer :: clock
+      class(jointed_model), pointer :: model
       counts = 0
       measures = 0.0_c_double
       call run_take(handle, run, status)
       if (status /= status_ok) return
-      clock => run%clock()
+      model => run%get_model()
       associate (record => run%record)
          counts = [int(record%points, c_int), record%reason, int(record%blamed, c_int), int(record%settling, c_int), &
-            int(record%searches, c_int), int(max(record%most_pairs, record%pairs), c_int), int(clock%steps, c_int)]
+            int(record%searches, c_int), int(max(record%most_pairs, record%pairs), c_int), int(model%steps, c_int)]
          measures = [record%least_step, record%critical, record%stop_time, record%residual]
       end associate
       call handle_leave(handle)
@@ -196,8 +239,8 @@ contains
       use common_handles, only : handle_leave
       use common_status, only : status_ok
       use dem_handle, only : run_take
-      use dem_rigid, only : rigid_solver
-      use dem_run, only : simulation
+      use dem_jointed, only : jointed_model
+      use dem_simulation, only : simulation
       integer(c_int64_t), intent(in) :: handle
       !> Steps, factorisations, most rounds of a step, steps that did not converge
       integer(c_int), intent(out) :: counts(4)
@@ -205,14 +248,16 @@ contains
       real(c_double), intent(out) :: measures(2)
       integer(c_int), intent(out) :: status
       class(simulation), pointer :: run
-      class(rigid_solver), pointer :: solver
+      class(jointed_model), pointer :: model
       counts = 0
       measures = 0.0_c_double
       call run_take(handle, run, status)
       if (status /= status_ok) return
-      solver => run%solver()
-      counts = int([solver%steps, solver%factors, solver%most_rounds, solver%open_steps], c_int)
-      measures = [solver%residual, solver%worst]
+      model => run%get_model()
+      associate (solver => model%rigid)
+         counts = int([solver%steps, solver%factors, solver%most_rounds, solver%open_steps], c_int)
+         measures = [solver%residual, solver%worst]
+      end associate
       call handle_leave(handle)
    end subroutine effort
 
@@ -222,7 +267,7 @@ contains
       use common_lists, only : dem_energy_count
       use common_status, only : status_ok, status_invalid_argument
       use dem_handle, only : run_take
-      use dem_run, only : simulation
+      use dem_simulation, only : simulation
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: nb                        !! bodies
       integer(c_int), intent(in) :: nrate                     !! rates of a body: 3 in the plane, 6 in space

@@ -85,7 +85,7 @@ contains
    !> Motions first .. first + count - 1 of a set
    subroutine generate(nl, line, amplitude, points, step, window, seed, first, count, threads, motions, status)
       use common_threads, only : threads_available
-      use motion_generator, only : make => generate
+      use motion_generator, only : make => generate_motions
       integer(c_int), intent(in) :: nl
       real(c_double), intent(in) :: line(nl)           !! [Hz]
       real(c_double), intent(in) :: amplitude(nl)      !! [m/s^2]
@@ -142,7 +142,7 @@ contains
    !> Intensity measures, in the order of motion_measures
    subroutine motion_measure(points, count, motions, step, threads, value, status)
       use common_threads, only : threads_available
-      use motion_measures, only : measures
+      use motion_measures, only : measure_motions
       integer(c_int), intent(in) :: points
       integer(c_int), intent(in) :: count
       real(c_double), intent(in) :: motions(points, count)   !! [m/s^2]
@@ -151,12 +151,12 @@ contains
       real(c_double), intent(out) :: value(9, count)
       integer(c_int), intent(out) :: status
       !f2py threadsafe
-      call measures(motions, step, threads_available(threads), value, status)
+      call measure_motions(motions, step, threads_available(threads), value, status)
    end subroutine motion_measure
 
    !> Velocity and displacement from rest
    subroutine kinematics(points, motion, step, v, d)
-      use motion_measures, only : integrate
+      use motion_measures, only : integrate_motion
       integer(c_int), intent(in) :: points
       real(c_double), intent(in) :: motion(points)     !! [m/s^2]
       real(c_double), intent(in) :: step               !! [s]
@@ -165,7 +165,7 @@ contains
       !f2py threadsafe
       v = 0.0_c_double
       d = 0.0_c_double
-      if (points > 0) call integrate(motion, step, v, d)
+      if (points > 0) call integrate_motion(motion, step, v, d)
    end subroutine kinematics
 
    !> Fourier transform of a series padded with zeros

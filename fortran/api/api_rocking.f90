@@ -70,7 +70,7 @@ contains
       use common_status, only : status_ok
       use rocking_ensemble, only : body_list, list_body
       use rocking_handle, only : body_list_take
-      use rocking_response, only : respond, response, response_options, response_history
+      use rocking_response, only : find_response, response, response_options, response_history
       use rocking_rocker, only : rocker
       integer(c_int64_t), intent(in) :: bodies
       integer(c_int64_t), intent(in) :: motions
@@ -128,7 +128,7 @@ contains
             record%state => states
             record%event_kind => kinds
             record%event => happened
-            call respond(structure, ground, response_options(end_time=options(2), tolerance=options(3), &
+            call find_response(structure, ground, response_options(end_time=options(2), tolerance=options(3), &
                start_q=start(2), start_v=start(3), start_side=merge(1, -1, start(1) > 0.0_c_double)), answer, status, &
                record)
             counts = [answer%outcome, answer%half_cycles, answer%impacts, answer%steps, answer%rejected, &

@@ -5,12 +5,13 @@ module api_sla
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: loads, supports, reactions, run, relax, displacement, measure, report, damage, set_damage, standing, resume
+   public :: loads, supports, reactions, stop_at, run, relax, displacement, measure, report, damage, set_damage
+   public :: standing, resume
 
 contains
 
-   !> Start a stage; the ledger goes on from `ledger`
-   subroutine loads(handle, freedoms, nodes, load_a, load_b, carried, events, ledger, status)
+   !> Start a stage; the ledger goes on from the energies so far
+   subroutine loads(handle, freedoms, nodes, load_a, load_b, carried, events, external, dissipated, cracked, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok, status_invalid_argument
       use sla_handle, only : model_take, stage_factored, stage_loaded
@@ -22,19 +23,21 @@ contains
       real(c_double), intent(in) :: load_b(freedoms, nodes)    !! [N], [N m]
       integer(c_int), intent(in) :: carried             !! 1: the work of A is in the ledger
       integer(c_int), intent(in) :: events              !! so far
-      real(c_double), intent(in) :: ledger(3)           !! external, lost, crack energy so far [J]
+      real(c_double), intent(in) :: external            !! work so far [J]
+      real(c_double), intent(in) :: dissipated          !! energy so far [J]
+      real(c_double), intent(in) :: cracked             !! energy of cracks so far [J]
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       !f2py threadsafe
       call model_take(handle, stage_factored, stage_loaded, model, status)
       if (status /= status_ok) return
-      if (nodes /= model%nodes .or. freedoms /= size(model%equation, 1) .or. events < 0) then
+      if (nodes /= model%mesh%nodes .or. freedoms /= size(model%mesh%equation, 1) .or. events < 0) then
          status = status_invalid_argument
       else
-         model%events = int(events)
-         model%external = ledger(1)
-         model%dissipated = ledger(2)
-         model%cracked = ledger(3)
+         model%loop%events = int(events)
+         model%ledger%external = external
+         model%ledger%dissipated = dissipated
+         model%ledger%cracked = cracked
          call model_loads(model, load_a, load_b, carried /= 0, status)
          if (status == status_ok) model%stage = stage_loaded
       end if
@@ -54,10 +57,10 @@ contains
       type(element_model), pointer :: model
       call model_take(handle, stage_factored, stage_loaded, model, status)
       if (status /= status_ok) return
-      if (count /= size(model%moved, 1)) then
+      if (count /= size(model%support%moved, 1)) then
          status = status_invalid_argument
       else
-         model%moved(:, :) = moved
+         model%support%moved(:, :) = moved
          model%stage = stage_factored
       end if
       call handle_leave(handle)
@@ -77,30 +80,53 @@ contains
       force = 0.0_c_double
       call model_take(handle, stage_loaded, stage_loaded, model, status)
       if (status /= status_ok) return
-      if (count /= size(model%moved, 1)) then
+      if (count /= size(model%support%moved, 1)) then
          status = status_invalid_argument
       else
-         force = model%reaction
+         force = model%support%reaction
       end if
       call handle_leave(handle)
    end subroutine reactions
 
+   !> Where the next batches of events end and how they go on without equilibrium, see stop_rules of sla_state
+   subroutine stop_at(handle, variant, load, displacement, fraction, compliance, refuse_overload, target, side, &
+                      already, far, status)
+      use common_handles, only : handle_leave
+      use common_lists, only : proportional => sla_variant_proportional, release => sla_variant_force_release
+      use common_status, only : status_ok
+      use sla_handle, only : model_take, stage_new, stage_loaded
+      use sla_model, only : element_model
+      use sla_state, only : stop_rules
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: variant            !! list sla_variant
+      real(c_double), intent(in) :: load               !! multiplier carried
+      real(c_double), intent(in) :: displacement       !! of monitor 1 [m]
+      real(c_double), intent(in) :: fraction           !! of the peak
+      real(c_double), intent(in) :: compliance         !! over the first
+      integer(c_int), intent(in) :: refuse_overload
+      real(c_double), intent(in) :: target             !! of monitor 1 [m]
+      real(c_double), intent(in) :: side               !! from which the target is reached
+      real(c_double), intent(in) :: already            !! loads like B that are on
+      real(c_double), intent(in) :: far                !! greatest way of monitor 1 [m]
+      integer(c_int), intent(out) :: status
+      type(element_model), pointer :: model
+      call model_take(handle, stage_new, stage_loaded, model, status)
+      if (status /= status_ok) return
+      model%rules = stop_rules(lambda=load, displacement=displacement, fraction=fraction, compliance=compliance, &
+         refuse_overload=refuse_overload /= 0, proportional=variant == proportional, release=variant == release, &
+         target=target, side=side, already=already, far=far)
+      call handle_leave(handle)
+   end subroutine stop_at
+
    !> A batch of events
-   subroutine run(handle, room, limits, refuse_overload, variant, monitors, entries, first, freedom, share, &
-                  counts, reals, integers, monitored, cracked, status)
+   subroutine run(handle, room, monitors, entries, first, freedom, share, counts, reals, integers, monitored, cracked, &
+                  status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok
       use sla_handle, only : model_take, stage_loaded
       use sla_model, only : element_model
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: room
-      !> Load carried, displacement of monitor 1 [m], fraction of the peak, compliance over the first, target of
-      !> monitor 1 [m], the side it is reached from, loads like B already on, greatest way of monitor 1 [m];
-      !> see stop_rules
-      real(c_double), intent(in) :: limits(8)
-      integer(c_int), intent(in) :: refuse_overload
-      !> 1: without equilibrium all loads go down together, 2: what a tooth sets free is put on at the load reached
-      integer(c_int), intent(in) :: variant
       integer(c_int), intent(in) :: monitors
       integer(c_int), intent(in) :: entries
       integer(c_int), intent(in) :: first(monitors + 1)  !! entry at which each monitor begins
@@ -130,38 +156,38 @@ contains
       subroutine events(fate)
          use common_status, only : status_bad_index, status_out_of_memory
          use common_threads, only : threads_available
-         use sla_events, only : run_events, stop_rules
-         use sla_ledger, only : event_log
+         use sla_events, only : run_events
+         use sla_ledger, only : event_log, log_integers, log_reals
          use sla_handle, only : check_nodes
+         use sla_state, only : monitor_set
          integer(c_int), intent(out) :: fate
-         type(stop_rules) :: rules
+         type(monitor_set) :: watched
          type(event_log) :: log
-         integer(c_int), allocatable :: equation(:)
-         real(c_double), allocatable :: weight(:)
          integer(c_int) :: reason
          integer :: k, info
          call check_nodes(model, freedom(1:1, :), 1_c_int, fate)
          if (fate /= status_ok) return
          fate = status_bad_index
-         if (any(freedom(2, :) < 1) .or. any(freedom(2, :) > size(model%equation, 1))) return
+         if (any(freedom(2, :) < 1) .or. any(freedom(2, :) > size(model%mesh%equation, 1))) return
          if (first(1) /= 1 .or. first(monitors + 1) /= entries + 1 .or. any(first(2:) < first(:monitors))) return
-         rules = stop_rules(limits(1), limits(2), limits(3), limits(4), refuse_overload /= 0, &
-            variant == 1, variant == 2, limits(5), limits(6), limits(7), limits(8))
          fate = status_out_of_memory
-         allocate (equation(entries), weight(entries), log%reals(11, room), log%integers(4, room), &
+         allocate (watched%first(monitors + 1), watched%equation(entries), watched%share(entries), &
+            watched%ratio(monitors), log%reals(log_reals, room), log%integers(log_integers, room), &
             log%monitors(monitors, room), stat=info)
          if (info /= 0) return
+         watched%first(:) = first
          do k = 1, entries
-            equation(k) = model%equation(freedom(2, k), freedom(1, k))
-            weight(k) = share(k) * model%factor(freedom(2, k), freedom(1, k))
+            watched%equation(k) = model%mesh%equation(freedom(2, k), freedom(1, k))
+            watched%share(k) = share(k) * model%mesh%factor(freedom(2, k), freedom(1, k))
          end do
          model%threads = threads_available(model%threads)
-         call run_events(model, rules, first, equation, weight, log, reason, fate)
-         counts = [int(log%count, c_int), int(model%guard, c_int), reason]
+         call run_events(model, watched, log, reason, fate)
+         counts = [int(log%count, c_int), int(model%checks%checks, c_int), int(model%checks%solutions, c_int), &
+            int(model%checks%factors, c_int), reason]
          reals(:, 1:log%count) = log%reals(:, 1:log%count)
          integers(:, 1:log%count) = log%integers(:, 1:log%count)
          monitored(:, 1:log%count) = log%monitors(:, 1:log%count)
-         cracked = model%cracked
+         cracked = model%ledger%cracked
       end subroutine events
 
    end subroutine run
@@ -187,7 +213,7 @@ contains
       if (status /= status_ok) return
       call damage_overloaded(model, lambda, count, status)
       damaged = int(count, c_int)
-      cracked = model%cracked
+      cracked = model%ledger%cracked
       call handle_leave(handle)
    end subroutine relax
 
@@ -210,15 +236,15 @@ contains
       ub = 0.0_c_double
       call model_take(handle, stage_prepared, stage_loaded, model, status)
       if (status /= status_ok) return
-      if (nodes /= model%nodes .or. freedoms /= size(model%equation, 1)) then
+      if (nodes /= model%mesh%nodes .or. freedoms /= size(model%mesh%equation, 1)) then
          status = status_invalid_argument
       else
          call model_displacements(model, all_a, all_b, status)
       end if
       do i = 1, merge(nodes, 0_c_int, status == status_ok)
          do k = 1, freedoms
-            ua(k, i) = model%factor(k, i) * all_a(model%equation(k, i))
-            ub(k, i) = model%factor(k, i) * all_b(model%equation(k, i))
+            ua(k, i) = model%mesh%factor(k, i) * all_a(model%mesh%equation(k, i))
+            ub(k, i) = model%mesh%factor(k, i) * all_b(model%mesh%equation(k, i))
          end do
       end do
       call handle_leave(handle)
@@ -243,7 +269,7 @@ contains
       call model_displacements(model, ua, ub, status)
       if (status == status_ok) then
          call residual(model, ua, ub)
-         ratio = model%residual
+         ratio = model%checks%residual
       end if
       call handle_leave(handle)
    end subroutine measure
@@ -267,16 +293,16 @@ contains
       values = 0.0_c_double
       call model_take(handle, stage_prepared, stage_loaded, model, status)
       if (status /= status_ok) return
-      if (points /= model%points) then
+      if (points /= model%mesh%points) then
          status = status_invalid_argument
       else
          call model_displacements(model, ua, ub, status)
       end if
       if (status == status_ok) then
-         do g = 1, size(model%holders)
-            select type (group => model%holders(g)%group)
+         do g = 1, size(model%mesh%holders)
+            select type (group => model%mesh%holders(g)%group)
             class is (point_group)
-               call group%report(ua, ub, lambda, model%noise, &
+               call group%report(ua, ub, lambda, model%search%noise, &
                   values(:, group%offset + 1:group%offset + group%points))
             end select
          end do
@@ -298,10 +324,10 @@ contains
       values = 0.0_c_double
       call model_take(handle, stage_new, stage_loaded, model, status)
       if (status /= status_ok) return
-      if (points /= model%points) then
+      if (points /= model%mesh%points) then
          status = status_invalid_argument
       else
-         call model_damage(model, .true., values, status)
+         call model_damage(model%mesh, .true., values, status)
       end if
       call handle_leave(handle)
    end subroutine damage
@@ -324,22 +350,23 @@ contains
       allocate (copy(11, points), stat=info)
       if (info /= 0) then
          status = status_out_of_memory
-      else if (points /= model%points) then
+      else if (points /= model%mesh%points) then
          status = status_invalid_argument
       else
          copy(:, :) = values
-         call model_damage(model, .false., copy, status)
+         call model_damage(model%mesh, .false., copy, status)
          model%stage = stage_prepared
       end if
       call handle_leave(handle)
    end subroutine set_damage
 
-   !> Read where the event loop stands; its numbers are those of sla_model
+   !> Read where the event loop stands; its numbers are those of sla_standing
    subroutine standing(handle, values, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok
       use sla_handle, only : model_take, stage_loaded
-      use sla_model, only : element_model, model_standing
+      use sla_model, only : element_model
+      use sla_standing, only : model_standing
       integer(c_int64_t), intent(in) :: handle
       real(c_double), intent(out) :: values(34)
       integer(c_int), intent(out) :: status
@@ -356,7 +383,8 @@ contains
       use common_handles, only : handle_leave
       use common_status, only : status_ok
       use sla_handle, only : model_take, stage_factored, stage_loaded
-      use sla_model, only : element_model, model_resume
+      use sla_model, only : element_model
+      use sla_standing, only : model_resume
       integer(c_int64_t), intent(in) :: handle
       real(c_double), intent(in) :: values(34)
       integer(c_int), intent(out) :: status

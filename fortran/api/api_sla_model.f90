@@ -13,7 +13,7 @@ contains
    !> Nodal forces of a uniform body force in each element
    subroutine body_force(kind, nx, ny, nodes, xy, per, elements, connect, density, force, bad, status)
       use common_status, only : status_bad_index
-      use sla_loads, only : distribute
+      use sla_loads, only : distribute_force
       integer(c_int), intent(in) :: kind
       integer(c_int), intent(in) :: nx
       integer(c_int), intent(in) :: ny
@@ -31,7 +31,7 @@ contains
       bad = 0
       status = status_bad_index
       if (any(connect < 1) .or. any(connect > nodes)) return
-      call distribute(kind, nx, ny, xy, connect, density, force, bad, status)
+      call distribute_force(kind, nx, ny, xy, connect, density, force, bad, status)
    end subroutine body_force
 
    !> A model on nodes; equation 0 is held, the last `moved` are those of supports that move
@@ -92,7 +92,7 @@ contains
       bad = 0
       call model_take(handle, stage_new, stage_new, model, status)
       if (status /= status_ok) return
-      call tooth_tables_new(rows, model%teeth, bad, status)
+      call tooth_tables_new(rows, model%mesh%teeth, bad, status)
       call handle_leave(handle)
    end subroutine tables
 
@@ -134,13 +134,13 @@ contains
       else if (any(choice(2, :) > choice(3, :)) .or. per /= kind .or. &
                any(property(8, :) > 0.0_c_double .and. choice(1, :) > 0 .and. choice(2, :) == 0)) then
          status = status_invalid_argument   ! the number of a kind is that of its nodes
-      else if (size(model%xy, 1) /= 2) then
+      else if (size(model%mesh%xy, 1) /= 2) then
          status = status_invalid_argument   ! shells are for the space
       else if (info /= 0) then
          status = status_out_of_memory
       else
-         call plane_group_new(kind, rule(1), rule(2), rule(3) /= 0, model%xy, connect, property, choice, model%teeth, &
-            model%options, new_plane, bad, status)
+         call plane_group_new(kind, rule(1), rule(2), rule(3) /= 0, model%mesh%xy, connect, property, choice, &
+            model%mesh%teeth, model%mesh%options, new_plane, bad, status)
       end if
       call move_alloc(new_plane, group)
       call group_added(handle, model, connect, 2, group, status)
@@ -174,13 +174,13 @@ contains
       if (status /= status_ok) return
       allocate (new_bars, stat=info)
       if (any(choice(3, :) < 0) .or. any(choice(3, :) > 2) .or. ways * per > most_entries .or. &
-          ways /= size(model%xy, 1)) then
+          ways /= size(model%mesh%xy, 1)) then
          status = status_invalid_argument
       else if (info /= 0) then
          status = status_out_of_memory
       else
          call bar_group_new(gradient, property(1, :), property(2, :), choice(1, :), choice(2, :), choice(3, :), &
-            model%teeth, model%options, new_bars, bad, status)
+            model%mesh%teeth, model%mesh%options, new_bars, bad, status)
       end if
       call move_alloc(new_bars, group)
       call group_added(handle, model, connect, int(ways), group, status)
@@ -211,7 +211,7 @@ contains
       if (info == 0) call spring_group_new(stiffness, new_springs, status)
       if (status == status_ok) then
          call move_alloc(new_springs, group)
-         call model_add(model, group, node, direction, status)
+         call model_add(model%mesh, group, node, direction, status)
       end if
       call handle_leave(handle)
    end subroutine springs
@@ -234,11 +234,11 @@ contains
       sizes = 0
       call model_take(handle, stage_new, stage_new, model, status)
       if (status /= status_ok) return
-      model%refactor = refactor /= 0
+      model%stiffness%refactor = refactor /= 0
       model%threads = max(1, int(threads))
       call model_prepare(model, ordering, most_values, status)
-      sizes(1:2) = [int(model%equations, c_int64_t), int(model%points, c_int64_t)]
-      sizes(3) = model%factor_values
+      sizes(1:2) = [int(model%mesh%equations, c_int64_t), int(model%mesh%points, c_int64_t)]
+      sizes(3) = model%stiffness%factor_values
       if (status == status_ok) model%stage = stage_prepared
       call handle_leave(handle)
    end subroutine prepare

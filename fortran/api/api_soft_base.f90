@@ -91,7 +91,7 @@ contains
    !> What the base does to the block in a state
    subroutine contact(np, parameters, state, values, status)
       use common_status, only : status_ok
-      use rocking_soft_base, only : base_contact, contact_of, look, soft_base, soft_base_new
+      use rocking_soft_base, only : base_contact, contact_of, take_signs, soft_base, soft_base_new
       integer(c_int), intent(in) :: np
       real(c_double), intent(in) :: parameters(np)
       real(c_double), intent(in) :: state(4)     !! rotation [rad], sinking [m] and their rates
@@ -105,7 +105,7 @@ contains
       values = 0.0_c_double
       call soft_base_new(parameters, body, status)
       if (status /= status_ok) return
-      call look(body, state)
+      call take_signs(body, state)
       found = contact_of(body, state)
       values = [found%force, found%moment, found%stored, found%spent, found%range, found%most]
    end subroutine contact
@@ -113,7 +113,7 @@ contains
    !> The block held at rotations and free to sink under its weight
    subroutine held(np, parameters, n, rotation, values, status)
       use common_status, only : status_ok
-      use rocking_soft_base, only : hold, soft_base, soft_base_new
+      use rocking_soft_base, only : find_restoring, soft_base, soft_base_new
       integer(c_int), intent(in) :: np
       real(c_double), intent(in) :: parameters(np)
       integer(c_int), intent(in) :: n
@@ -128,7 +128,7 @@ contains
       call soft_base_new(parameters, body, status)
       if (status /= status_ok) return
       do k = 1, n
-         call hold(body, rotation(k), values(1, k), values(2, k), values(3, k))
+         call find_restoring(body, rotation(k), values(1, k), values(2, k), values(3, k))
       end do
    end subroutine held
 

@@ -45,7 +45,7 @@ contains
       integer :: i, link
 
       pose = 0.0_wp
-      call mechanism%solve(q, state)
+      call mechanism%find_places(q, state)
       status = merge(status_ok, status_bad_geometry, state%closed)
       if (.not. state%closed) return
       do i = 1, size(centroid, 2)
@@ -90,7 +90,7 @@ contains
       position = 0.0_wp
       point = 0.0_wp
       miss = 0.0_wp
-      call mechanism%solve(q, state)
+      call mechanism%find_places(q, state)
       status = merge(status_ok, status_bad_geometry, state%closed)
       if (.not. state%closed) return
 

@@ -23,7 +23,7 @@ module arch_four_hinge
       real(wp) :: lock = 0.0_wp            !! greatest q the links allow [rad]
       real(wp) :: critical = 0.0_wp        !! q of unstable equilibrium under gravity [rad]
    contains
-      procedure :: solve
+      procedure :: find_places
       procedure :: coefficients
       procedure :: potential
       procedure :: undeformed_pivot
@@ -130,7 +130,7 @@ contains
    end function bisect
 
    !> Link positions at q, with first and second derivatives
-   pure subroutine solve(arch, q, state)
+   pure subroutine find_places(arch, q, state)
       class(four_hinge), intent(in) :: arch
       real(wp), intent(in) :: q
       type(four_hinge_state), intent(out) :: state
@@ -179,7 +179,7 @@ contains
          state%pivot2(:, 2) = ddb
          state%pivot2(:, 3) = 0.0_wp
       end associate
-   end subroutine solve
+   end subroutine find_places
 
    !> Coefficients of M q'' + (1/2) M' q'^2 + V' (1 + a_v/g) + side a_h H = 0 (thesis Eqs 5.1, 5.2, B.2)
    pure subroutine coefficients(arch, q, m, half_dm, dv, dh, closed)
@@ -198,7 +198,7 @@ contains
       half_slope = 0.0_wp
       lift = 0.0_wp
       drive = 0.0_wp
-      call arch%solve(q, state)
+      call arch%find_places(q, state)
       closed = state%closed
       if (closed) then
          do i = 1, 3
@@ -226,7 +226,7 @@ contains
       type(four_hinge_state) :: state
       real(wp) :: arm(2)
       integer :: i
-      call arch%solve(q, state)
+      call arch%find_places(q, state)
       v = 0.0_wp
       do i = 1, 3
          arm = rotate(arch%arm(:, i), state%cosine(i), state%sine(i))

@@ -14,19 +14,19 @@ module common_dopri5_system
    !> A system of first order
    type, abstract :: first_order_system
    contains
-      procedure(slope), deferred :: slope
+      procedure(find_rates), deferred :: find_rates
    end type first_order_system
 
    abstract interface
       !> y' at the given state
-      subroutine slope(system, t, y, rate)
+      subroutine find_rates(system, t, y, rate)
          import :: first_order_system, wp
          implicit none (type, external)
          class(first_order_system), intent(in) :: system
          real(wp), intent(in) :: t         !! time [s]
          real(wp), intent(in) :: y(:)      !! state
          real(wp), intent(out) :: rate(:)  !! y'
-      end subroutine slope
+      end subroutine find_rates
    end interface
 
    real(wp), parameter :: c(2:6) = [1.0_wp / 5.0_wp, 3.0_wp / 10.0_wp, 4.0_wp / 5.0_wp, 8.0_wp / 9.0_wp, 1.0_wp]
@@ -70,7 +70,7 @@ contains
       do i = 1, n
          reached(i) = y(i) + h * dot_product(a7, k(i, :6))
       end do
-      call system%slope(t + h, reached, k(:n, 7))
+      call system%find_rates(t + h, reached, k(:n, 7))
       misfit = 0.0_wp
       do i = 1, n
          misfit = misfit + (h * dot_product(off, k(i, :)) / (atol(i) + rtol * max(abs(y(i)), abs(reached(i)))))**2
@@ -88,7 +88,7 @@ contains
          do m = 1, n
             z(m) = y(m) + h * dot_product(a, k(m, :s - 1))
          end do
-         call system%slope(t + c(s) * h, z(:n), k(:n, s))
+         call system%find_rates(t + c(s) * h, z(:n), k(:n, s))
       end subroutine stage
 
    end subroutine dopri5_system_step

@@ -10,7 +10,7 @@ module dem_contacts
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: contact_point, contact_pair, contact_set, overlap, measure, choose_edges, place
+   public :: contact_point, contact_pair, contact_set, overlap, measure_overlap, choose_edges, place_part
 
    !> Memory of one contact point
    type :: contact_point
@@ -77,7 +77,7 @@ module dem_contacts
 contains
 
    !> Ends of the common stretch of reference and incident edge
-   pure subroutine measure(pair, a, b, now)
+   pure subroutine measure_overlap(pair, a, b, now)
       type(contact_pair), intent(in) :: pair
       type(body), intent(in) :: a           !! owner of the reference edge
       type(body), intent(in) :: b           !! owner of the incident edge
@@ -119,10 +119,10 @@ contains
          end if
       end do
       now%width = s(2) - s(1)
-   end subroutine measure
+   end subroutine measure_overlap
 
    !> Vertices of a part where they are now
-   pure subroutine place(set, p, x, n)
+   pure subroutine place_part(set, p, x, n)
       type(body_set), intent(in) :: set
       integer, intent(in) :: p
       real(wp), intent(out) :: x(2, most_vertices)   !! [m]
@@ -137,7 +137,7 @@ contains
             end associate
          end do
       end associate
-   end subroutine place
+   end subroutine place_part
 
    !> Distance of the nearest vertex of another part in front of one edge
    pure function clearance(set, p, k, x, n) result(distance)
@@ -197,8 +197,8 @@ contains
       had = pair
       is_new = had%edges(1) == 0
       slack = 0.05_wp * skin
-      call place(set, pair%parts(1), x1, n1)
-      call place(set, pair%parts(2), x2, n2)
+      call place_part(set, pair%parts(1), x1, n1)
+      call place_part(set, pair%parts(2), x2, n2)
       call best_edge(set, pair%parts(1), x2, n2, k1, d1)
       call best_edge(set, pair%parts(2), x1, n1, k2, d2)
       distance = max(d1, d2)
@@ -212,15 +212,15 @@ contains
          swap = set%edges(k2)%length > set%edges(k1)%length
       end if
       if (keep) then
-         call face(set, skin, pair, .true.)
+         call choose_face(set, skin, pair, .true.)
       else if (swap) then
          pair%parts = had%parts([2, 1])
          pair%bodies = had%bodies([2, 1])
          pair%edges = [k2, 0]
-         call face(set, skin, pair, .false.)
+         call choose_face(set, skin, pair, .false.)
       else
          pair%edges(1) = k1
-         call face(set, skin, pair, .false.)
+         call choose_face(set, skin, pair, .false.)
       end if
       if (.not. is_new .and. any(pair%edges /= had%edges)) call carry_over(set, had, pair)
    end subroutine choose_edges
@@ -228,7 +228,7 @@ contains
    !> The incident edge: of the two that meet at the vertex nearest to the reference edge (or beyond it), the one
    !> that faces it more squarely, provided that it lies before it: at a hinge on two corners the other one
    !> leads outward, where nothing touches
-   pure subroutine face(set, skin, pair, keep)
+   pure subroutine choose_face(set, skin, pair, keep)
       type(body_set), intent(in) :: set
       real(wp), intent(in) :: skin          !! [m]
       type(contact_pair), intent(inout) :: pair
@@ -279,7 +279,7 @@ contains
          end associate
       end function merit
 
-   end subroutine face
+   end subroutine choose_face
 
    !> Copy the geometry of the chosen edges into the pair
    pure subroutine take_edges(set, pair)
@@ -311,8 +311,8 @@ contains
       type(contact_point) :: memory(2)
       logical :: taken(2)
 
-      call measure(old, set%item(old%bodies(1)), set%item(old%bodies(2)), was)
-      call measure(new, set%item(new%bodies(1)), set%item(new%bodies(2)), now)
+      call measure_overlap(old, set%item(old%bodies(1)), set%item(old%bodies(2)), was)
+      call measure_overlap(new, set%item(new%bodies(1)), set%item(new%bodies(2)), now)
       memory = old%point
       reach = 0.1_wp * min(old%reference_length, old%incident_length)
       do i = 1, 2

@@ -9,19 +9,23 @@ module dem_handle
    use common_signal, only : signal
    use common_status, only : status_ok, status_invalid_argument, status_not_ready, status_out_of_memory
    use common_threads, only : threads_available
-   use dem_clock, only : model_clock
+   use dem_joint, only : joint_law
+   use dem_jointed, only : jointed_model
    use dem_rigid, only : rigid_setting
-   use dem_run, only : run_begin, run_on, run_options, simulation
+   use dem_run, only : run_begin, run_on
+   use dem_simulation, only : run_options, simulation
    use dem_state, only : state_load
    use, intrinsic :: iso_c_binding, only : c_f_pointer, c_funloc, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
    implicit none
    private
-   public :: built_model, model_register, model_destroy, model_take, run_take, paused_run_take, set_options
+   public :: built_model, model_register, model_destroy, model_take, run_take, paused_run_take, set_laws, set_options
    public :: new_run, resume_run, run_built
 
    type, abstract :: built_model
       type(run_options) :: options
       type(rigid_setting) :: rigid                 !! contacts without springs
+      type(joint_law), allocatable :: law(:)       !! the first is that of contacts that form later
+      integer :: highest_law = 0                   !! that a joint has
       logical :: ready = .false.                   !! the options were given
       class(simulation), allocatable :: run        !! the last one, as it was left
    contains
@@ -124,6 +128,25 @@ contains
       call handle_leave(handle)
    end subroutine paused_run_take
 
+   !> Types of joints
+   subroutine set_laws(built, law, status)
+      class(built_model), intent(inout) :: built
+      type(joint_law), intent(in) :: law(:)
+      integer(c_int), intent(out) :: status
+      type(joint_law), allocatable :: copy(:)
+      integer :: failed
+      status = status_invalid_argument
+      if (size(law) < max(1, built%highest_law)) return
+      if (.not. all(law%normal_stiffness > 0.0_wp .and. law%shear_stiffness > 0.0_wp)) return
+      if (.not. all(min(law%friction, law%cohesion, law%tension, law%damping) >= 0.0_wp)) return
+      status = status_out_of_memory
+      allocate (copy(size(law)), stat=failed)
+      if (failed /= 0) return
+      copy(:) = law
+      call move_alloc(copy, built%law)
+      status = status_ok
+   end subroutine set_laws
+
    !> How to run
    subroutine set_options(built, options, status)
       class(built_model), intent(inout) :: built
@@ -169,21 +192,21 @@ contains
       class(built_model), intent(inout), target :: built
       type(signal), intent(in) :: ground
       type(signal), intent(in) :: across            !! its other horizontal component; no segments: none
-      type(model_clock), pointer :: clock
-      clock => built%run%clock()
-      clock%load%ground = ground
-      clock%load%across = across
+      class(jointed_model), pointer :: model
+      model => built%run%get_model()
+      model%load%ground = ground
+      model%load%across = across
       built%run%options%threads = threads_available(built%options%threads)
    end subroutine move_ground
 
    !> The motion pointed into the caller's set
    subroutine rest_ground(built)
       class(built_model), intent(inout), target :: built
-      type(model_clock), pointer :: clock
+      class(jointed_model), pointer :: model
       type(signal) :: silence
-      clock => built%run%clock()
-      clock%load%ground = silence
-      clock%load%across = silence
+      model => built%run%get_model()
+      model%load%ground = silence
+      model%load%across = silence
    end subroutine rest_ground
 
    !> Take back the state of a run that had paused; see dem_state

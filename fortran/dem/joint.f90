@@ -5,7 +5,7 @@ module dem_joint
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: joint_law, brace, free_mortar
+   public :: joint_law, brace_joints, free_mortar
 
    !> A type of joint; in the plane stiffnesses and strengths are those of the area times the depth
    type :: joint_law
@@ -20,7 +20,7 @@ module dem_joint
 contains
 
    !> Damp joints and make mortar unbreakable; `own` keeps what they were
-   subroutine brace(law, damping, own, braced, status)
+   subroutine brace_joints(law, damping, own, braced, status)
       type(joint_law), intent(inout) :: law(:)
       real(wp), intent(in) :: damping               !! beta, where their own is less [s]
       type(joint_law), allocatable, intent(out) :: own(:)
@@ -39,7 +39,7 @@ contains
          law(k)%cohesion = unbreakable
          law(k)%tension = unbreakable
       end do
-   end subroutine brace
+   end subroutine brace_joints
 
    !> Give mortar its own strength again
    subroutine free_mortar(law, own)

@@ -29,8 +29,8 @@ module dem_law
    use dem_joint, only : joint_law
    implicit none
    private
-   public :: act, elastic_energy
-   public :: point_frame, point_force, frame_of, relative, hand_over
+   public :: apply_pair_law, elastic_energy
+   public :: point_frame, point_force, frame_of, find_relative_velocity, hand_over
 
    !> Unit normal and tangent at a point, and the moments of unit forces along them about both centroids [m]
    type :: point_frame
@@ -50,7 +50,7 @@ module dem_law
 contains
 
    !> Forces of a pair at its present overlap, added to both bodies; predicted velocities follow
-   pure subroutine act(law, kick, drift, now, a, b, pair)
+   pure subroutine apply_pair_law(law, kick, drift, now, a, b, pair)
       type(joint_law), intent(in) :: law
       real(wp), intent(in) :: kick              !! length of the velocity step [s]
       real(wp), intent(in) :: drift             !! length of the position step before [s]
@@ -73,10 +73,10 @@ contains
             end if
             frame = frame_of(now, i, a, b)
             ! Relative velocity over the position step before: it has moved the springs.
-            call relative(frame, b%vx - a%vx, b%vy - a%vy, a%spin, b%spin, u_n, u_t)
+            call find_relative_velocity(frame, b%vx - a%vx, b%vy - a%vy, a%spin, b%spin, u_n, u_t)
             if ((now%gap(i) < 0.0_wp .and. now%width > 0.0_wp) .or. point%bonded) then
                if (.not. point%closed) call close_point(pair, now%width, point)
-               call press(law, kick, drift, now%gap(i), u_t, frame, a, b, point, force)
+               call press_point(law, kick, drift, now%gap(i), u_t, frame, a, b, point, force)
             else
                call open_point(law, point)
                force = point_force()
@@ -90,7 +90,7 @@ contains
             point%dash_s = force%dash_s
          end associate
       end do
-   end subroutine act
+   end subroutine apply_pair_law
 
    !> Directions and arms at a contact point
    pure function frame_of(now, i, a, b) result(frame)
@@ -115,7 +115,7 @@ contains
    end function frame_of
 
    !> Velocity of body 2 relative to body 1 at the point, along its normal and its tangent [m/s]
-   pure subroutine relative(frame, ux, uy, spin_a, spin_b, u_n, u_t)
+   pure subroutine find_relative_velocity(frame, ux, uy, spin_a, spin_b, u_n, u_t)
       type(point_frame), intent(in) :: frame
       real(wp), intent(in) :: ux                !! of the centroids [m/s]
       real(wp), intent(in) :: uy
@@ -125,10 +125,10 @@ contains
       real(wp), intent(out) :: u_t
       u_n = ux * frame%nx + uy * frame%ny + spin_b * frame%b_n - spin_a * frame%a_n
       u_t = ux * frame%tx + uy * frame%ty + spin_b * frame%b_t - spin_a * frame%a_t
-   end subroutine relative
+   end subroutine find_relative_velocity
 
    !> Forces of a closed point: springs, then the normal dashpot, then friction on the shear spring and its dashpot
-   pure subroutine press(law, kick, drift, gap, u_t, frame, a, b, point, force)
+   pure subroutine press_point(law, kick, drift, gap, u_t, frame, a, b, point, force)
       type(joint_law), intent(in) :: law
       real(wp), intent(in) :: kick              !! [s]
       real(wp), intent(in) :: drift             !! [s]
@@ -149,10 +149,10 @@ contains
       w_nn = a%inverse_mass + b%inverse_mass + a%inverse_inertia * frame%a_n**2 + b%inverse_inertia * frame%b_n**2
       w_tt = a%inverse_mass + b%inverse_mass + a%inverse_inertia * frame%a_t**2 + b%inverse_inertia * frame%b_t**2
       w_nt = a%inverse_inertia * frame%a_n * frame%a_t + b%inverse_inertia * frame%b_n * frame%b_t
-      call relative(frame, b%px - a%px, b%py - a%py, a%pspin, b%pspin, star_n, star_t)
+      call find_relative_velocity(frame, b%px - a%px, b%py - a%py, a%pspin, b%pspin, star_n, star_t)
       call press_normal(law, kick, stiff_n, trial, w_nn, w_nt, star_n, point, force)
       call press_shear(law, kick, stiff_s, trial, w_tt, w_nt, star_t, point, force)
-   end subroutine press
+   end subroutine press_point
 
    !> Normal force of spring and dashpot
    pure subroutine press_normal(law, kick, stiffness, trial, w_nn, w_nt, predicted, point, force)
@@ -251,19 +251,19 @@ contains
             support_work = support_work &
                + 0.5_wp * drift * power(a, tx, ty, frame%a_n, frame%a_t, force%normal + old_n, force%shear + old_s)
          else
-            call push(a, -1.0_wp, nx, ny, tx, ty, frame%a_n, frame%a_t, d_n, d_s, force%normal, force%shear)
+            call push_body(a, -1.0_wp, nx, ny, tx, ty, frame%a_n, frame%a_t, d_n, d_s, force%normal, force%shear)
          end if
          if (b%fixed) then
             support_work = support_work &
                - 0.5_wp * drift * power(b, tx, ty, frame%b_n, frame%b_t, force%normal + old_n, force%shear + old_s)
          else
-            call push(b, 1.0_wp, nx, ny, tx, ty, frame%b_n, frame%b_t, d_n, d_s, force%normal, force%shear)
+            call push_body(b, 1.0_wp, nx, ny, tx, ty, frame%b_n, frame%b_t, d_n, d_s, force%normal, force%shear)
          end if
       end associate
    end subroutine hand_over
 
    !> Add the force to a body and its change to the body's predicted velocity
-   pure subroutine push(b, sense, nx, ny, tx, ty, arm_n, arm_t, d_n, d_s, normal, shear)
+   pure subroutine push_body(b, sense, nx, ny, tx, ty, arm_n, arm_t, d_n, d_s, normal, shear)
       type(body), intent(inout) :: b
       real(wp), intent(in) :: sense             !! -1 for the reference body, 1 for the incident one
       real(wp), intent(in) :: nx
@@ -285,7 +285,7 @@ contains
       b%fy = b%fy + sense * (normal * ny + shear * ty)
       b%moment = b%moment + sense * (normal * arm_n + shear * arm_t)
       b%touched = .true.
-   end subroutine push
+   end subroutine push_body
 
    !> Power of a contact force at the velocity of a body [W]
    pure function power(b, tx, ty, arm_n, arm_t, normal, shear) result(p)

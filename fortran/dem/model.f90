@@ -3,41 +3,34 @@ module dem_model
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
    use dem_bodies, only : body, body_set, body_turn
-   use dem_clock, only : model_clock, begin_step, end_step
-   use dem_contacts, only : contact_pair, contact_set, overlap, measure, choose_edges
-   use dem_joint, only : joint_law
-   use dem_law, only : act
+   use dem_clock, only : begin_step, end_step
+   use dem_contacts, only : contact_pair, contact_set, overlap, measure_overlap, choose_edges
+   use dem_jointed, only : jointed_model
+   use dem_law, only : apply_pair_law
    use dem_loading, only : move_rate
-   use dem_rigid, only : rigid_solver
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: block_model, rigid_contacts, advance, critical_step, prepare, predict, move, finish
+   public :: block_model, advance_model, critical_step, prepare_step, predict_velocity, move_body, finish_step
 
-   !> Contacts without springs, see dem_moreau
-   type, extends(rigid_solver) :: rigid_contacts
-      real(wp), allocatable :: place(:, :)     !! (5, bodies) where the old velocities lead to
-      integer, allocatable :: point(:, :)      !! (2, pairs) number of each contact point in the problem
-   end type rigid_contacts
-
-   type, extends(model_clock) :: block_model
+   type, extends(jointed_model) :: block_model
       type(body_set) :: set
       type(contact_set) :: contacts
-      type(joint_law), allocatable :: law(:)
-      type(joint_law), allocatable :: own_law(:)      !! while joints are braced: as they are
       real(wp) :: gravity(2) = 0.0_wp          !! [m/s^2]
       real(wp) :: mass_damping = 0.0_wp        !! alpha [1/s]
       real(wp) :: pull(2) = 0.0_wp             !! body force of the last step [m/s^2]
       real(wp) :: pull_before(2) = 0.0_wp      !! and of the one before
       real(wp) :: base(2) = 0.0_wp             !! velocity of the ground [m/s], moving base only
       real(wp) :: base_place(2) = 0.0_wp       !! its displacement [m]
-      type(rigid_contacts) :: rigid
+      ! Contacts without springs, see dem_moreau
+      real(wp), allocatable :: ahead(:, :)     !! (5, bodies) where the old velocities lead to
+      integer, allocatable :: number(:, :)     !! (2, pairs) of each contact point in the problem, 0: it cannot press
    end type block_model
 
 contains
 
    !> Up to `count` steps; returns early where the contacts must be searched again
-   subroutine advance(model, count, threads)
+   subroutine advance_model(model, count, threads)
       type(block_model), intent(inout) :: model
       integer, intent(in) :: count
       integer, intent(in) :: threads
@@ -46,24 +39,24 @@ contains
       else
          call advance_alone(model, count)
       end if
-   end subroutine advance
+   end subroutine advance_model
 
    subroutine advance_alone(model, count)
       type(block_model), intent(inout) :: model
       integer, intent(in) :: count
       integer :: n, k
       do n = 1, count
-         call prepare(model)
+         call prepare_step(model)
          do k = 1, size(model%set%item)
-            call predict(model, model%set%item(k))
+            call predict_velocity(model, model%set%item(k))
          end do
          do k = 1, model%contacts%pairs
-            call touch(model, model%contacts%pair(k))
+            call act_pair(model, model%contacts%pair(k))
          end do
          do k = 1, size(model%set%item)
-            call move(model, model%set%item(k), model%stale)
+            call move_body(model, model%set%item(k), model%stale)
          end do
-         call finish(model)
+         call finish_step(model)
          if (model%stale) return
       end do
    end subroutine advance_alone
@@ -80,36 +73,36 @@ contains
       !$omp parallel default(none) num_threads(threads) shared(model, count, stale) private(n, k, c)
       do n = 1, count
          !$omp single
-         call prepare(model)
+         call prepare_step(model)
          stale = .false.
          !$omp end single
          !$omp do schedule(static)
          do k = 1, size(model%set%item)
-            call predict(model, model%set%item(k))
+            call predict_velocity(model, model%set%item(k))
          end do
          !$omp end do
          do c = 1, model%contacts%colours - model%contacts%alone
             !$omp do schedule(static)
             do k = model%contacts%colour_first(c), model%contacts%colour_first(c + 1) - 1
-               call touch(model, model%contacts%pair(k))
+               call act_pair(model, model%contacts%pair(k))
             end do
             !$omp end do
          end do
          !$omp single
          do c = model%contacts%colours - model%contacts%alone + 1, model%contacts%colours
             do k = model%contacts%colour_first(c), model%contacts%colour_first(c + 1) - 1
-               call touch(model, model%contacts%pair(k))
+               call act_pair(model, model%contacts%pair(k))
             end do
          end do
          !$omp end single
          !$omp do schedule(static) reduction(.or. : stale)
          do k = 1, size(model%set%item)
-            call move(model, model%set%item(k), stale)
+            call move_body(model, model%set%item(k), stale)
          end do
          !$omp end do
          !$omp single
          model%stale = stale
-         call finish(model)
+         call finish_step(model)
          !$omp end single
          if (model%stale) exit
       end do
@@ -117,7 +110,7 @@ contains
    end subroutine advance_threads
 
    !> Body force and base velocity of this step
-   subroutine prepare(model)
+   subroutine prepare_step(model)
       type(block_model), intent(inout) :: model
       real(wp) :: ground(3)
       call begin_step(model%model_clock, ground)
@@ -128,15 +121,15 @@ contains
       else
          model%pull = model%pull - ground(1:2)
       end if
-   end subroutine prepare
+   end subroutine prepare_step
 
    !> Velocity that follows from the forces of the last step; clears the forces
-   pure subroutine predict(model, b)
+   pure subroutine predict_velocity(model, b)
       type(block_model), intent(in) :: model
       type(body), intent(inout) :: b
 
       if (b%fixed) then
-         call prescribe(model, b)
+         call prescribe_support(model, b)
       else
          b%px = b%vx + model%kick * (b%fx * b%inverse_mass + model%pull(1))
          b%py = b%vy + model%kick * (b%fy * b%inverse_mass + model%pull(2))
@@ -150,10 +143,10 @@ contains
       b%fy = 0.0_wp
       b%moment = 0.0_wp
       b%touched = .false.
-   end subroutine predict
+   end subroutine predict_velocity
 
    !> Velocity of a support in the coming half step
-   pure subroutine prescribe(model, b)
+   pure subroutine prescribe_support(model, b)
       type(block_model), intent(in) :: model
       type(body), intent(inout) :: b
       integer :: k
@@ -168,23 +161,23 @@ contains
       b%px = rate(1)
       b%py = rate(2)
       b%pspin = rate(3)
-   end subroutine prescribe
+   end subroutine prescribe_support
 
    !> Geometry and law of one pair
-   pure subroutine touch(model, pair)
+   pure subroutine act_pair(model, pair)
       type(block_model), intent(inout) :: model
       type(contact_pair), intent(inout) :: pair
       type(overlap) :: now
       real(wp) :: distance
       if (pair%careful) call choose_edges(model%set, model%contacts%skin, pair, distance)
       associate (a => model%set%item(pair%bodies(1)), b => model%set%item(pair%bodies(2)))
-         call measure(pair, a, b, now)
-         call act(model%law(pair%law), model%kick, model%drift, now, a, b, pair)
+         call measure_overlap(pair, a, b, now)
+         call apply_pair_law(model%law(pair%law), model%kick, model%drift, now, a, b, pair)
       end associate
-   end subroutine touch
+   end subroutine act_pair
 
    !> Velocity and position after the step
-   pure subroutine move(model, b, stale)
+   pure subroutine move_body(model, b, stale)
       type(block_model), intent(in) :: model
       type(body), intent(inout) :: b
       logical, intent(inout) :: stale
@@ -221,14 +214,14 @@ contains
       end if
       if (abs(b%x - b%seen_x) + abs(b%y - b%seen_y) + b%radius * abs(b%angle - b%seen_angle) &
          > 0.5_wp * model%contacts%skin) stale = .true.
-   end subroutine move
+   end subroutine move_body
 
    !> Time goes on
-   subroutine finish(model)
+   subroutine finish_step(model)
       type(block_model), intent(inout) :: model
       model%base_place = model%base_place + model%step * model%base
       call end_step(model%model_clock)
-   end subroutine finish
+   end subroutine finish_step
 
    !> A step that is stable for all contacts that may close: 2 / omega, with omega^2 below the greatest
    !> eigenvalue of any body on its springs, twice as stiff where the neighbour moves too [s]
@@ -249,7 +242,7 @@ contains
       do n = 1, model%contacts%pairs
          associate (pair => model%contacts%pair(n), a => model%set%item(model%contacts%pair(n)%bodies(1)), &
                     b => model%set%item(model%contacts%pair(n)%bodies(2)))
-            call measure(pair, a, b, now)
+            call measure_overlap(pair, a, b, now)
             share = merge(1.0_wp, 2.0_wp, a%fixed .or. b%fixed)
             do i = 1, 2
                length = 0.5_wp * max(now%width, 0.25_wp * min(pair%reference_length, pair%incident_length))
@@ -259,8 +252,8 @@ contains
                do side = 1, 2
                   associate (c => model%set%item(pair%bodies(side)))
                      if (c%fixed) cycle
-                     call add(k(:, pair%bodies(side)), c, now%ty(i), -now%tx(i), now%x(i), now%y(i), stiff_n)
-                     call add(k(:, pair%bodies(side)), c, now%tx(i), now%ty(i), now%x(i), now%y(i), stiff_s)
+                     call add_spring(k(:, pair%bodies(side)), c, now%ty(i), -now%tx(i), now%x(i), now%y(i), stiff_n)
+                     call add_spring(k(:, pair%bodies(side)), c, now%tx(i), now%ty(i), now%x(i), now%y(i), stiff_s)
                   end associate
                end do
             end do
@@ -271,9 +264,9 @@ contains
          associate (c => model%set%item(model%set%parts(n)%owner))
             if (c%fixed .or. any(k(1:3, model%set%parts(n)%owner) > 0.0_wp)) cycle
             length = maxval(model%set%edges(model%set%parts(n)%first:model%set%parts(n)%last)%length)
-            call add(k(:, model%set%parts(n)%owner), c, 0.0_wp, 1.0_wp, c%x + 0.5_wp * length, c%y, &
+            call add_spring(k(:, model%set%parts(n)%owner), c, 0.0_wp, 1.0_wp, c%x + 0.5_wp * length, c%y, &
                2.0_wp * model%law(1)%normal_stiffness * length)
-            call add(k(:, model%set%parts(n)%owner), c, 1.0_wp, 0.0_wp, c%x, c%y - c%radius, &
+            call add_spring(k(:, model%set%parts(n)%owner), c, 1.0_wp, 0.0_wp, c%x, c%y - c%radius, &
                2.0_wp * model%law(1)%shear_stiffness * length)
          end associate
       end do
@@ -285,7 +278,7 @@ contains
    end subroutine critical_step
 
    !> Add a spring along (dx, dy) at a point to the mass-scaled 3 x 3 stiffness of a body
-   pure subroutine add(k, b, dx, dy, x, y, stiffness)
+   pure subroutine add_spring(k, b, dx, dy, x, y, stiffness)
       real(wp), intent(inout) :: k(6)        !! xx, yy, zz, xy, xz, yz
       type(body), intent(in) :: b
       real(wp), intent(in) :: dx
@@ -298,7 +291,7 @@ contains
       g(2) = dy * sqrt(b%inverse_mass)
       g(3) = ((x - b%x) * dy - (y - b%y) * dx) * sqrt(b%inverse_inertia)
       k = k + stiffness * [g(1)**2, g(2)**2, g(3)**2, g(1) * g(2), g(1) * g(3), g(2) * g(3)]
-   end subroutine add
+   end subroutine add_spring
 
    !> Greatest eigenvalue of a symmetric 3 x 3 matrix, by its trigonometric formula
    pure function greatest_eigenvalue(k) result(value)

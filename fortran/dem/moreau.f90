@@ -3,46 +3,22 @@ module dem_moreau
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
    use dem_bodies, only : body
-   use dem_contacts, only : contact_pair, overlap, measure, choose_edges
-   use dem_law, only : point_force, point_frame, frame_of, hand_over, relative
-   use dem_model, only : block_model, finish, move, predict, prepare
-   use dem_rigid, only : number_bodies, parting, solve_step, wait_for_rest
+   use dem_contacts, only : contact_pair, overlap, measure_overlap, choose_edges
+   use dem_law, only : point_force, point_frame, frame_of, hand_over, find_relative_velocity
+   use dem_model, only : block_model, predict_velocity, prepare_step
+   use dem_rigid, only : number_bodies, parting, solve_step
    use nonsmooth_impulses, only : along_normal, along_tangent, impulse_problem, in_plane, problem_room
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: advance_rigid, quickest
+   public :: number_unknowns, solve_contacts, greatest_speed
 
    real(wp), parameter :: closed_angle = 1.0e-4_wp !! at which a joint is closed [rad]
 
 contains
 
-   !> Up to `count` steps; returns early where the contacts must be searched again
-   subroutine advance_rigid(model, count, status)
-      type(block_model), intent(inout) :: model
-      integer, intent(in) :: count
-      integer(c_int), intent(out) :: status
-      integer :: n, k
-      status = status_ok
-      if (model%rigid%pairs /= model%contacts%pairs) call make_ready(model, status)
-      do n = 1, count
-         if (status /= status_ok) return
-         call one_step(model, status)
-         if (status /= status_ok) return
-         do k = 1, size(model%set%item)
-            call move(model, model%set%item(k), model%stale)
-         end do
-         call finish(model)
-         if (model%quasi_static) call wait_for_rest(model%rigid, model%model_clock, quickest(model))
-         if (model%stale) then
-            model%rigid%pairs = -1
-            return
-         end if
-      end do
-   end subroutine advance_rigid
-
    !> Greatest speed of a body [m/s]
-   pure function quickest(model) result(speed)
+   pure function greatest_speed(model) result(speed)
       type(block_model), intent(in) :: model
       real(wp) :: speed
       integer :: k
@@ -52,10 +28,10 @@ contains
             if (.not. b%fixed) speed = max(speed, abs(b%vx) + abs(b%vy) + b%radius * abs(b%spin))
          end associate
       end do
-   end function quickest
+   end function greatest_speed
 
    !> Order of the unknowns and room for the contact points, after a search
-   subroutine make_ready(model, status)
+   subroutine number_unknowns(model, status)
       type(block_model), intent(inout) :: model
       integer(c_int), intent(out) :: status
       integer, allocatable :: bodies(:, :)
@@ -64,12 +40,12 @@ contains
 
       status = status_out_of_memory
       associate (rigid => model%rigid, pairs => model%contacts%pairs)
-         if (.not. allocated(rigid%place)) then
-            allocate (rigid%place(5, size(model%set%item)), stat=failed)
+         if (.not. allocated(model%ahead)) then
+            allocate (model%ahead(5, size(model%set%item)), stat=failed)
             if (failed /= 0) return
          end if
-         if (allocated(rigid%point)) deallocate (rigid%point)
-         allocate (rigid%point(2, pairs), bodies(2, pairs), fixed(size(model%set%item)), stat=failed)
+         if (allocated(model%number)) deallocate (model%number)
+         allocate (model%number(2, pairs), bodies(2, pairs), fixed(size(model%set%item)), stat=failed)
          if (failed /= 0) return
          do k = 1, size(fixed)
             fixed(k) = model%set%item(k)%fixed
@@ -87,15 +63,15 @@ contains
             end associate
          end do
       end associate
-   end subroutine make_ready
+   end subroutine number_unknowns
 
    !> Forces of all contacts in the next step, added to the bodies
-   subroutine one_step(model, status)
+   subroutine solve_contacts(model, status)
       type(block_model), intent(inout) :: model
       integer(c_int), intent(out) :: status         !! not_finite where a velocity is no number, else ok
       integer :: k
 
-      call prepare(model)
+      call prepare_step(model)
       if (model%quasi_static) then
          do k = 1, size(model%set%item)
             associate (b => model%set%item(k))
@@ -108,13 +84,13 @@ contains
       end if
       associate (rigid => model%rigid, problem => model%rigid%problem)
          do k = 1, size(model%set%item)
-            call predict(model, model%set%item(k))
+            call predict_velocity(model, model%set%item(k))
             associate (b => model%set%item(k))
                if (b%fixed) then
-                  rigid%place(:, k) = led_to(b, model%step, [b%px, b%py, b%pspin])
+                  model%ahead(:, k) = led_to(b, model%step, [b%px, b%py, b%pspin])
                   cycle
                end if
-               rigid%place(:, k) = led_to(b, model%step, [b%vx, b%vy, b%spin])
+               model%ahead(:, k) = led_to(b, model%step, [b%vx, b%vy, b%spin])
                problem%rate(3 * rigid%node(k) - 2:3 * rigid%node(k)) = [b%vx, b%vy, b%spin]
                b%px = b%vx + model%kick * model%pull(1)
                b%py = b%vy + model%kick * model%pull(2)
@@ -124,14 +100,14 @@ contains
          end do
          problem%points = 0
          do k = 1, model%contacts%pairs
-            call gather(model, k)
+            call gather_points(model, k)
          end do
          call solve_step(rigid, model%model_clock, status)
          do k = 1, model%contacts%pairs
-            call act_rigidly(model, model%contacts%pair(k), rigid%point(:, k))
+            call apply_impulses(model, model%contacts%pair(k), model%number(:, k))
          end do
       end associate
-   end subroutine one_step
+   end subroutine solve_contacts
 
    !> Place to which a velocity leads: x, y, rotation, its cosine and sine
    pure function led_to(b, step, rate) result(at)
@@ -144,7 +120,7 @@ contains
    end function led_to
 
    !> The points of a pair that may press in this step, into the problem
-   subroutine gather(model, k)
+   subroutine gather_points(model, k)
       type(block_model), intent(inout) :: model
       integer, intent(in) :: k
       type(overlap) :: now, next
@@ -154,20 +130,20 @@ contains
       integer :: i, n, side
 
       associate (pair => model%contacts%pair(k), rigid => model%rigid, problem => model%rigid%problem)
-         rigid%point(:, k) = 0
+         model%number(:, k) = 0
          if (pair%careful) call choose_edges(model%set, model%contacts%skin, pair, distance)
          associate (a => model%set%item(pair%bodies(1)), b => model%set%item(pair%bodies(2)))
-            call measure(pair, a, b, now)
+            call measure_overlap(pair, a, b, now)
             if (now%width <= 0.0_wp) return
-            call place(rigid%place(:, pair%bodies(1)), a_next)
-            call place(rigid%place(:, pair%bodies(2)), b_next)
-            call measure(pair, a_next, b_next, next)
+            call place_body(model%ahead(:, pair%bodies(1)), a_next)
+            call place_body(model%ahead(:, pair%bodies(2)), b_next)
+            call measure_overlap(pair, a_next, b_next, next)
             do i = 1, 2
                if (min(now%gap(i), next%gap(i)) > model%contacts%skin) cycle
                frame = frame_of(now, i, a, b)
                n = problem%points + 1
                problem%points = n
-               rigid%point(i, k) = n
+               model%number(i, k) = n
                problem%node(:, n) = rigid%node(pair%bodies)
                problem%row(:, 1, along_normal, n) = [-frame%nx, -frame%ny, -frame%a_n]
                problem%row(:, 2, along_normal, n) = [frame%nx, frame%ny, frame%b_n]
@@ -194,10 +170,10 @@ contains
                problem%friction(n) = model%law(pair%law)%friction
                problem%impulse(:, n) = model%kick * [pair%point(i)%spring_n, pair%point(i)%spring_s]
             end do
-            call share_friction(pair, now, rigid%point(:, k), problem)
+            call share_friction(pair, now, model%number(:, k), problem)
          end associate
       end associate
-   end subroutine gather
+   end subroutine gather_points
 
    !> The two points of a closed joint lie on the line of its shear force: both slide alike, to the last digit
    pure subroutine share_friction(pair, now, point, problem)
@@ -211,7 +187,7 @@ contains
    end subroutine share_friction
 
    !> A body at another place, for `measure`
-   pure subroutine place(at, b)
+   pure subroutine place_body(at, b)
       real(wp), intent(in) :: at(5)                 !! x, y, rotation, its cosine and sine
       type(body), intent(out) :: b
       b%x = at(1)
@@ -219,10 +195,10 @@ contains
       b%angle = at(3)
       b%c = at(4)
       b%s = at(5)
-   end subroutine place
+   end subroutine place_body
 
    !> The impulses of a pair as forces on its bodies, and what they took
-   subroutine act_rigidly(model, pair, point)
+   subroutine apply_impulses(model, pair, point)
       type(block_model), intent(inout) :: model
       type(contact_pair), intent(inout) :: pair
       integer, intent(in) :: point(2)               !! numbers of its points in the problem, 0 where they cannot press
@@ -234,7 +210,7 @@ contains
 
       associate (problem => model%rigid%problem)
          associate (a => model%set%item(pair%bodies(1)), b => model%set%item(pair%bodies(2)))
-            call measure(pair, a, b, now)
+            call measure_overlap(pair, a, b, now)
             do i = 1, 2
                force = point_force()
                if (point(i) > 0) then
@@ -244,7 +220,7 @@ contains
                associate (was => pair%point(i))
                   if (.not. (was%closed .or. force%normal > 0.0_wp .or. abs(force%shear) > 0.0_wp)) cycle
                   frame = frame_of(now, i, a, b)
-                  call relative(frame, b%vx - a%vx, b%vy - a%vy, a%spin, b%spin, u_n, u_t)
+                  call find_relative_velocity(frame, b%vx - a%vx, b%vy - a%vy, a%spin, b%spin, u_n, u_t)
                   was%damping_loss = was%damping_loss - 0.5_wp * model%drift * (was%spring_n + force%normal) * u_n
                   was%friction_loss = was%friction_loss - 0.5_wp * model%drift * (was%spring_s + force%shear) * u_t
                   call hand_over(model%kick, model%drift, frame, was, force, a, b, pair%support_work)
@@ -255,6 +231,6 @@ contains
             end do
          end associate
       end associate
-   end subroutine act_rigidly
+   end subroutine apply_impulses
 
 end module dem_moreau

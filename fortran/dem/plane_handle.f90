@@ -5,23 +5,21 @@ module dem_plane_handle
    use common_status, only : status_ok, status_bad_index, status_invalid_argument, status_not_ready, &
       status_out_of_memory, status_wrong_handle
    use dem_bodies, only : body_set, body_set_new, body_turn
-   use dem_contacts, only : overlap, measure
+   use dem_contacts, only : overlap, measure_overlap
    use dem_handle, only : built_model, model_register, model_take
-   use dem_joint, only : joint_law
    use dem_loading, only : loading, support_move
    use dem_model, only : block_model
    use dem_plane_run, only : block_simulation
    use dem_rigid, only : set_rigid
-   use dem_run, only : run_record_new
+   use dem_simulation, only : run_record_new
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
    public :: built_blocks, blocks_new, blocks_take, blocks_run_take
-   public :: set_laws, set_joints, set_start, set_moves, closed_contacts
+   public :: set_joints, set_start, set_moves, closed_contacts
 
    type, extends(built_model) :: built_blocks
       type(body_set) :: set
-      type(joint_law), allocatable :: law(:)        !! the first is that of contacts that form later
       integer(c_int), allocatable :: law_first(:)   !! (bodies + 1) rows of the joint table by lower body
       integer(c_int), allocatable :: law_body(:)    !! the higher body
       integer(c_int), allocatable :: law_number(:)
@@ -100,28 +98,6 @@ contains
       call handle_leave(handle)
    end subroutine blocks_run_take
 
-   !> Types of joints
-   subroutine set_laws(built, law, status)
-      type(built_blocks), intent(inout) :: built
-      type(joint_law), intent(in) :: law(:)
-      integer(c_int), intent(out) :: status
-      type(joint_law), allocatable :: copy(:)
-      integer :: failed
-      status = status_invalid_argument
-      if (size(law) < 1) return
-      if (.not. all(law%normal_stiffness > 0.0_wp .and. law%shear_stiffness > 0.0_wp)) return
-      if (.not. all(min(law%friction, law%cohesion, law%tension, law%damping) >= 0.0_wp)) return
-      if (allocated(built%law_number)) then
-         if (any(built%law_number > size(law))) return
-      end if
-      status = status_out_of_memory
-      allocate (copy(size(law)), stat=failed)
-      if (failed /= 0) return
-      copy(:) = law
-      call move_alloc(copy, built%law)
-      status = status_ok
-   end subroutine set_laws
-
    !> Pairs of bodies whose joint has a type of its own; of two entries for one pair the later counts
    subroutine set_joints(built, bodies, law, status)
       type(built_blocks), intent(inout) :: built
@@ -160,6 +136,7 @@ contains
       call move_alloc(first, built%law_first)
       call move_alloc(higher, built%law_body)
       call move_alloc(number, built%law_number)
+      built%highest_law = max(0, int(maxval(law)))
       status = status_ok
    end subroutine set_joints
 
@@ -269,7 +246,7 @@ contains
       found = 0
       do k = 1, model%contacts%pairs
          associate (pair => model%contacts%pair(k))
-            call measure(pair, model%set%item(pair%bodies(1)), model%set%item(pair%bodies(2)), now)
+            call measure_overlap(pair, model%set%item(pair%bodies(1)), model%set%item(pair%bodies(2)), now)
             do i = 1, 2
                if (.not. pair%point(i)%closed) cycle
                found = found + 1

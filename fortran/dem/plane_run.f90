@@ -1,20 +1,19 @@
-!> What a run of blocks of the plane is made of: the hooks of dem_run.
+!> What a run of blocks of the plane is made of: the hooks of dem_simulation.
 module dem_plane_run
    use common_kinds, only : wp
    use common_lists, only : stop_end => dem_stop_end, stop_collapse => dem_stop_collapse, &
       stop_left => dem_stop_left, stop_overlap => dem_stop_overlap
    use common_status, only : status_ok, status_invalid_argument, status_not_finite, status_out_of_memory
    use dem_bodies, only : body
-   use dem_clock, only : model_clock
-   use dem_contacts, only : contact_pair, overlap, measure
+   use dem_contacts, only : contact_pair, overlap, measure_overlap
    use dem_energy, only : energy_terms
-   use dem_joint, only : brace, free_strength => free_mortar
+   use dem_jointed, only : jointed_model
    use dem_law, only : elastic_energy
-   use dem_model, only : block_model, advance, critical_step
-   use dem_moreau, only : advance_rigid, quickest
-   use dem_rigid, only : rigid_solver, suitable_step
-   use dem_run, only : simulation, any_step, model_sizes, slides_not
-   use dem_search, only : search
+   use dem_model, only : block_model, advance_model, critical_step, finish_step, move_body
+   use dem_moreau, only : greatest_speed, number_model_unknowns => number_unknowns, &
+      solve_model_contacts => solve_contacts
+   use dem_simulation, only : simulation, model_sizes, slides_not
+   use dem_search, only : search_pairs
    use dem_tape, only : tape
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
@@ -25,43 +24,36 @@ module dem_plane_run
       type(block_model) :: model
       real(wp) :: domain(4) = 0.0_wp         !! left, right, bottom, top of the scene [m]
    contains
-      procedure :: clock => clock_of
-      procedure :: solver => solver_of
-      procedure :: search => find_pairs
-      procedure :: stable_step
-      procedure :: advance => take_steps
-      procedure :: energy => energy_now
-      procedure :: agitation
-      procedure :: speed => greatest_speed
-      procedure :: unbalanced
-      procedure :: least_balanced
-      procedure :: fastest
-      procedure :: limits
+      procedure :: get_model
+      procedure :: find_pairs
+      procedure :: find_critical_step
+      procedure :: advance_springs
+      procedure :: number_unknowns
+      procedure :: solve_contacts
+      procedure :: move_bodies
+      procedure :: measure_energy
+      procedure :: measure_agitation
+      procedure :: measure_speed
+      procedure :: measure_unbalance
+      procedure :: find_least_balanced
+      procedure :: find_fastest
+      procedure :: check_limits
       procedure :: mark_rest
-      procedure :: stop_all
-      procedure :: brace_joints
-      procedure :: free_mortar
-      procedure :: free_joints
+      procedure :: stop_bodies
       procedure :: forget_settling
-      procedure :: put_down
-      procedure :: sizes
-      procedure :: make_room
-      procedure :: walk
+      procedure :: record_state
+      procedure :: list_sizes
+      procedure :: allocate_state
+      procedure :: walk_state
    end type block_simulation
 
 contains
 
-   function clock_of(run) result(clock)
+   function get_model(run) result(model)
       class(block_simulation), intent(inout), target :: run
-      type(model_clock), pointer :: clock
-      clock => run%model%model_clock
-   end function clock_of
-
-   function solver_of(run) result(solver)
-      class(block_simulation), intent(inout), target :: run
-      class(rigid_solver), pointer :: solver
-      solver => run%model%rigid
-   end function solver_of
+      class(jointed_model), pointer :: model
+      model => run%model
+   end function get_model
 
    subroutine find_pairs(run, first_time, status)
       class(block_simulation), intent(inout) :: run
@@ -71,42 +63,50 @@ contains
          status = status_not_finite
          if (.not. all(abs(model%set%item%x) + abs(model%set%item%y) <= huge(1.0_wp))) return
          if (first_time) model%contacts%skin = 0.02_wp * model%set%size
-         call search(model%set, model%contacts, first_time, status)
+         call search_pairs(model%set, model%contacts, first_time, status)
          run%record%pairs = model%contacts%pairs
       end associate
       if (first_time .and. status == status_ok) call refuse_overlaps(run)
    end subroutine find_pairs
 
-   !> Any step is stable where contacts have no springs
-   subroutine stable_step(run, stable, suitable, status)
+   subroutine find_critical_step(run, step, status)
       class(block_simulation), intent(inout) :: run
-      real(wp), intent(out) :: stable           !! [s]
-      real(wp), intent(out) :: suitable         !! [s]
+      real(wp), intent(out) :: step             !! [s]
       integer(c_int), intent(out) :: status
-      if (run%model%rigid%setting%used) then
-         status = status_ok
-         stable = any_step
-         suitable = suitable_step(run%model%rigid, run%model%quasi_static)
-      else
-         call critical_step(run%model, stable, status)
-         suitable = run%options%fraction * stable
-      end if
-   end subroutine stable_step
+      call critical_step(run%model, step, status)
+   end subroutine find_critical_step
 
-   subroutine take_steps(run, count, status)
+   subroutine advance_springs(run, count, status)
       class(block_simulation), intent(inout) :: run
       integer, intent(in) :: count
       integer(c_int), intent(out) :: status
+      call advance_model(run%model, count, run%options%threads)
       status = status_ok
-      if (run%model%rigid%setting%used) then
-         call advance_rigid(run%model, count, status)
-      else
-         call advance(run%model, count, run%options%threads)
-      end if
-   end subroutine take_steps
+   end subroutine advance_springs
+
+   subroutine number_unknowns(run, status)
+      class(block_simulation), intent(inout) :: run
+      integer(c_int), intent(out) :: status
+      call number_model_unknowns(run%model, status)
+   end subroutine number_unknowns
+
+   subroutine solve_contacts(run, status)
+      class(block_simulation), intent(inout) :: run
+      integer(c_int), intent(out) :: status
+      call solve_model_contacts(run%model, status)
+   end subroutine solve_contacts
+
+   subroutine move_bodies(run)
+      class(block_simulation), intent(inout) :: run
+      integer :: k
+      do k = 1, size(run%model%set%item)
+         call move_body(run%model, run%model%set%item(k), run%model%stale)
+      end do
+      call finish_step(run%model)
+   end subroutine move_bodies
 
    !> Ledger at the time of the last forces
-   function energy_now(run) result(now)
+   function measure_energy(run) result(now)
       class(block_simulation), intent(in) :: run
       type(energy_terms) :: now
       integer :: k
@@ -146,26 +146,26 @@ contains
             end associate
          end do
       end associate
-   end function energy_now
+   end function measure_energy
 
    !> Twice the kinetic energy of the half step [J]
-   function agitation(run) result(energy)
+   function measure_agitation(run) result(energy)
       class(block_simulation), intent(in) :: run
       real(wp) :: energy
       associate (b => run%model%set%item)
          energy = sum(b%mass * (b%vx**2 + b%vy**2) + b%inertia * b%spin**2)
       end associate
-   end function agitation
+   end function measure_agitation
 
    !> Greatest speed of a body [m/s]
-   function greatest_speed(run) result(speed)
+   function measure_speed(run) result(speed)
       class(block_simulation), intent(in) :: run
       real(wp) :: speed
-      speed = quickest(run%model)
-   end function greatest_speed
+      speed = greatest_speed(run%model)
+   end function measure_speed
 
    !> Greatest unbalanced force over weight, and moment over weight times radius
-   function unbalanced(run) result(ratio)
+   function measure_unbalance(run) result(ratio)
       class(block_simulation), intent(in) :: run
       real(wp) :: ratio
       real(wp) :: g
@@ -181,27 +181,27 @@ contains
             end associate
          end do
       end associate
-   end function unbalanced
+   end function measure_unbalance
 
-   function least_balanced(run) result(number)
+   function find_least_balanced(run) result(number)
       class(block_simulation), intent(in) :: run
       integer :: number
       associate (b => run%model%set%item)
          number = maxloc(abs(b%fx * b%inverse_mass) + abs(b%fy * b%inverse_mass + run%model%gravity(2)), &
             mask=.not. b%fixed, dim=1)
       end associate
-   end function least_balanced
+   end function find_least_balanced
 
-   function fastest(run) result(number)
+   function find_fastest(run) result(number)
       class(block_simulation), intent(in) :: run
       integer :: number
       associate (b => run%model%set%item)
          number = maxloc(b%vx**2 + b%vy**2, mask=.not. b%fixed, dim=1)
       end associate
-   end function fastest
+   end function find_fastest
 
    !> Has a body collapsed or left the domain?
-   subroutine limits(run, collapse)
+   subroutine check_limits(run, collapse)
       class(block_simulation), intent(inout) :: run
       real(wp), intent(in) :: collapse
       integer :: k
@@ -223,7 +223,7 @@ contains
             end associate
          end do
       end associate
-   end subroutine limits
+   end subroutine check_limits
 
    !> Bodies that overlap deeper than half the skin were drawn so
    subroutine refuse_overlaps(run)
@@ -233,7 +233,7 @@ contains
       associate (set => run%model%set, contacts => run%model%contacts)
          do k = 1, contacts%pairs
             associate (pair => contacts%pair(k))
-               call measure(pair, set%item(pair%bodies(1)), set%item(pair%bodies(2)), now)
+               call measure_overlap(pair, set%item(pair%bodies(1)), set%item(pair%bodies(2)), now)
                if (now%width <= 0.5_wp * contacts%skin .or. maxval(now%gap) > -0.5_wp * contacts%skin) cycle
                run%record%reason = stop_overlap
                run%record%blamed = pair%bodies
@@ -252,31 +252,14 @@ contains
       end associate
    end subroutine mark_rest
 
-   subroutine stop_all(run)
+   subroutine stop_bodies(run)
       class(block_simulation), intent(inout) :: run
       associate (b => run%model%set%item)
          b%vx = 0.0_wp
          b%vy = 0.0_wp
          b%spin = 0.0_wp
       end associate
-   end subroutine stop_all
-
-   subroutine brace_joints(run, braced, status)
-      class(block_simulation), intent(inout) :: run
-      logical, intent(out) :: braced
-      integer(c_int), intent(out) :: status
-      call brace(run%model%law, run%options%settle_damping, run%model%own_law, braced, status)
-   end subroutine brace_joints
-
-   subroutine free_mortar(run)
-      class(block_simulation), intent(inout) :: run
-      call free_strength(run%model%law, run%model%own_law)
-   end subroutine free_mortar
-
-   subroutine free_joints(run)
-      class(block_simulation), intent(inout) :: run
-      call move_alloc(run%model%own_law, run%model%law)
-   end subroutine free_joints
+   end subroutine stop_bodies
 
    subroutine forget_settling(run)
       class(block_simulation), intent(inout) :: run
@@ -304,7 +287,7 @@ contains
       end associate
    end subroutine forget_settling
 
-   subroutine put_down(run)
+   subroutine record_state(run)
       class(block_simulation), intent(inout) :: run
       integer :: k
       real(wp) :: half
@@ -322,9 +305,9 @@ contains
             rate(1:2, k) = rate(1:2, k) - model%base
          end do
       end associate
-   end subroutine put_down
+   end subroutine record_state
 
-   function sizes(run) result(told)
+   function list_sizes(run) result(told)
       class(block_simulation), intent(in) :: run
       integer(c_int64_t) :: told(model_sizes)
       type(body) :: one
@@ -333,9 +316,9 @@ contains
          told = int([storage_size(one), storage_size(pair), size(set%item), size(set%parts), size(contacts%pair), &
             size(contacts%spare), size(contacts%sequence), size(contacts%colour_first)], c_int64_t)
       end associate
-   end function sizes
+   end function list_sizes
 
-   subroutine make_room(run, sizes, most, status)
+   subroutine allocate_state(run, sizes, most, status)
       class(block_simulation), intent(inout) :: run
       integer(c_int64_t), intent(in) :: sizes(model_sizes)
       integer(c_int64_t), intent(in) :: most
@@ -350,9 +333,9 @@ contains
             contacts%used(size(run%model%set%item)), contacts%colour_first(sizes(8)), stat=failed)
       end associate
       status = merge(status_ok, status_out_of_memory, failed == 0)
-   end subroutine make_room
+   end subroutine allocate_state
 
-   subroutine walk(run, on, status)
+   subroutine walk_state(run, on, status)
       class(block_simulation), intent(inout), target :: run
       type(tape), intent(inout) :: on
       integer(c_int), intent(out) :: status
@@ -378,6 +361,6 @@ contains
          call on%pass(contacts%damping_loss, storage_size(contacts%damping_loss))
          call on%pass(contacts%support_work, storage_size(contacts%support_work))
       end associate
-   end subroutine walk
+   end subroutine walk_state
 
 end module dem_plane_run

@@ -3,18 +3,18 @@ module dem_search
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
    use dem_bodies, only : body_set, most_vertices
-   use dem_contacts, only : contact_pair, contact_set, overlap, measure, choose_edges, place
+   use dem_contacts, only : contact_pair, contact_set, overlap, measure_overlap, choose_edges, place_part
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: search
+   public :: search_pairs
 
    integer, parameter :: most_colours = 62
 
 contains
 
    !> Rebuild the list of near pairs; persistent ones keep their memory
-   subroutine search(set, contacts, first_time, status)
+   subroutine search_pairs(set, contacts, first_time, status)
       type(body_set), intent(inout) :: set
       type(contact_set), intent(inout) :: contacts
       logical, intent(in) :: first_time           !! contacts found now may carry a bond
@@ -33,7 +33,7 @@ contains
          end do
          contacts%row = 1
       end if
-      call boxes(set, contacts)
+      call update_boxes(set, contacts)
       call sort_boxes(contacts)
       found = 0
       do i = 1, n
@@ -45,36 +45,36 @@ contains
             if (set%parts(p)%owner == set%parts(q)%owner) cycle
             if (set%item(set%parts(p)%owner)%fixed .and. set%item(set%parts(q)%owner)%fixed) cycle
             if (found == size(contacts%spare)) then
-               call grow(contacts, failed)
+               call grow_pairs(contacts, failed)
                if (failed /= 0) return
             end if
-            call consider(set, contacts, min(p, q), max(p, q), first_time, contacts%spare(found + 1), k)
+            call consider_pair(set, contacts, min(p, q), max(p, q), first_time, contacts%spare(found + 1), k)
             found = found + k
          end do
       end do
-      call keep(set, contacts, found, failed)
+      call sort_pairs(set, contacts, found, failed)
       if (failed /= 0) return
-      call colour(set, contacts)
+      call colour_pairs(set, contacts)
       set%item%seen_x = set%item%x
       set%item%seen_y = set%item%y
       set%item%seen_angle = set%item%angle
       status = status_ok
-   end subroutine search
+   end subroutine search_pairs
 
    !> Boxes of all parts, wider by half the skin
-   pure subroutine boxes(set, contacts)
+   pure subroutine update_boxes(set, contacts)
       type(body_set), intent(in) :: set
       type(contact_set), intent(inout) :: contacts
       real(wp) :: x(2, most_vertices)
       integer :: p, n
       do p = 1, size(set%parts)
-         call place(set, p, x, n)
+         call place_part(set, p, x, n)
          contacts%box(1, p) = minval(x(1, 1:n)) - 0.5_wp * contacts%skin
          contacts%box(2, p) = maxval(x(1, 1:n)) + 0.5_wp * contacts%skin
          contacts%box(3, p) = minval(x(2, 1:n)) - 0.5_wp * contacts%skin
          contacts%box(4, p) = maxval(x(2, 1:n)) + 0.5_wp * contacts%skin
       end do
-   end subroutine boxes
+   end subroutine update_boxes
 
    !> Insertion sort by the left ends: the order of the last search is nearly right
    pure subroutine sort_boxes(contacts)
@@ -93,7 +93,7 @@ contains
    end subroutine sort_boxes
 
    !> Twice the room for pairs
-   subroutine grow(contacts, failed)
+   subroutine grow_pairs(contacts, failed)
       type(contact_set), intent(inout) :: contacts
       integer, intent(out) :: failed
       type(contact_pair), allocatable :: bigger(:)
@@ -108,10 +108,10 @@ contains
       if (failed /= 0) return
       longer(1:size(contacts%sequence)) = contacts%sequence
       call move_alloc(longer, contacts%sequence)
-   end subroutine grow
+   end subroutine grow_pairs
 
    !> Write the pair of parts p < q where they are within the skin; took is 1 then, else 0
-   subroutine consider(set, contacts, p, q, first_time, pair, took)
+   subroutine consider_pair(set, contacts, p, q, first_time, pair, took)
       type(body_set), intent(in) :: set
       type(contact_set), intent(in) :: contacts
       integer, intent(in) :: p
@@ -136,10 +136,10 @@ contains
       call choose_edges(set, contacts%skin, pair, distance)
       took = merge(1, 0, distance <= contacts%skin)
       if (took == 0) return
-      call measure(pair, set%item(pair%bodies(1)), set%item(pair%bodies(2)), now)
+      call measure_overlap(pair, set%item(pair%bodies(1)), set%item(pair%bodies(2)), now)
       pair%careful = now%width < 2.0_wp * contacts%skin
       if (first_time) pair%point%bonded = .not. pair%careful .and. now%gap <= 0.05_wp * contacts%skin
-   end subroutine consider
+   end subroutine consider_pair
 
    !> Law of the joint between two bodies: from the table, or the first one
    pure function law_of(contacts, a, b) result(law)
@@ -155,7 +155,7 @@ contains
    end function law_of
 
    !> Sort the pairs found by their parts and remember what the vanished ones have lost
-   subroutine keep(set, contacts, found, failed)
+   subroutine sort_pairs(set, contacts, found, failed)
       type(body_set), intent(in) :: set
       type(contact_set), intent(inout) :: contacts
       integer, intent(in) :: found
@@ -209,7 +209,7 @@ contains
       contacts%friction_loss = contacts%friction_loss - total(1)
       contacts%damping_loss = contacts%damping_loss - total(2)
       contacts%support_work = contacts%support_work - total(3)
-   end subroutine keep
+   end subroutine sort_pairs
 
    !> Friction loss, damping loss and support work remembered by the pairs [J]
    pure function losses(pair, n) result(total)
@@ -228,7 +228,7 @@ contains
    !> Colours such that two pairs of one colour share no mobile body: a colour may run in parallel,
    !> and the result is that of one thread bit for bit. Pairs beyond the last
    !> colour run one by one.
-   subroutine colour(set, contacts)
+   subroutine colour_pairs(set, contacts)
       type(body_set), intent(in) :: set
       type(contact_set), intent(inout) :: contacts
       integer :: k, c, i, b, count(most_colours + 1)
@@ -273,6 +273,6 @@ contains
          count(c) = count(c) + 1
       end do
       contacts%pair(1:contacts%pairs) = contacts%spare(1:contacts%pairs)
-   end subroutine colour
+   end subroutine colour_pairs
 
 end module dem_search

@@ -4,9 +4,9 @@
 !> They are bytes of memory, for this build alone; whoever keeps them must see that they come back undamaged.
 module dem_state
    use common_status, only : status_ok, status_invalid_argument
-   use dem_clock, only : model_clock
-   use dem_rigid, only : rigid_solver, walk_effort
-   use dem_run, only : model_sizes, simulation
+   use dem_jointed, only : jointed_model
+   use dem_rigid, only : walk_effort
+   use dem_simulation, only : model_sizes, simulation
    use dem_tape, only : tape, loading, saving, per_word
    use, intrinsic :: iso_c_binding, only : c_f_pointer, c_int, c_int64_t, c_loc
    implicit none
@@ -55,7 +55,7 @@ contains
       if (size(word) <= entries) return
       if (word(3) < 0 .or. word(3) > size(run%record%wanted)) return
       run%record%points = int(word(3))
-      call run%make_room(word(4:entries), size(word, kind=c_int64_t), status)
+      call run%allocate_state(word(4:entries), size(word, kind=c_int64_t), status)
       if (status /= status_ok) return
       status = status_invalid_argument
       if (any(word(1:entries) /= head(run, size(word, kind=c_int64_t)))) return
@@ -79,7 +79,7 @@ contains
       integer(c_int64_t), intent(in) :: words
       integer(c_int64_t) :: told(entries)
       told(1:3) = [words, size(run%record%wanted, kind=c_int64_t), int(run%record%points, c_int64_t)]
-      told(4:entries) = run%sizes()
+      told(4:entries) = run%list_sizes()
    end function head
 
    !> Pass everything that changes while a model runs, always in this order
@@ -87,24 +87,22 @@ contains
       type(tape), intent(inout) :: on
       class(simulation), intent(inout), target :: run
       integer(c_int), intent(out) :: status
-      type(model_clock), pointer :: clock
-      class(rigid_solver), pointer :: solver
+      class(jointed_model), pointer :: model
       integer :: n
-      call run%walk(on, status)
+      call run%walk_state(on, status)
       if (status /= status_ok) return
-      clock => run%clock()
-      call on%pass(clock%t, storage_size(clock%t))
-      call on%pass(clock%step, storage_size(clock%step))
-      call on%pass(clock%drift, storage_size(clock%drift))
-      call on%pass(clock%kick, storage_size(clock%kick))
-      call on%pass(clock%segment, storage_size(clock%segment))
-      call on%pass(clock%segment_across, storage_size(clock%segment_across))
-      call on%pass(clock%steps, storage_size(clock%steps))
-      call on%pass(clock%waits, storage_size(clock%waits))
-      call on%pass(clock%shaking, storage_size(clock%shaking))
-      call on%pass(clock%stale, storage_size(clock%stale))
-      solver => run%solver()
-      call walk_effort(solver, on)
+      model => run%get_model()
+      call on%pass(model%t, storage_size(model%t))
+      call on%pass(model%step, storage_size(model%step))
+      call on%pass(model%drift, storage_size(model%drift))
+      call on%pass(model%kick, storage_size(model%kick))
+      call on%pass(model%segment, storage_size(model%segment))
+      call on%pass(model%segment_across, storage_size(model%segment_across))
+      call on%pass(model%steps, storage_size(model%steps))
+      call on%pass(model%waits, storage_size(model%waits))
+      call on%pass(model%shaking, storage_size(model%shaking))
+      call on%pass(model%stale, storage_size(model%stale))
+      call walk_effort(model%rigid, on)
       associate (record => run%record)
          n = record%points
          call on%pass(record%wanted, storage_size(record%wanted))

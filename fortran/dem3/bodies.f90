@@ -8,7 +8,8 @@ module dem3_bodies
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: most_corners, body, part, body_set, body_set_new, copy_bodies, place, turn_freely, world_inverse, cross, &
+   public :: most_corners, body, part, body_set, body_set_new, copy_bodies, place_part, turn_freely, world_inverse, &
+      cross, &
       spin_of
 
    integer, parameter :: most_corners = 96     !! of a face
@@ -148,7 +149,7 @@ contains
             set%item(one%owner)%radius = max(set%item(one%owner)%radius, &
                maxval(norm2(vertex(:, one%vertex_first:one%vertex_last), dim=1)))
          end associate
-         call place(set, k)
+         call place_part(set, k)
       end do
       if (set%size > 0.5_wp * huge(1.0_wp)) return
       status = status_ok
@@ -178,7 +179,7 @@ contains
    end subroutine copy_bodies
 
    !> Vertices of a part in space
-   pure subroutine place(set, number)
+   pure subroutine place_part(set, number)
       type(body_set), intent(inout) :: set
       integer, intent(in) :: number
       integer :: k
@@ -187,7 +188,7 @@ contains
             set%here(:, k) = set%item(one%owner)%x + matmul(set%item(one%owner)%turn, set%vertex(:, k))
          end do
       end associate
-   end subroutine place
+   end subroutine place_part
 
    !> Free rotation over a time: turns about the own axes, halves before and after the third (a symmetric splitting,
    !> which keeps the swing exactly and its energy in bounds: Dullweber, Leimkuhler and McLachlan 1997)

@@ -11,7 +11,7 @@
 module dem3_dowels
    use common_kinds, only : wp
    use dem3_bodies, only : body, cross
-   use dem3_law, only : answers, bounded, give, length_of
+   use dem3_law, only : answers, bounded, push_body, length_of
    implicit none
    private
    public :: dowel, act_dowel, dowel_energy
@@ -62,7 +62,7 @@ contains
       else
          offset = away - matmul(a%turn, one%slip)
          offset = offset - dot_product(offset, normal) * normal
-         call bear(kick, offset, normal, arm_a, arm_b, a, b, one)
+         call load_dowel(kick, offset, normal, arm_a, arm_b, a, b, one)
       end if
       force = one%spring + one%dash
       one%damping_loss = one%damping_loss - 0.5_wp * drift * dot_product(old_dash + one%dash, u)
@@ -70,12 +70,12 @@ contains
          + 0.5_wp * drift * dot_product(force + before, a%v + cross(a%spin, arm_a))
       if (b%fixed) one%support_work = one%support_work &
          - 0.5_wp * drift * dot_product(force + before, b%v + cross(b%spin, arm_b))
-      call give(a, -force, -kick * (force - before), arm_a)
-      call give(b, force, kick * (force - before), arm_b)
+      call push_body(a, -force, -kick * (force - before), arm_a)
+      call push_body(b, force, kick * (force - before), arm_b)
    end subroutine act_dowel
 
    !> Spring and dashpot of a dowel that is in
-   pure subroutine bear(kick, offset, normal, arm_a, arm_b, a, b, one)
+   pure subroutine load_dowel(kick, offset, normal, arm_a, arm_b, a, b, one)
       real(wp), intent(in) :: kick              !! [s]
       real(wp), intent(in) :: offset(3)         !! P d - s [m]
       real(wp), intent(in) :: normal(3)
@@ -111,7 +111,7 @@ contains
       end if
       one%spring = trial
       one%dash = bounded(trial + new, one%strength) - trial
-   end subroutine bear
+   end subroutine load_dowel
 
    !> Energy in the spring of a dowel [J]
    pure function dowel_energy(one) result(energy)

@@ -6,19 +6,17 @@ module dem3_handle
       status_out_of_memory, status_wrong_handle
    use dem_handle, only : built_model, model_register, model_take
    use dem_rigid, only : set_rigid
-   use dem_run, only : run_record_new
+   use dem_simulation, only : run_record_new
    use dem3_bodies, only : body_set, body_set_new, copy_bodies
    use dem3_dowels, only : dowel
-   use dem3_law, only : joint_law
    use dem3_run, only : solid_simulation
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: built_solids, solids_new, solids_take, solids_run_take, set_laws, set_dowels, set_surroundings
+   public :: built_solids, solids_new, solids_take, solids_run_take, set_joints, set_dowels, set_surroundings
 
    type, extends(built_model) :: built_solids
       type(body_set) :: set
-      type(joint_law), allocatable :: law(:)          !! the first is that of contacts that form later
       integer, allocatable :: law_of(:, :)            !! (3, joints): bodies, the lower first, and law
       type(dowel), allocatable :: dowels(:)           !! not allocated: none
       real(wp), allocatable :: rate(:, :)             !! (6, bodies) velocity and spin at the start
@@ -101,30 +99,25 @@ contains
       call handle_leave(handle)
    end subroutine solids_run_take
 
-   !> Types of joints, and pairs of bodies whose joint is not of the first
-   subroutine set_laws(built, law, joint, status)
+   !> Pairs of bodies whose joint is not of the first type
+   subroutine set_joints(built, joint, status)
       type(built_solids), intent(inout) :: built
-      type(joint_law), intent(in) :: law(:)
       integer(c_int), intent(in) :: joint(:, :)       !! (3, joints): bodies, the lower first, and law; ascending
       integer(c_int), intent(out) :: status
-      type(joint_law), allocatable :: laws(:)
       integer, allocatable :: law_of(:, :)
       integer :: failed
+      status = status_not_ready
+      if (.not. allocated(built%law)) return
       status = status_bad_index
-      if (any(joint < 1) .or. any(joint(1:2, :) > size(built%set%item)) .or. any(joint(3, :) > size(law))) return
-      status = status_invalid_argument
-      if (size(law) < 1) return
-      if (.not. all(law%normal_stiffness > 0.0_wp .and. law%shear_stiffness > 0.0_wp)) return
-      if (.not. all(min(law%friction, law%cohesion, law%tension, law%damping) >= 0.0_wp)) return
+      if (any(joint < 1) .or. any(joint(1:2, :) > size(built%set%item)) .or. any(joint(3, :) > size(built%law))) return
       status = status_out_of_memory
-      allocate (laws(size(law)), law_of(3, size(joint, 2)), stat=failed)
+      allocate (law_of(3, size(joint, 2)), stat=failed)
       if (failed /= 0) return
-      laws(:) = law
       law_of(:, :) = joint
-      call move_alloc(laws, built%law)
       call move_alloc(law_of, built%law_of)
+      built%highest_law = max(0, int(maxval(joint(3, :))))
       status = status_ok
-   end subroutine set_laws
+   end subroutine set_joints
 
    !> Dowels across joints, from where they stand in space
    subroutine set_dowels(built, body, place, axis, value, status)
@@ -193,7 +186,7 @@ contains
       type(solid_simulation), allocatable :: run
       integer :: k, axis, failed, dowels
       status = status_not_ready
-      if (.not. (allocated(built%law) .and. allocated(built%rate))) return
+      if (.not. (allocated(built%law) .and. allocated(built%law_of) .and. allocated(built%rate))) return
       status = status_out_of_memory
       allocate (run, stat=failed)
       if (failed /= 0) return

@@ -17,12 +17,13 @@ module dem3_law
    use common_status, only : status_ok
    use dem_joint, only : joint_law
    use dem3_bodies, only : body, body_set
-   use dem3_patch, only : feature, measure, meet, patch
+   use dem3_patch, only : feature, measure_feature, find_features, patch
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: joint_law, contact_point, contact_pair, act, bond, find_points, elastic_energy, drop_points
-   public :: answers, bounded, give, length_of
+   public :: joint_law, contact_point, contact_pair, apply_pair_law, bond_points, find_points, elastic_energy, &
+      drop_points
+   public :: answers, bounded, push_body, length_of
 
    type :: contact_point
       type(feature) :: what
@@ -101,7 +102,7 @@ contains
       integer :: i, old, failed
       logical, allocatable :: taken(:)
 
-      call meet(set, pair%part(1), pair%part(2), margin, pair%reference, found, status)
+      call find_features(set, pair%part(1), pair%part(2), margin, pair%reference, found, status)
       pair%lacks_memory = pair%lacks_memory .or. status /= status_ok
       if (status /= status_ok) return
       if (found%reference > 0) pair%reference = found%reference
@@ -146,7 +147,7 @@ contains
       real(wp) :: normal(3), gap, at(3)
       integer :: i
       do i = 1, pair%points
-         call measure(pair%point(i)%what, set%item(set%parts(pair%part(1))%owner), &
+         call measure_feature(pair%point(i)%what, set%item(set%parts(pair%part(1))%owner), &
             set%item(set%parts(pair%part(2))%owner), normal, gap, at)
          if (gap < -slight) pair%point(i)%filled = gap
       end do
@@ -191,7 +192,7 @@ contains
    end function partner
 
    !> Mortar binds the points of a pair whose gap is less than a margin, where its law has any, and fills that gap
-   pure subroutine bond(law, margin, a, b, pair)
+   pure subroutine bond_points(law, margin, a, b, pair)
       type(joint_law), intent(in) :: law
       real(wp), intent(in) :: margin            !! [m]
       type(body), intent(in) :: a
@@ -201,14 +202,14 @@ contains
       integer :: i
       if (.not. max(law%cohesion, law%tension) > 0.0_wp) return
       do i = 1, pair%points
-         call measure(pair%point(i)%what, a, b, normal, gap, at)
+         call measure_feature(pair%point(i)%what, a, b, normal, gap, at)
          pair%point(i)%bonded = gap <= margin
          if (pair%point(i)%bonded) pair%point(i)%filled = max(gap, 0.0_wp)
       end do
-   end subroutine bond
+   end subroutine bond_points
 
    !> Forces of a pair at its present overlap, added to both bodies; predicted velocities follow
-   pure subroutine act(law, kick, drift, a, b, pair)
+   pure subroutine apply_pair_law(law, kick, drift, a, b, pair)
       type(joint_law), intent(in) :: law
       real(wp), intent(in) :: kick              !! length of the velocity step [s]
       real(wp), intent(in) :: drift             !! length of the position step before [s]
@@ -220,7 +221,7 @@ contains
 
       do i = 1, pair%points
          associate (point => pair%point(i))
-            call measure(point%what, a, b, normal, gap, at)
+            call measure_feature(point%what, a, b, normal, gap, at)
             if (gap >= 0.0_wp) point%filled = max(point%filled, 0.0_wp)
             gap = gap - point%filled
             if (gap >= 0.0_wp) then
@@ -234,7 +235,8 @@ contains
             u = b%v - a%v + cross(b%spin, arm_b) - cross(a%spin, arm_a)
             if (gap < 0.0_wp .or. point%bonded) then
                point%closed = .true.
-               call press(law, kick, drift, normal, gap, u, arm_a, arm_b, a, b, point, pair%friction_loss, force, dash)
+               call press_point(law, kick, drift, normal, gap, u, arm_a, arm_b, a, b, point, pair%friction_loss, &
+                  force, dash)
                if (.not. a%fixed) a%touched = .true.
                if (.not. b%fixed) b%touched = .true.
             else   ! it opens: what its shear spring held is lost, and its other one if mortar was torn
@@ -254,16 +256,16 @@ contains
                + 0.5_wp * drift * dot_product(force + point%force, a%v + cross(a%spin, arm_a))
             if (b%fixed) pair%support_work = pair%support_work &
                - 0.5_wp * drift * dot_product(force + point%force, b%v + cross(b%spin, arm_b))
-            call give(a, -force, -kick * (force - point%force), arm_a)
-            call give(b, force, kick * (force - point%force), arm_b)
+            call push_body(a, -force, -kick * (force - point%force), arm_a)
+            call push_body(b, force, kick * (force - point%force), arm_b)
             point%force = force
             point%dash = dash
          end associate
       end do
-   end subroutine act
+   end subroutine apply_pair_law
 
    !> Force of a closed point: springs, the normal dashpot, then friction on the shear spring and its dashpot
-   pure subroutine press(law, kick, drift, normal, gap, u, arm_a, arm_b, a, b, point, friction_loss, force, dash)
+   pure subroutine press_point(law, kick, drift, normal, gap, u, arm_a, arm_b, a, b, point, friction_loss, force, dash)
       type(joint_law), intent(in) :: law
       real(wp), intent(in) :: kick              !! [s]
       real(wp), intent(in) :: drift             !! [s]
@@ -335,7 +337,7 @@ contains
       point%dash_n = push_n - spring_n
       dash = point%dash_n * normal + point%dash_s
       force = push_n * normal + point%spring_s + point%dash_s
-   end subroutine press
+   end subroutine press_point
 
    !> Cross product; that of dem3_bodies would not be inlined here, at a third of the time of a point
    pure function cross(a, b) result(c)
@@ -397,7 +399,7 @@ contains
    end subroutine add_turning
 
    !> Add a force to a body, and its change to the body's predicted velocity
-   pure subroutine give(b, force, impulse, arm)
+   pure subroutine push_body(b, force, impulse, arm)
       type(body), intent(inout) :: b
       real(wp), intent(in) :: force(3)          !! [N]
       real(wp), intent(in) :: impulse(3)        !! change of the force times the step [N s]
@@ -409,7 +411,7 @@ contains
       b%p = b%p + b%inverse_mass * impulse
       swing = cross(arm, impulse)
       b%pspin = b%pspin + matmul(b%inverse, swing)
-   end subroutine give
+   end subroutine push_body
 
    !> Energy in the springs of a point [J]
    pure function energy_of(law, point) result(energy)

@@ -2,35 +2,28 @@
 module dem3_model
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
-   use dem_clock, only : model_clock, begin_step, end_step
+   use dem_clock, only : begin_step, end_step
    use dem_energy, only : energy_terms
    use dem_joint, only : joint_law
-   use dem_rigid, only : rigid_solver
-   use dem3_bodies, only : body, body_set, cross, place, spin_of, turn_freely
+   use dem_jointed, only : jointed_model
+   use dem3_bodies, only : body, body_set, cross, place_part, spin_of, turn_freely
    use dem3_dowels, only : act_dowel, dowel, dowel_energy
-   use dem3_law, only : act, bond, contact_pair, contact_point, drop_points, elastic_energy, find_points
-   use dem3_patch, only : measure
+   use dem3_law, only : apply_pair_law, bond_points, contact_pair, contact_point, drop_points, elastic_energy, &
+      find_points
+   use dem3_patch, only : measure_feature
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: solid_model, rigid_contacts, set_distances, search, set_mortar, colour, advance, critical_step, &
-      energy_now, prepare, predict, move, look_anew
+   public :: solid_model, set_distances, search_pairs, set_mortar, colour_pairs, advance_model, critical_step, &
+      energy_now, prepare_step, predict_velocity, move_body, look_anew
 
-   !> Contacts without springs, see dem3_moreau
-   type, extends(rigid_solver) :: rigid_contacts
-      type(body), allocatable :: next(:)              !! (bodies) where the old velocities lead to
-      integer, allocatable :: number(:)               !! of each contact point in the problem, 0 where it cannot press
-   end type rigid_contacts
-
-   type, extends(model_clock) :: solid_model
+   type, extends(jointed_model) :: solid_model
       type(body_set) :: set
       type(contact_pair), allocatable :: pair(:)
       integer :: pairs = 0
       integer, allocatable :: sweep(:)                !! the pairs by colours
       integer, allocatable :: colour_first(:)         !! first of each colour in the sweep; then what has none
       integer :: colours = 0
-      type(joint_law), allocatable :: law(:)          !! the first is that of contacts that form later
-      type(joint_law), allocatable :: own_law(:)      !! while joints are braced: as they are
       integer, allocatable :: law_of(:, :)            !! (3, joints): two bodies, the lower first, law; ascending
       type(dowel), allocatable :: dowels(:)
       real(wp) :: way(3) = [1.0_wp, 0.0_wp, 0.0_wp]   !! of the horizontal ground motion
@@ -44,7 +37,9 @@ module dem3_model
       real(wp) :: wander = 0.0_wp                     !! a body that has moved farther is asked for that [m]
       real(wp) :: lost(2) = 0.0_wp                    !! by friction and dashpots of pairs that are no more [J]
       real(wp) :: support_work = 0.0_wp               !! of them [J]
-      type(rigid_contacts) :: rigid
+      ! Contacts without springs, see dem3_moreau
+      type(body), allocatable :: ahead(:)             !! (bodies) where the old velocities lead to
+      integer, allocatable :: number(:)               !! of each contact point in the problem, 0: it cannot press
    end type solid_model
 
    !> Of the skin: a narrower gap is filled by mortar
@@ -53,7 +48,7 @@ module dem3_model
 contains
 
    !> Pairs of parts of different bodies whose boxes come nearer than the skin, by their numbers; contacts go on
-   subroutine search(model, status)
+   subroutine search_pairs(model, status)
       type(solid_model), intent(inout) :: model
       integer(c_int), intent(out) :: status
       type(contact_pair), allocatable :: found(:)
@@ -64,7 +59,7 @@ contains
       integer :: i, j, k, n, count, failed, room, axis, old
 
       do k = 1, size(model%set%parts)
-         call place(model%set, k)
+         call place_part(model%set, k)
       end do
       n = size(model%set%parts)
       allocate (low(3, n), high(3, n), order(n), work(n), stat=failed)
@@ -80,7 +75,7 @@ contains
          extent(axis) = maxval(high(axis, :)) - minval(low(axis, :))
       end do
       axis = maxloc(extent, dim=1)
-      call sorted(low(axis, :), work, order)
+      call sort_values(low(axis, :), work, order)
       do room = 1, 2   ! count, then fill
          count = 0
          do k = 1, n
@@ -109,7 +104,7 @@ contains
       do k = 1, count
          do while (old <= model%pairs)
             if (.not. before(model%pair(old)%part, found(k)%part)) exit
-            call forget(model, old)
+            call drop_pair(model, old)
             old = old + 1
          end do
          if (old <= model%pairs) then
@@ -126,7 +121,7 @@ contains
             model%set%parts(found(k)%part(2))%owner)
       end do
       do old = old, model%pairs
-         call forget(model, old)
+         call drop_pair(model, old)
       end do
       call move_alloc(found, model%pair)
       model%pairs = count
@@ -135,8 +130,8 @@ contains
          model%set%item(k)%seen_turn = model%set%item(k)%turn
       end do
       model%stale = .false.
-      call colour(model, status)
-   end subroutine search
+      call colour_pairs(model, status)
+   end subroutine search_pairs
 
    !> Mortar binds what touches at the start
    subroutine set_mortar(model)
@@ -145,14 +140,14 @@ contains
       do k = 1, model%pairs
          associate (pair => model%pair(k), parts => model%set%parts)
             call find_points(model%set, model%far, model%margin, pair)
-            call bond(model%law(pair%law), touching * model%skin, model%set%item(parts(pair%part(1))%owner), &
+            call bond_points(model%law(pair%law), touching * model%skin, model%set%item(parts(pair%part(1))%owner), &
                model%set%item(parts(pair%part(2))%owner), pair)
          end associate
       end do
    end subroutine set_mortar
 
    !> A pair goes: what it lost is kept
-   subroutine forget(model, number)
+   subroutine drop_pair(model, number)
       type(solid_model), intent(inout) :: model
       integer, intent(in) :: number
       associate (pair => model%pair(number))
@@ -160,7 +155,7 @@ contains
          model%lost = model%lost + [pair%friction_loss, pair%damping_loss]
          model%support_work = model%support_work + pair%support_work
       end associate
-   end subroutine forget
+   end subroutine drop_pair
 
    !> How near is near, from the size of the smallest part
    subroutine set_distances(model)
@@ -173,7 +168,7 @@ contains
    end subroutine set_distances
 
    !> Colours of the pairs: two of one colour have no mobile body in common, so that they may act at once
-   subroutine colour(model, status)
+   subroutine colour_pairs(model, status)
       type(solid_model), intent(inout) :: model
       integer(c_int), intent(out) :: status
       integer, parameter :: most = 62
@@ -218,7 +213,7 @@ contains
          model%sweep(count(of(k))) = k
          count(of(k)) = count(of(k)) + 1
       end do
-   end subroutine colour
+   end subroutine colour_pairs
 
    !> The law of a pair of bodies
    pure function law_between(model, one, two) result(law)
@@ -255,7 +250,7 @@ contains
    end function before
 
    !> Order of values, by merging
-   pure subroutine sorted(value, work, order)
+   pure subroutine sort_values(value, work, order)
       real(wp), intent(in) :: value(:)
       integer, intent(out) :: work(:)         !! as long as the values
       integer, intent(out) :: order(:)
@@ -290,7 +285,7 @@ contains
          order = work
          width = 2 * width
       end do
-   end subroutine sorted
+   end subroutine sort_values
 
    !> Pairs by their numbers
    pure subroutine by_number(found, status)
@@ -306,14 +301,14 @@ contains
          parts(:, k) = found(k)%part
          value(k) = real(found(k)%part(1), wp) * 1.0e7_wp + found(k)%part(2)
       end do
-      call sorted(value, work, order)
+      call sort_values(value, work, order)
       do k = 1, size(found)
          found(k)%part = parts(:, order(k))
       end do
    end subroutine by_number
 
    !> Up to `count` steps; returns early where near pairs must be searched again
-   subroutine advance(model, count, threads)
+   subroutine advance_model(model, count, threads)
       type(solid_model), intent(inout) :: model
       integer, intent(in) :: count
       integer, intent(in) :: threads
@@ -324,21 +319,21 @@ contains
          return
       end if
       do n = 1, count
-         call prepare(model)
+         call prepare_step(model)
          do k = 1, size(model%set%item)
-            call predict(model, model%set%item(k))
+            call predict_velocity(model, model%set%item(k))
          end do
          do c = 1, model%pairs
-            call touch(model, model%pair(model%sweep(c)))
+            call act_pair(model, model%pair(model%sweep(c)))
          end do
          call bear_on_dowels(model)
          do k = 1, size(model%set%item)
-            call move(model, model%set%item(k), model%stale)
+            call move_body(model, model%set%item(k), model%stale)
          end do
          call end_step(model%model_clock)
          if (model%stale) return
       end do
-   end subroutine advance
+   end subroutine advance_model
 
    !> The same steps shared among threads: pairs of one colour touch no common mobile body
    subroutine advance_threads(model, count, threads)
@@ -352,30 +347,30 @@ contains
       !$omp parallel default(none) num_threads(threads) shared(model, count, stale) private(n, k, c)
       do n = 1, count
          !$omp single
-         call prepare(model)
+         call prepare_step(model)
          stale = .false.
          !$omp end single
          !$omp do schedule(static)
          do k = 1, size(model%set%item)
-            call predict(model, model%set%item(k))
+            call predict_velocity(model, model%set%item(k))
          end do
          !$omp end do
          do c = 1, model%colours
             !$omp do schedule(static)
             do k = model%colour_first(c), model%colour_first(c + 1) - 1
-               call touch(model, model%pair(model%sweep(k)))
+               call act_pair(model, model%pair(model%sweep(k)))
             end do
             !$omp end do
          end do
          !$omp single
          do k = model%colour_first(model%colours + 1), model%pairs
-            call touch(model, model%pair(model%sweep(k)))
+            call act_pair(model, model%pair(model%sweep(k)))
          end do
          call bear_on_dowels(model)
          !$omp end single
          !$omp do schedule(static) reduction(.or. : stale)
          do k = 1, size(model%set%item)
-            call move(model, model%set%item(k), stale)
+            call move_body(model, model%set%item(k), stale)
          end do
          !$omp end do
          !$omp single
@@ -388,15 +383,15 @@ contains
    end subroutine advance_threads
 
    !> Geometry, where it must be looked at anew, and law of one pair
-   pure subroutine touch(model, pair)
+   pure subroutine act_pair(model, pair)
       type(solid_model), intent(inout) :: model
       type(contact_pair), intent(inout) :: pair
       associate (a => model%set%item(model%set%parts(pair%part(1))%owner), &
                  b => model%set%item(model%set%parts(pair%part(2))%owner))
          call look_anew(model, pair)
-         if (pair%points > 0) call act(model%law(pair%law), model%kick, model%drift, a, b, pair)
+         if (pair%points > 0) call apply_pair_law(model%law(pair%law), model%kick, model%drift, a, b, pair)
       end associate
-   end subroutine touch
+   end subroutine act_pair
 
    !> Forces of the dowels, one after the other: they are few
    subroutine bear_on_dowels(model)
@@ -421,17 +416,17 @@ contains
    end subroutine look_anew
 
    !> Body force and velocity of the ground in this step
-   subroutine prepare(model)
+   subroutine prepare_step(model)
       type(solid_model), intent(inout) :: model
       real(wp) :: ground(3)
       call begin_step(model%model_clock, ground)
       model%pull_before = model%pull
       model%pull = model%gravity - ground(1) * model%way - [0.0_wp, 0.0_wp, ground(2)] &
          - ground(3) * [-model%way(2), model%way(1), 0.0_wp]
-   end subroutine prepare
+   end subroutine prepare_step
 
    !> Velocity that follows from the forces of the last step; clears the forces
-   pure subroutine predict(model, b)
+   pure subroutine predict_velocity(model, b)
       type(solid_model), intent(in) :: model
       type(body), intent(inout) :: b
       if (b%fixed) return
@@ -444,10 +439,10 @@ contains
       b%force = 0.0_wp
       b%moment = 0.0_wp
       b%touched = .false.
-   end subroutine predict
+   end subroutine predict_velocity
 
    !> Velocity and place after the step
-   pure subroutine move(model, b, stale)
+   pure subroutine move_body(model, b, stale)
       type(solid_model), intent(in) :: model
       type(body), intent(inout) :: b
       logical, intent(inout) :: stale
@@ -466,7 +461,7 @@ contains
       b%marked = b%x
       b%marked_turn = b%turn
       if (norm2(b%x - b%seen) + b%radius * norm2(b%turn - b%seen_turn) > model%reach) stale = .true.
-   end subroutine move
+   end subroutine move_body
 
    !> A step that is stable for all contacts that may close: 2 / omega, with omega^2 above the greatest eigenvalue of
    !> any body on its springs, twice as stiff where the neighbour moves too [s]
@@ -489,11 +484,12 @@ contains
             share = merge(1.0_wp, 2.0_wp, model%set%item(parts(pair%part(1))%owner)%fixed &
                .or. model%set%item(parts(pair%part(2))%owner)%fixed)
             do i = 1, pair%points
-               call measure(pair%point(i)%what, model%set%item(parts(pair%part(1))%owner), &
+               call measure_feature(pair%point(i)%what, model%set%item(parts(pair%part(1))%owner), &
                   model%set%item(parts(pair%part(2))%owner), normal, gap, at)
                do side = 1, 2
                   who = parts(pair%part(side))%owner
-                  call stiffen(model%law(pair%law), share * pair%point(i)%what%area, normal, at, model%set%item(who), &
+                  call add_spring(model%law(pair%law), share * pair%point(i)%what%area, normal, at, &
+                     model%set%item(who), &
                      stiffness(:, :, who))
                end do
             end do
@@ -504,7 +500,7 @@ contains
          associate (b => model%set%item(who), one => model%set%parts(k))
             if (b%fixed .or. any(abs(stiffness(:, :, who)) > 0.0_wp)) cycle
             area = maxval(model%set%area(one%face_first:one%face_last))
-            call stiffen(model%law(1), 2.0_wp * area, [0.0_wp, 0.0_wp, 1.0_wp], b%x + b%radius * b%turn(:, 1), b, &
+            call add_spring(model%law(1), 2.0_wp * area, [0.0_wp, 0.0_wp, 1.0_wp], b%x + b%radius * b%turn(:, 1), b, &
                stiffness(:, :, who))
          end associate
       end do
@@ -515,7 +511,8 @@ contains
             normal = matmul(model%set%item(one%body(1))%turn, one%axis)
             at = model%set%item(one%body(2))%x + matmul(model%set%item(one%body(2))%turn, one%place(:, 2))
             do side = 1, 2
-               call stiffen(spring, share, normal, at, model%set%item(one%body(side)), stiffness(:, :, one%body(side)))
+               call add_spring(spring, share, normal, at, model%set%item(one%body(side)), stiffness(:, :, &
+                  one%body(side)))
             end do
          end associate
       end do
@@ -527,7 +524,7 @@ contains
    end subroutine critical_step
 
    !> Add the springs at a point to the 6 x 6 stiffness of a body, scaled by its masses, in its own axes
-   pure subroutine stiffen(law, area, normal, at, b, stiffness)
+   pure subroutine add_spring(law, area, normal, at, b, stiffness)
       type(joint_law), intent(in) :: law
       real(wp), intent(in) :: area           !! [m^2]
       real(wp), intent(in) :: normal(3)
@@ -553,7 +550,7 @@ contains
                + (law%normal_stiffness - law%shear_stiffness) * along(i) * along(j))
          end do
       end do
-   end subroutine stiffen
+   end subroutine add_spring
 
    !> A bound of the eigenvalues of a symmetric matrix, at most 6 % above the greatest: the 32nd root of the sum of
    !> their 32nd powers

@@ -7,48 +7,23 @@
 module dem3_moreau
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
-   use dem_clock, only : end_step
-   use dem_rigid, only : number_bodies, parting, solve_step, wait_for_rest
+   use dem_rigid, only : number_bodies, parting, solve_step
    use dem3_bodies, only : body, cross, turn_freely
    use dem3_law, only : contact_pair, contact_point
-   use dem3_model, only : look_anew, move, predict, prepare, solid_model
-   use dem3_patch, only : measure
+   use dem3_model, only : look_anew, predict_velocity, prepare_step, solid_model
+   use dem3_patch, only : measure_feature
    use nonsmooth_impulses, only : along_normal, along_tangent, impulse_problem, in_space, problem_room
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: advance_rigid, quickest
+   public :: number_unknowns, solve_contacts, greatest_speed
 
    integer, parameter :: freedoms = 6
 
 contains
 
-   !> Up to `count` steps; returns early where near pairs must be searched again
-   subroutine advance_rigid(model, count, status)
-      type(solid_model), intent(inout) :: model
-      integer, intent(in) :: count
-      integer(c_int), intent(out) :: status
-      integer :: n, k
-      status = status_ok
-      if (model%rigid%pairs /= model%pairs) call make_ready(model, status)
-      do n = 1, count
-         if (status /= status_ok) return
-         call one_step(model, status)
-         if (status /= status_ok) return
-         do k = 1, size(model%set%item)
-            call move(model, model%set%item(k), model%stale)
-         end do
-         call end_step(model%model_clock)
-         if (model%quasi_static) call wait_for_rest(model%rigid, model%model_clock, quickest(model))
-         if (model%stale) then
-            model%rigid%pairs = -1
-            return
-         end if
-      end do
-   end subroutine advance_rigid
-
    !> Greatest speed of a body, at its farthest vertex at the most [m/s]
-   pure function quickest(model) result(speed)
+   pure function greatest_speed(model) result(speed)
       type(solid_model), intent(in) :: model
       real(wp) :: speed
       integer :: k
@@ -58,10 +33,10 @@ contains
             if (.not. b%fixed) speed = max(speed, norm2(b%v) + b%radius * norm2(matmul(b%inverse, b%swing)))
          end associate
       end do
-   end function quickest
+   end function greatest_speed
 
    !> Order of the unknowns after a search
-   subroutine make_ready(model, status)
+   subroutine number_unknowns(model, status)
       type(solid_model), intent(inout) :: model
       integer(c_int), intent(out) :: status
       integer, allocatable :: bodies(:, :)
@@ -70,8 +45,8 @@ contains
 
       status = status_out_of_memory
       associate (rigid => model%rigid, item => model%set%item)
-         if (.not. allocated(rigid%next)) then
-            allocate (rigid%next(size(item)), stat=failed)
+         if (.not. allocated(model%ahead)) then
+            allocate (model%ahead(size(item)), stat=failed)
             if (failed /= 0) return
          end if
          allocate (bodies(2, model%pairs), fixed(size(item)), stat=failed)
@@ -92,10 +67,10 @@ contains
             end associate
          end do
       end associate
-   end subroutine make_ready
+   end subroutine number_unknowns
 
    !> Room for all points of all pairs
-   subroutine make_room(model, points, status)
+   subroutine make_problem_room(model, points, status)
       type(solid_model), intent(inout) :: model
       integer, intent(in) :: points
       integer(c_int), intent(out) :: status
@@ -105,22 +80,22 @@ contains
          room = -1
          ! After a search the problem is new, and has none, not even for no points
          if (allocated(rigid%problem%friction)) room = size(rigid%problem%friction)
-         if (room >= points .and. allocated(rigid%number)) return
+         if (room >= points .and. allocated(model%number)) return
          room = points + points / 2
-         if (allocated(rigid%number)) deallocate (rigid%number)
-         allocate (rigid%number(room), stat=failed)
+         if (allocated(model%number)) deallocate (model%number)
+         allocate (model%number(room), stat=failed)
          status = merge(status_ok, status_out_of_memory, failed == 0)
          if (status == status_ok) call problem_room(rigid%problem, room, model%pairs, status)
       end associate
-   end subroutine make_room
+   end subroutine make_problem_room
 
    !> Forces of all contacts in the next step, added to the bodies
-   subroutine one_step(model, status)
+   subroutine solve_contacts(model, status)
       type(solid_model), intent(inout) :: model
       integer(c_int), intent(out) :: status         !! out_of_memory, not_finite where a velocity is no number, or ok
       integer :: k, first
 
-      call prepare(model)
+      call prepare_step(model)
       associate (rigid => model%rigid, problem => model%rigid%problem)
          do k = 1, size(model%set%item)
             associate (b => model%set%item(k))
@@ -128,11 +103,11 @@ contains
                   b%v = 0.0_wp
                   b%swing = 0.0_wp
                end if
-               call predict(model, b)
-               rigid%next(k) = b
+               call predict_velocity(model, b)
+               model%ahead(k) = b
                if (b%fixed) cycle
-               rigid%next(k)%x = b%x + model%step * b%v
-               call turn_freely(rigid%next(k), model%step)
+               model%ahead(k)%x = b%x + model%step * b%v
+               call turn_freely(model%ahead(k), model%step)
                call set_rate(problem, rigid%node(k), b, model%kick * model%pull)
             end associate
          end do
@@ -141,13 +116,13 @@ contains
             if (model%pair(k)%lacks_memory) status = status_out_of_memory
             if (model%pair(k)%lacks_memory) return
          end do
-         call make_room(model, sum(model%pair(:model%pairs)%points), status)
+         call make_problem_room(model, sum(model%pair(:model%pairs)%points), status)
          if (status /= status_ok) return
          problem%points = 0
          first = 1
          do k = 1, model%pairs
             associate (last => first + model%pair(k)%points - 1)
-               call gather(model, model%pair(k), rigid%number(first:last))
+               call gather_points(model, model%pair(k), model%number(first:last))
             end associate
             first = first + model%pair(k)%points
          end do
@@ -155,12 +130,12 @@ contains
          first = 1
          do k = 1, model%pairs
             associate (last => first + model%pair(k)%points - 1)
-               call act_rigidly(model, model%pair(k), rigid%number(first:last))
+               call apply_impulses(model, model%pair(k), model%number(first:last))
             end associate
             first = first + model%pair(k)%points
          end do
       end associate
-   end subroutine one_step
+   end subroutine solve_contacts
 
    !> Velocities of a body before the step, and as they would be after it without contacts
    pure subroutine set_rate(problem, rank, b, change)
@@ -190,7 +165,7 @@ contains
    end function frame_of
 
    !> The points of a pair that may press in this step, into the problem
-   pure subroutine gather(model, pair, number)
+   pure subroutine gather_points(model, pair, number)
       type(solid_model), intent(inout) :: model
       type(contact_pair), intent(in) :: pair
       integer, intent(out) :: number(:)             !! (points) of each in the problem, 0 where it cannot press
@@ -202,8 +177,9 @@ contains
       associate (a => model%set%item(who(1)), b => model%set%item(who(2)), rigid => model%rigid, &
                  problem => model%rigid%problem)
          do i = 1, pair%points
-            call measure(pair%point(i)%what, rigid%next(who(1)), rigid%next(who(2)), normal, next_gap, next_at)
-            call measure(pair%point(i)%what, a, b, normal, gap, at)
+            call measure_feature(pair%point(i)%what, model%ahead(who(1)), model%ahead(who(2)), normal, next_gap, &
+               next_at)
+            call measure_feature(pair%point(i)%what, a, b, normal, gap, at)
             if (min(gap, next_gap) > model%margin) cycle
             n = problem%points + 1
             problem%points = n
@@ -231,10 +207,10 @@ contains
             problem%impulse(:, n) = model%kick * matmul(pair%point(i)%force, frame)
          end do
       end associate
-   end subroutine gather
+   end subroutine gather_points
 
    !> The impulses of a pair as forces on its bodies, and what they took
-   pure subroutine act_rigidly(model, pair, number)
+   pure subroutine apply_impulses(model, pair, number)
       type(solid_model), intent(inout) :: model
       type(contact_pair), intent(inout) :: pair
       integer, intent(in) :: number(:)              !! (points) of each in the problem, 0 where it cannot press
@@ -246,7 +222,7 @@ contains
          do i = 1, pair%points
             associate (point => pair%point(i))
                if (number(i) == 0 .and. .not. point%closed) cycle
-               call measure(point%what, a, b, normal, gap, at)
+               call measure_feature(point%what, a, b, normal, gap, at)
                force = 0.0_wp
                if (number(i) > 0) then
                   frame = frame_of(normal)
@@ -276,7 +252,7 @@ contains
             end associate
          end do
       end associate
-   end subroutine act_rigidly
+   end subroutine apply_impulses
 
    !> Velocity of a body at a place, over the position step before [m/s]
    pure function velocity(b, at) result(v)

@@ -15,7 +15,7 @@ module dem3_patch
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: feature, patch, most_points, meet, measure
+   public :: feature, patch, most_points, find_features, measure_feature
 
    integer, parameter :: most_points = 2 * most_corners   !! of what two convex faces share
    integer, parameter, public :: on_first = 1     !! a point of the second body over a plane of the first
@@ -57,7 +57,7 @@ module dem3_patch
 contains
 
    !> Features of parts one and two that are nearer than a margin
-   pure subroutine meet(set, one, two, margin, before, found, status)
+   pure subroutine find_features(set, one, two, margin, before, found, status)
       type(body_set), intent(in) :: set
       integer, intent(in) :: one
       integer, intent(in) :: two
@@ -93,23 +93,25 @@ contains
          ! Corners beyond the outline of a face may lie deep below its plane: of faces that look against each other the
          ! polygon tells what touches.
          if (max(least_one, least_two) < -deep * size .and. facing_cosine > -facing_enough) then
-            call edges(set, one, two, here_one, here_two, max(least_one, least_two), margin, size, found)
+            call find_edges(set, one, two, here_one, here_two, max(least_one, least_two), margin, size, found)
             if (found%points >= 0) found%reference = 0
             if (found%points >= 0) return
             found%points = 0
          end if
          if (found%reference == 1) then
-            call share(set, one, face_one, here_one, a, two, facing, facing_cosine, here_two, b, on_first, size, &
+            call clip_shared_face(set, one, face_one, here_one, a, two, facing, facing_cosine, here_two, b, &
+               on_first, size, &
                margin, found)
          else
-            call share(set, two, face_two, here_two, b, one, facing, facing_cosine, here_one, a, on_second, size, &
+            call clip_shared_face(set, two, face_two, here_two, b, one, facing, facing_cosine, here_one, a, &
+               on_second, size, &
                margin, found)
          end if
       end associate
-   end subroutine meet
+   end subroutine find_features
 
    !> Normal from the first body to the second, gap and place of a feature in space
-   pure subroutine measure(one, a, b, normal, gap, at)
+   pure subroutine measure_feature(one, a, b, normal, gap, at)
       type(feature), intent(in) :: one
       type(body), intent(in) :: a                !! the first
       type(body), intent(in) :: b                !! the second
@@ -145,7 +147,7 @@ contains
          gap = dot_product(normal, to - from)
          at = 0.5_wp * (from + s * u + to + t * v)
       end select
-   end subroutine measure
+   end subroutine measure_feature
 
    !> Vertices of a part in space
    pure subroutine in_space(set, part, b, here)
@@ -212,7 +214,8 @@ contains
    end subroutine look_back
 
    !> The polygon that the reference face shares with the face of the other part that looks against it
-   pure subroutine share(set, part, face, corners, a, other, facing, facing_cosine, corners_other, b, kind, size, &
+   pure subroutine clip_shared_face(set, part, face, corners, a, other, facing, facing_cosine, corners_other, b, &
+      kind, size, &
                          margin, found)
       type(body_set), intent(in) :: set
       integer, intent(in) :: part                !! of the reference face
@@ -287,7 +290,7 @@ contains
       end do
       if (m < 3) return
       n = m
-      call areas(normal, sliver * min(set%area(face), set%area(facing)), kept(:, :n), area(:n))
+      call share_area(normal, sliver * min(set%area(face), set%area(facing)), kept(:, :n), area(:n))
       against = matmul(b%turn, set%normal(:, facing))
       do i = 1, n
          gap = dot_product(normal, kept(:, i)) - level
@@ -324,7 +327,7 @@ contains
             end if
          end associate
       end do
-   end subroutine share
+   end subroutine clip_shared_face
 
    !> Vertices of the edge of a face that begins at a place of the list of loops
    pure function edge_of(set, face, place) result(ends)
@@ -390,7 +393,7 @@ contains
    end function closest
 
    !> What each corner carries of a polygon, together no less than a least area
-   pure subroutine areas(normal, least, corner, area)
+   pure subroutine share_area(normal, least, corner, area)
       real(wp), intent(in) :: normal(3)
       real(wp), intent(in) :: least              !! [m^2]
       real(wp), intent(in) :: corner(:, :)       !! (3, n) [m]
@@ -408,7 +411,7 @@ contains
       end do
       total = sum(area)
       if (total < least) area = area + (least - total) / n
-   end subroutine areas
+   end subroutine share_area
 
    !> Centroid of the area of a polygon. The mean of its corners would jump where a corner parts in two that lie
    !> together, and with it what all of them carry.
@@ -447,7 +450,7 @@ contains
 
    !> Where faces seem to overlap deep: no feature where edges hold the bodies apart by more than the margin, the two
    !> edges that overlap least, -1 where the faces are right
-   pure subroutine edges(set, one, two, here_one, here_two, depth, margin, size, found)
+   pure subroutine find_edges(set, one, two, here_one, here_two, depth, margin, size, found)
       type(body_set), intent(in) :: set
       integer, intent(in) :: one
       integer, intent(in) :: two
@@ -519,6 +522,6 @@ contains
             end do
          end do
       end associate
-   end subroutine edges
+   end subroutine find_edges
 
 end module dem3_patch

@@ -1,19 +1,20 @@
-!> What a run of blocks in space is made of: the hooks of dem_run.
+!> What a run of blocks in space is made of: the hooks of dem_simulation.
 module dem3_run
    use common_kinds, only : wp
    use common_lists, only : stop_end => dem_stop_end, stop_collapse => dem_stop_collapse, stop_left => dem_stop_left
    use common_status, only : status_ok, status_invalid_argument, status_not_finite, status_out_of_memory
-   use dem_clock, only : model_clock
+   use dem_clock, only : end_step
    use dem_energy, only : energy_terms
-   use dem_joint, only : brace, free_strength => free_mortar
-   use dem_rigid, only : rigid_solver, suitable_step
-   use dem_run, only : any_step, model_sizes, simulation, slides_not
+   use dem_jointed, only : jointed_model
+   use dem_simulation, only : model_sizes, simulation, slides_not
    use dem_tape, only : tape, loading
    use dem3_bodies, only : body, spin_of, turn_freely
    use dem3_law, only : contact_point
-   use dem3_moreau, only : advance_rigid, quickest
-   use dem3_model, only : advance, colour, critical_step, model_energy => energy_now, search, set_distances, &
-      set_mortar, solid_model
+   use dem3_moreau, only : greatest_speed, number_model_unknowns => number_unknowns, &
+      solve_model_contacts => solve_contacts
+   use dem3_model, only : advance_model, colour_pairs, critical_step, model_energy => energy_now, move_body, &
+      search_pairs, &
+      set_distances, set_mortar, solid_model
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
@@ -23,43 +24,36 @@ module dem3_run
       type(solid_model) :: model
       real(wp) :: domain = 0.0_wp               !! displacement by which a body has left the scene [m]; 0: none
    contains
-      procedure :: clock => clock_of
-      procedure :: solver => solver_of
-      procedure :: search => find_pairs
-      procedure :: stable_step
-      procedure :: advance => take_steps
-      procedure :: energy => energy_now
-      procedure :: agitation
-      procedure :: speed => greatest_speed
-      procedure :: unbalanced
-      procedure :: least_balanced
-      procedure :: fastest
-      procedure :: limits
+      procedure :: get_model
+      procedure :: find_pairs
+      procedure :: find_critical_step
+      procedure :: advance_springs
+      procedure :: number_unknowns
+      procedure :: solve_contacts
+      procedure :: move_bodies
+      procedure :: measure_energy
+      procedure :: measure_agitation
+      procedure :: measure_speed
+      procedure :: measure_unbalance
+      procedure :: find_least_balanced
+      procedure :: find_fastest
+      procedure :: check_limits
       procedure :: mark_rest
-      procedure :: stop_all
-      procedure :: brace_joints
-      procedure :: free_mortar
-      procedure :: free_joints
+      procedure :: stop_bodies
       procedure :: forget_settling
-      procedure :: put_down
-      procedure :: sizes
-      procedure :: make_room
-      procedure :: walk
+      procedure :: record_state
+      procedure :: list_sizes
+      procedure :: allocate_state
+      procedure :: walk_state
    end type solid_simulation
 
 contains
 
-   function clock_of(run) result(clock)
+   function get_model(run) result(model)
       class(solid_simulation), intent(inout), target :: run
-      type(model_clock), pointer :: clock
-      clock => run%model%model_clock
-   end function clock_of
-
-   function solver_of(run) result(solver)
-      class(solid_simulation), intent(inout), target :: run
-      class(rigid_solver), pointer :: solver
-      solver => run%model%rigid
-   end function solver_of
+      class(jointed_model), pointer :: model
+      model => run%model
+   end function get_model
 
    subroutine find_pairs(run, first_time, status)
       class(solid_simulation), intent(inout) :: run
@@ -72,7 +66,7 @@ contains
             if (.not. all(abs(model%set%item(k)%x) <= huge(1.0_wp))) return
          end do
          if (first_time) call set_distances(model)
-         call search(model, status)
+         call search_pairs(model, status)
          if (status /= status_ok) return
          run%record%pairs = model%pairs
          if (first_time) call set_mortar(model)
@@ -80,58 +74,66 @@ contains
       end associate
    end subroutine find_pairs
 
-   subroutine stable_step(run, stable, suitable, status)
+   subroutine find_critical_step(run, step, status)
       class(solid_simulation), intent(inout) :: run
-      real(wp), intent(out) :: stable           !! [s]
-      real(wp), intent(out) :: suitable         !! [s]
+      real(wp), intent(out) :: step             !! [s]
       integer(c_int), intent(out) :: status
-      if (run%model%rigid%setting%used) then
-         status = status_ok
-         stable = any_step
-         suitable = suitable_step(run%model%rigid, run%model%quasi_static)
-      else
-         call critical_step(run%model, stable, status)
-         suitable = run%options%fraction * stable
-      end if
-   end subroutine stable_step
+      call critical_step(run%model, step, status)
+   end subroutine find_critical_step
 
-   subroutine take_steps(run, count, status)
+   subroutine advance_springs(run, count, status)
       class(solid_simulation), intent(inout) :: run
       integer, intent(in) :: count
       integer(c_int), intent(out) :: status
-      status = status_ok
-      if (run%model%rigid%setting%used) then
-         call advance_rigid(run%model, count, status)
-      else
-         call advance(run%model, count, run%options%threads)
-      end if
-      if (any(run%model%pair(:run%model%pairs)%lacks_memory)) status = status_out_of_memory
-   end subroutine take_steps
+      call advance_model(run%model, count, run%options%threads)
+      status = merge(status_out_of_memory, status_ok, any(run%model%pair(:run%model%pairs)%lacks_memory))
+   end subroutine advance_springs
 
-   function energy_now(run) result(now)
+   subroutine number_unknowns(run, status)
+      class(solid_simulation), intent(inout) :: run
+      integer(c_int), intent(out) :: status
+      call number_model_unknowns(run%model, status)
+   end subroutine number_unknowns
+
+   subroutine solve_contacts(run, status)
+      class(solid_simulation), intent(inout) :: run
+      integer(c_int), intent(out) :: status
+      call solve_model_contacts(run%model, status)
+   end subroutine solve_contacts
+
+   subroutine move_bodies(run)
+      class(solid_simulation), intent(inout) :: run
+      integer :: k
+      do k = 1, size(run%model%set%item)
+         call move_body(run%model, run%model%set%item(k), run%model%stale)
+      end do
+      call end_step(run%model%model_clock)
+   end subroutine move_bodies
+
+   function measure_energy(run) result(now)
       class(solid_simulation), intent(in) :: run
       type(energy_terms) :: now
       now = model_energy(run%model)
-   end function energy_now
+   end function measure_energy
 
    !> Kinetic energy at the last forces [J]
-   function agitation(run) result(energy)
+   function measure_agitation(run) result(energy)
       class(solid_simulation), intent(in) :: run
       real(wp) :: energy
       type(energy_terms) :: now
       now = model_energy(run%model)
       energy = now%kinetic
-   end function agitation
+   end function measure_agitation
 
    !> Greatest speed of a body [m/s]
-   function greatest_speed(run) result(speed)
+   function measure_speed(run) result(speed)
       class(solid_simulation), intent(in) :: run
       real(wp) :: speed
-      speed = quickest(run%model)
-   end function greatest_speed
+      speed = greatest_speed(run%model)
+   end function measure_speed
 
    !> Greatest unbalanced force over weight, and moment over weight times radius
-   function unbalanced(run) result(ratio)
+   function measure_unbalance(run) result(ratio)
       class(solid_simulation), intent(in) :: run
       real(wp) :: ratio
       real(wp) :: g
@@ -147,9 +149,9 @@ contains
             end associate
          end do
       end associate
-   end function unbalanced
+   end function measure_unbalance
 
-   function least_balanced(run) result(number)
+   function find_least_balanced(run) result(number)
       class(solid_simulation), intent(in) :: run
       integer :: number
       real(wp) :: greatest, rate
@@ -164,9 +166,9 @@ contains
             greatest = max(greatest, rate)
          end associate
       end do
-   end function least_balanced
+   end function find_least_balanced
 
-   function fastest(run) result(number)
+   function find_fastest(run) result(number)
       class(solid_simulation), intent(in) :: run
       integer :: number
       real(wp) :: greatest, speed
@@ -181,10 +183,10 @@ contains
             greatest = max(greatest, speed)
          end associate
       end do
-   end function fastest
+   end function find_fastest
 
    !> Has a body moved farther than what counts as collapse, or, once it is shaken, left the scene?
-   subroutine limits(run, collapse)
+   subroutine check_limits(run, collapse)
       class(solid_simulation), intent(inout) :: run
       real(wp), intent(in) :: collapse
       integer :: k
@@ -207,7 +209,7 @@ contains
             return
          end do
       end associate
-   end subroutine limits
+   end subroutine check_limits
 
    subroutine mark_rest(run)
       class(solid_simulation), intent(inout) :: run
@@ -220,31 +222,14 @@ contains
       end do
    end subroutine mark_rest
 
-   subroutine stop_all(run)
+   subroutine stop_bodies(run)
       class(solid_simulation), intent(inout) :: run
       integer :: k
       do k = 1, size(run%model%set%item)
          run%model%set%item(k)%v = 0.0_wp
          run%model%set%item(k)%swing = 0.0_wp
       end do
-   end subroutine stop_all
-
-   subroutine brace_joints(run, braced, status)
-      class(solid_simulation), intent(inout) :: run
-      logical, intent(out) :: braced
-      integer(c_int), intent(out) :: status
-      call brace(run%model%law, run%options%settle_damping, run%model%own_law, braced, status)
-   end subroutine brace_joints
-
-   subroutine free_mortar(run)
-      class(solid_simulation), intent(inout) :: run
-      call free_strength(run%model%law, run%model%own_law)
-   end subroutine free_mortar
-
-   subroutine free_joints(run)
-      class(solid_simulation), intent(inout) :: run
-      call move_alloc(run%model%own_law, run%model%law)
-   end subroutine free_joints
+   end subroutine stop_bodies
 
    subroutine forget_settling(run)
       class(solid_simulation), intent(inout) :: run
@@ -277,7 +262,7 @@ contains
       end associate
    end subroutine forget_settling
 
-   subroutine put_down(run)
+   subroutine record_state(run)
       class(solid_simulation), intent(inout) :: run
       integer :: k
       real(wp) :: half
@@ -295,18 +280,18 @@ contains
             record%rate(4:6, k, n) = spin_of(b, b%swing - half * b%moment)
          end do
       end associate
-   end subroutine put_down
+   end subroutine record_state
 
-   function sizes(run) result(told)
+   function list_sizes(run) result(told)
       class(solid_simulation), intent(in) :: run
       integer(c_int64_t) :: told(model_sizes)
       type(body) :: one
       type(contact_point) :: point
       told = int([storage_size(one), storage_size(point), size(run%model%set%item), size(run%model%set%parts), &
          run%model%pairs, size(run%model%dowels), 0, 0], c_int64_t)
-   end function sizes
+   end function list_sizes
 
-   subroutine make_room(run, sizes, most, status)
+   subroutine allocate_state(run, sizes, most, status)
       class(solid_simulation), intent(inout) :: run
       integer(c_int64_t), intent(in) :: sizes(model_sizes)
       integer(c_int64_t), intent(in) :: most
@@ -317,9 +302,9 @@ contains
       allocate (run%model%pair(sizes(5)), stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
       if (failed == 0) run%model%pairs = int(sizes(5))
-   end subroutine make_room
+   end subroutine allocate_state
 
-   subroutine walk(run, on, status)
+   subroutine walk_state(run, on, status)
       class(solid_simulation), intent(inout), target :: run
       type(tape), intent(inout) :: on
       integer(c_int), intent(out) :: status
@@ -359,8 +344,8 @@ contains
                if (allocated(pair%point)) call on%pass(pair%point, storage_size(pair%point))
             end associate
          end do
-         if (on%mode == loading .and. .not. on%short) call colour(model, status)
+         if (on%mode == loading .and. .not. on%short) call colour_pairs(model, status)
       end associate
-   end subroutine walk
+   end subroutine walk_state
 
 end module dem3_run

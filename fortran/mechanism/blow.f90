@@ -67,7 +67,7 @@ contains
       do j = 1, size(side, 2)
          both = int(side(:, j))
          do k = 1, 2
-            call touch(problem, 2 * (j - 1) + k, both, centroid, ends(:, k, j), normal(:, j), tangent(:, j))
+            call add_contact(problem, 2 * (j - 1) + k, both, centroid, ends(:, k, j), normal(:, j), tangent(:, j))
          end do
       end do
       speed = sqrt(sum(problem%mass * problem%free**2) / sum(mass))
@@ -82,7 +82,7 @@ contains
    end subroutine inelastic_blow
 
    !> One end of a joint as contact point: on the first block it pushes as the joint points, on the second against it
-   pure subroutine touch(problem, point, side, centroid, place, normal, tangent)
+   pure subroutine add_contact(problem, point, side, centroid, place, normal, tangent)
       type(impulse_problem), intent(inout) :: problem
       integer, intent(in) :: point             !! its number
       integer, intent(in) :: side(2)           !! blocks, 0 for the ground
@@ -107,6 +107,6 @@ contains
          problem%row(:, k, along_tangent, point) = merge(1.0_wp, -1.0_wp, k == 1) &
             * [tangent, arm(1) * tangent(2) - arm(2) * tangent(1)]
       end do
-   end subroutine touch
+   end subroutine add_contact
 
 end module mechanism_blow

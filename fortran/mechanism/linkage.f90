@@ -31,9 +31,9 @@ module mechanism_linkage
       real(wp), allocatable :: point(:, :)     !! (2, hinges) at rest [m]
       integer, allocatable :: row(:, :)        !! (2, 3 parts - 1) hinge and axis of the independent equations
    contains
-      procedure :: solve
-      procedure :: advance
-      procedure :: carry
+      procedure :: close_hinges
+      procedure :: advance_state
+      procedure :: carry_state
    end type linkage
 
    !> Where the parts are at q, and how they move
@@ -117,7 +117,7 @@ contains
          - min(minval(centroid(2, :)), minval(point(2, :))))
       rest%place(1:2, :) = centroid
       rest%place(3, :) = 0.0_wp
-      call built%solve(built%by, rest, status)
+      call built%close_hinges(built%by, rest, status)
       if (status == status_ok .and. .not. rest%closed) status = status_bad_geometry
       if (status == status_ok) built%by%sign_at_rest = rest%determinant
    end subroutine linkage_new
@@ -142,24 +142,24 @@ contains
    end subroutine copy_state
 
    !> Carry a state on to another coordinate; status_bad_geometry where the hinges do not close there
-   subroutine carry(chain, state, q, status)
+   subroutine carry_state(chain, state, q, status)
       class(linkage), intent(in) :: chain
       type(linkage_state), intent(inout) :: state
       real(wp), intent(in) :: q              !! [rad]
       integer(c_int), intent(out) :: status
       type(linkage_state) :: there
 
-      call chain%advance(state, q, there, status)
+      call chain%advance_state(state, q, there, status)
       if (status /= status_ok) return
       if (.not. there%closed) then
          status = status_bad_geometry
          return
       end if
       call copy_state(there, state, status)
-   end subroutine carry
+   end subroutine carry_state
 
    !> Close the hinges at state%q, starting from the places given, and find the derivatives
-   subroutine solve(chain, by, state, status)
+   subroutine close_hinges(chain, by, state, status)
       class(linkage), intent(in) :: chain
       type(coordinate), intent(in) :: by     !! what q is
       type(linkage_state), intent(inout) :: state
@@ -177,7 +177,7 @@ contains
       change = huge(change)
       misfit_before = huge(misfit)
       do iteration = 1, most_iterations
-         call equations(chain, by, state, matrix, right)
+         call form_equations(chain, by, state, matrix, right)
          misfit = maxval(abs(right))
          if (.not. misfit <= huge(misfit)) return
          call dgetrf(n, n, matrix, n, pivot, info)
@@ -188,7 +188,7 @@ contains
          call dgetrs('N', n, 1, matrix, n, pivot, right, n, info)
          change = maxval(abs(right))
          if (.not. change <= 1.0_wp) return
-         call move(chain, right, state)
+         call move_places(chain, right, state)
       end do
       if (iteration > most_iterations) return
       if (parted(chain, state) > closed_apart) return
@@ -202,17 +202,17 @@ contains
          state%first(1:2, k) = right(3 * k - 2:3 * k - 1) * chain%size
          state%first(3, k) = right(3 * k)
       end do
-      call bending(chain, state, right)
+      call form_centripetal_side(chain, state, right)
       call dgetrs('N', n, 1, matrix, n, pivot, right, n, info)
       do k = 1, chain%parts
          state%second(1:2, k) = right(3 * k - 2:3 * k - 1) * chain%size
          state%second(3, k) = right(3 * k)
       end do
       state%closed = .true.
-   end subroutine solve
+   end subroutine close_hinges
 
    !> Carry the mechanism from a state to another q; steps that do not close are halved a few times
-   subroutine advance(chain, from, q, to, status)
+   subroutine advance_state(chain, from, q, to, status)
       class(linkage), intent(in) :: chain
       type(linkage_state), intent(in) :: from   !! closed
       real(wp), intent(in) :: q                 !! [rad]
@@ -231,7 +231,7 @@ contains
       do
          to%q = merge(q, here%q + step, halvings == 0 .or. abs(q - here%q) <= abs(step))
          to%place(:, :) = here%place + (to%q - here%q) * (here%first + 0.5_wp * (to%q - here%q) * here%second)
-         call chain%solve(chain%by, to, status)
+         call chain%close_hinges(chain%by, to, status)
          if (status /= status_ok) return
          if (to%closed) then
             if (abs(to%q - q) <= 0.0_wp) return
@@ -243,7 +243,7 @@ contains
             step = 0.5_wp * step
          end if
       end do
-   end subroutine advance
+   end subroutine advance_state
 
    !> States at ascending q, reached in short steps from rest so that the branch is kept
    subroutine linkage_path(mechanism, rest, q, place, first, second, reached, status)
@@ -265,7 +265,7 @@ contains
       do k = 1, size(q)
          pieces = max(1, ceiling(abs(q(k) - here%q) / longest))
          do piece = pieces - 1, 0, -1
-            call mechanism%advance(here, q(k) - piece * (q(k) - here%q) / (piece + 1), next, status)
+            call mechanism%advance_state(here, q(k) - piece * (q(k) - here%q) / (piece + 1), next, status)
             if (status /= status_ok .or. .not. next%closed) return
             call copy_state(next, here, status)
             if (status /= status_ok) return
@@ -278,7 +278,7 @@ contains
    end subroutine linkage_path
 
    !> The equations, divided by the size of the mechanism, and what is still missing to fulfil them
-   pure subroutine equations(chain, by, state, matrix, missing)
+   pure subroutine form_equations(chain, by, state, matrix, missing)
       type(linkage), intent(in) :: chain
       type(coordinate), intent(in) :: by
       type(linkage_state), intent(in) :: state
@@ -307,10 +307,10 @@ contains
       r = 3 * chain%parts
       matrix(r, 3 * by%driver) = 1.0_wp
       missing(r) = by%sense * state%q - state%place(3, by%driver)
-   end subroutine equations
+   end subroutine form_equations
 
    !> Right-hand side of the second derivatives: the centripetal part of the hinge points
-   pure subroutine bending(chain, state, right)
+   pure subroutine form_centripetal_side(chain, state, right)
       type(linkage), intent(in) :: chain
       type(linkage_state), intent(in) :: state
       real(wp), intent(out) :: right(:)
@@ -329,10 +329,10 @@ contains
                * (place(axis) - state%place(axis, part)) / chain%size
          end do
       end do
-   end subroutine bending
+   end subroutine form_centripetal_side
 
    !> Add a step of the unknowns to the places
-   pure subroutine move(chain, step, state)
+   pure subroutine move_places(chain, step, state)
       type(linkage), intent(in) :: chain
       real(wp), intent(in) :: step(:)
       type(linkage_state), intent(inout) :: state
@@ -341,7 +341,7 @@ contains
          state%place(1:2, k) = state%place(1:2, k) + chain%size * step(3 * k - 2:3 * k - 1)
          state%place(3, k) = state%place(3, k) + step(3 * k)
       end do
-   end subroutine move
+   end subroutine move_places
 
    !> Greatest misfit of all hinges, also of the equations that depend on others, as a share of the size
    pure function parted(chain, state) result(apart)

@@ -6,7 +6,7 @@ module mechanism_path
    use common_kinds, only : wp
    use common_status, only : status_ok, status_invalid_argument, status_out_of_memory
    use mechanism_linkage, only : copy_state, linkage, linkage_state, part_place
-   use mechanism_table, only : degree, fit, fit_angles, lowest, panels
+   use mechanism_table, only : degree, fit_polynomials, fit_angles, lowest, panels
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -22,7 +22,7 @@ module mechanism_path
       real(wp) :: per_panel = 0.0_wp !! panels per unit of w
       real(wp), allocatable :: coefficient(:, :, :)  !! (count, 0:degree, panels) by t in [-1, 1]
    contains
-      procedure :: at
+      procedure :: evaluate_path
    end type path_table
 
 contains
@@ -67,14 +67,14 @@ contains
       do i = 1, panels
          do k = 1, degree + 1
             w = width * (real(i, wp) - 0.5_wp + 0.5_wp * cos(angle(k)))
-            call mechanism%carry(here, scale * w * (2.0_wp - w), status)
+            call mechanism%carry_state(here, scale * w * (2.0_wp - w), status)
             if (status /= status_ok) return
             do j = 1, table%count
                both = ends(:, j)
                value(j, k) = measured(mechanism, here, sort(j), both, point(:, :, j))
             end do
          end do
-         call fit(angle, value, table%coefficient(:, :, i))
+         call fit_polynomials(angle, value, table%coefficient(:, :, i))
       end do
       status = status_ok
    end subroutine path_new
@@ -107,7 +107,7 @@ contains
    end function measured
 
    !> One path and its derivative by q
-   pure subroutine at(table, path, q, u, du)
+   pure subroutine evaluate_path(table, path, q, u, du)
       class(path_table), intent(in) :: table
       integer, intent(in) :: path    !! its number
       real(wp), intent(in) :: q      !! [rad]
@@ -128,7 +128,7 @@ contains
       end do
       dw = 0.5_wp / (table%scale * (1.0_wp - w))
       du = 2.0_wp * table%per_panel * dw * du
-   end subroutine at
+   end subroutine evaluate_path
 
    !> The flat list of a table
    pure subroutine path_pack(table, list)

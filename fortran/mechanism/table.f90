@@ -17,7 +17,7 @@ module mechanism_table
    implicit none
    private
    public :: side_table, table_new, table_numbers, table_pack, table_unpack, table_facts
-   public :: degree, lowest, panels, fit, fit_angles
+   public :: degree, lowest, panels, fit_polynomials, fit_angles
 
    integer, parameter :: panels = 32, degree = 11
    integer, parameter :: mass = 1, gravity_moment = 2, drive = 3
@@ -87,7 +87,7 @@ contains
       ! Trial steps of the integrator look past it.
       table%last = table%limit + 0.5_wp * min(table%limit, facts%lock - table%limit)
       table%scale = merge(facts%lock, 4.0_wp * table%limit, facts%lock < min(reach, 4.0_wp * table%limit))
-      panel_width = share(table, table%last) / real(panels, wp)
+      panel_width = table_coordinate(table, table%last) / real(panels, wp)
       table%per_panel = 1.0_wp / panel_width
       allocate (table%coefficient(3, 0:degree, panels), table%start(panels), stat=stat)
       if (stat /= 0) then
@@ -102,23 +102,23 @@ contains
       do i = 1, panels
          do k = 1, degree + 1
             w = panel_width * (real(i, wp) - 0.5_wp + 0.5_wp * cos(angle(k)))
-            call mechanism%carry(here, table%scale * w * (2.0_wp - w), status)
+            call mechanism%carry_state(here, table%scale * w * (2.0_wp - w), status)
             if (status /= status_ok) return
             call linkage_coefficients(mechanism, here, value(mass, k), exact(k), value(gravity_moment, k), &
                value(drive, k), v)
             per_w = 2.0_wp * table%scale * (1.0_wp - w)
             value(:, k) = value(:, k) * [per_w**2, per_w, real(side, wp) * per_w]
          end do
-         call fit(angle, value, table%coefficient(:, :, i))
+         call fit_polynomials(angle, value, table%coefficient(:, :, i))
          do k = 1, degree + 1
             w = panel_width * (real(i, wp) - 0.5_wp + 0.5_wp * cos(angle(k)))
             call compare_mass(table, i, w, exact(k), facts%energy)
          end do
          w = panel_width * real(i, wp)
-         call mechanism%carry(here, table%scale * w * (2.0_wp - w), status)
+         call mechanism%carry_state(here, table%scale * w * (2.0_wp - w), status)
          if (status /= status_ok) return
          if (i < panels) table%start(i + 1) = table%start(i) + climb(table, i, 1.0_wp)
-         call compare(mechanism, here, side, table, i, barrier, facts)
+         call enter_differences(mechanism, here, side, table, i, barrier, facts)
       end do
       if (.not. max(facts%misfit, facts%energy) <= agreement) status = status_energy_lost
    end subroutine table_new
@@ -142,10 +142,10 @@ contains
       if (status /= status_ok) return
       do i = 1, scan
          q = reach * real(i, wp) / real(scan, wp)
-         call mechanism%advance(here, q, next, status)
+         call mechanism%advance_state(here, q, next, status)
          if (status /= status_ok) return
          if (.not. next%closed) then
-            call bisect(mechanism, here, q, .true., next, status)
+            call bisect_last_state(mechanism, here, q, .true., next, status)
             if (status /= status_ok) return
             call lock_of(mechanism, next, lock, status)
             if (status /= status_ok) return
@@ -155,7 +155,7 @@ contains
             if (resists(mechanism, next)) then
                call copy_state(next, balanced, status)
             else
-               call bisect(mechanism, here, next%q, .false., balanced, status)
+               call bisect_last_state(mechanism, here, next%q, .false., balanced, status)
             end if
             if (status /= status_ok) return
             critical = min(balanced%q, lock)
@@ -168,7 +168,7 @@ contains
    end subroutine find_limits
 
    !> The last state before the hinges part, or before gravity turns over, between a closed state and a later q
-   subroutine bisect(mechanism, from, high, for_lock, last, status)
+   subroutine bisect_last_state(mechanism, from, high, for_lock, last, status)
       type(linkage), intent(in) :: mechanism
       type(linkage_state), intent(in) :: from
       real(wp), intent(in) :: high
@@ -184,7 +184,7 @@ contains
       if (status /= status_ok) return
       top = high
       do i = 1, 60
-         call mechanism%advance(last, 0.5_wp * (last%q + top), next, status)
+         call mechanism%advance_state(last, 0.5_wp * (last%q + top), next, status)
          if (status /= status_ok) return
          before = next%closed
          if (before .and. .not. for_lock) before = resists(mechanism, next)
@@ -195,7 +195,7 @@ contains
             top = 0.5_wp * (last%q + top)
          end if
       end do
-   end subroutine bisect
+   end subroutine bisect_last_state
 
    !> The q at which the mechanism locks, from a state just before.
    !>
@@ -218,7 +218,7 @@ contains
       fastest%sense = sign(1.0_wp, before%first(3, fastest%driver))
       here%q = fastest%sense * here%place(3, fastest%driver)
       do k = 1, 20
-         call mechanism%solve(fastest, here, status)
+         call mechanism%close_hinges(fastest, here, status)
          if (status /= status_ok .or. .not. here%closed) return
          step = -here%first(3, mechanism%by%driver) / here%second(3, mechanism%by%driver)
          if (.not. abs(step) <= 0.1_wp) return
@@ -256,7 +256,7 @@ contains
    end function fit_angles
 
    !> Polynomials in t = cos(angle) through values at Chebyshev points
-   pure subroutine fit(angle, value, polynomial)
+   pure subroutine fit_polynomials(angle, value, polynomial)
       real(wp), intent(in) :: angle(:)            !! (degree + 1)
       real(wp), intent(in) :: value(:, :)         !! (quantities, degree + 1)
       real(wp), intent(out) :: polynomial(:, 0:)  !! (quantities, 0:degree) coefficients of the powers of t
@@ -287,10 +287,10 @@ contains
             end do
          end do
       end do
-   end subroutine fit
+   end subroutine fit_polynomials
 
    !> Enter the differences of M, V', H and V at the end of panel i, where the kinematics are known
-   pure subroutine compare(mechanism, here, side, table, i, barrier, facts)
+   pure subroutine enter_differences(mechanism, here, side, table, i, barrier, facts)
       type(linkage), intent(in) :: mechanism
       type(linkage_state), intent(in) :: here
       integer, intent(in) :: side
@@ -302,11 +302,11 @@ contains
 
       call linkage_coefficients(mechanism, here, m, half_dm, dv, dh, v)
       dh = real(side, wp) * dh
-      call on_panel(table, i, share(table, here%q), m_fit, half_dm_fit, dv_fit, dh_fit)
+      call on_panel(table, i, table_coordinate(table, here%q), m_fit, half_dm_fit, dv_fit, dh_fit)
       facts%misfit = max(facts%misfit, abs(m_fit - m) / m, abs(dv_fit - dv) / max(abs(dv), facts%dv), &
          abs(dh_fit - dh) / max(abs(dh), facts%dh))
       facts%energy = max(facts%energy, abs(table%start(i) + climb(table, i, 1.0_wp) - v) / barrier)
-   end subroutine compare
+   end subroutine enter_differences
 
    !> Enter the difference of M'/2 at a point of panel i
    pure subroutine compare_mass(table, i, w, half_dm, worst)
@@ -321,13 +321,13 @@ contains
    end subroutine compare_mass
 
    !> w = 1 - sqrt(1 - q/L), without cancellation
-   pure function share(table, q) result(w)
+   pure function table_coordinate(table, q) result(w)
       type(side_table), intent(in) :: table
       real(wp), intent(in) :: q
       real(wp) :: w
       w = q / table%scale
       w = w / (1.0_wp + sqrt(1.0_wp - w))
-   end function share
+   end function table_coordinate
 
    !> Coefficients of the equation of motion, see rocking_rocker
    pure subroutine coefficients(sides, q, m, half_dm, dv, dh, closed)
@@ -346,7 +346,7 @@ contains
       dv = 0.0_wp
       dh = 0.0_wp
       if (.not. closed) return
-      w = share(sides, q)
+      w = table_coordinate(sides, q)
       call on_panel(sides, panel_of(sides, w), w, m, half_dm, dv, dh)
    end subroutine coefficients
 
@@ -391,7 +391,7 @@ contains
       real(wp) :: v
       real(wp) :: w
       integer :: i
-      w = share(sides, q)
+      w = table_coordinate(sides, q)
       i = panel_of(sides, w)
       v = sides%start(i) + climb(sides, i, 2.0_wp * (w * sides%per_panel - real(i - 1, wp)) - 1.0_wp)
    end function potential
@@ -443,7 +443,7 @@ contains
       allocate (table%coefficient(3, 0:degree, panels), table%start(panels), stat=stat)
       status = merge(status_ok, status_out_of_memory, stat == 0)
       if (stat /= 0) return
-      table%per_panel = real(panels, wp) / share(table, table%last)
+      table%per_panel = real(panels, wp) / table_coordinate(table, table%last)
       table%coefficient(:, :, :) = reshape(list(5:4 + n), [3, degree + 1, panels])
       table%start(:) = list(5 + n:table_numbers)
    end subroutine table_unpack

@@ -7,12 +7,12 @@ module motion_generator
    use motion_c_bindings, only : extrados_line_table, extrados_line_motion
    implicit none
    private
-   public :: generate
+   public :: generate_motions
 
 contains
 
    !> Motions first .. first + count - 1 of the set `seed`
-   subroutine generate(line, amplitude, step, envelope, seed, first, threads, motions, status)
+   subroutine generate_motions(line, amplitude, step, envelope, seed, first, threads, motions, status)
       real(wp), intent(in), contiguous :: line(:)             !! frequencies [Hz]
       real(wp), intent(in), contiguous :: amplitude(:)        !! of the sines, same unit as the motions
       real(wp), intent(in) :: step                            !! [s]
@@ -47,6 +47,6 @@ contains
       end do
       !$omp end parallel do
       if (size(fate) > 0) status = maxval(fate)
-   end subroutine generate
+   end subroutine generate_motions
 
 end module motion_generator

@@ -8,7 +8,7 @@ module motion_measures
    use common_status, only : status_ok, status_cancelled, status_invalid_argument, status_out_of_memory
    implicit none
    private
-   public :: measures, integrate, measure_count
+   public :: measure_motions, integrate_motion, measure_count
 
    !> pga [m/s^2], its time [s], pgv [m/s], pgd [m], Arias intensity [m/s], CAV [m/s],
    !> times of 5, 75 and 95 % of the Arias intensity [s]
@@ -17,7 +17,7 @@ module motion_measures
 contains
 
    !> Velocity and displacement at the samples, from rest
-   pure subroutine integrate(a, step, v, d)
+   pure subroutine integrate_motion(a, step, v, d)
       real(wp), intent(in), contiguous :: a(:)     !! [m/s^2]
       real(wp), intent(in) :: step                 !! [s]
       real(wp), intent(out), contiguous :: v(:)    !! [m/s]
@@ -29,10 +29,10 @@ contains
          v(i) = v(i - 1) + 0.5_wp * step * (a(i - 1) + a(i))
          d(i) = d(i - 1) + step * v(i - 1) + step**2 * (2.0_wp * a(i - 1) + a(i)) / 6.0_wp
       end do
-   end subroutine integrate
+   end subroutine integrate_motion
 
    !> Measures of many motions
-   subroutine measures(motions, step, threads, value, status)
+   subroutine measure_motions(motions, step, threads, value, status)
       real(wp), intent(in), contiguous :: motions(:, :)   !! (points, count) [m/s^2]
       real(wp), intent(in) :: step                        !! [s]
       integer(c_int), intent(in) :: threads
@@ -52,16 +52,16 @@ contains
       !$omp shared(motions, step, value, fate)
       do k = 1, size(motions, 2)
          if (cancel_requested()) cycle
-         call measure(motions(:, k), step, value(:, k))
+         call measure_motion(motions(:, k), step, value(:, k))
          fate(k) = status_ok
       end do
       !$omp end parallel do
       status = status_ok
       if (size(fate) > 0) status = maxval(fate)
-   end subroutine measures
+   end subroutine measure_motions
 
    !> Measures of one motion
-   pure subroutine measure(a, step, value)
+   pure subroutine measure_motion(a, step, value)
       real(wp), intent(in), contiguous :: a(:)
       real(wp), intent(in) :: step
       real(wp), intent(out) :: value(measure_count)
@@ -112,6 +112,6 @@ contains
          value(6 + next) = real(size(a) - 1, wp) * step
          next = next + 1
       end do
-   end subroutine measure
+   end subroutine measure_motion
 
 end module motion_measures

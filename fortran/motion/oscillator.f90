@@ -140,7 +140,7 @@ contains
          do b = 1, blocks
             if (cancel_requested()) cycle
             first = [lanes * (b - 1) + 1, lanes * b]
-            call advance(motions(:, k), step, parts(b), order(first(1):first(2)), period, damping, &
+            call advance_block(motions(:, k), step, parts(b), order(first(1):first(2)), period, damping, &
                peak(:, :, :, k), fate(b, k))
          end do
       end do
@@ -150,7 +150,7 @@ contains
    end subroutine response_spectra
 
    !> One block of oscillators through one motion
-   subroutine advance(a, step, parts, member, period, damping, peak, status)
+   subroutine advance_block(a, step, parts, member, period, damping, peak, status)
       real(wp), intent(in), contiguous :: a(:)             !! [m/s^2]
       real(wp), intent(in) :: step                         !! [s]
       integer, intent(in) :: parts                         !! substeps
@@ -203,7 +203,7 @@ contains
          end associate
          peak(:, jp, jd) = most(l, :)
       end do
-   end subroutine advance
+   end subroutine advance_block
 
    !> Displacement and velocity of one oscillator relative to the ground at every sample, from rest
    pure subroutine oscillator_history(a, step, period, damping, points_per_cycle, u, v, status)

@@ -139,10 +139,10 @@ contains
       integer :: k, n
 
       n = problem%points
-      call weigh(problem)
+      call weigh_points(problem)
       problem%was(:n) = -1
       problem%raised(:n) = 0.0_wp
-      call look(problem, problem%rate)
+      call measure_rates(problem, problem%rate)
       do k = 1, n
          problem%raised(k) = raising(problem%friction(k), problem%rate_at(along_tangent:, k))
       end do
@@ -154,7 +154,7 @@ contains
             effort%residual = residual
             problem%best(:, :n) = problem%impulse(:, :n)
          end if
-         call follow(problem, effort%rounds)
+         call follow_states(problem, effort%rounds)
          effort%converged = effort%residual <= tolerance
          if (effort%converged) exit
          if (problem%directions == in_space) cycle
@@ -171,7 +171,7 @@ contains
    end subroutine solve_impulses
 
    !> Weights: many times the mass that a point feels
-   pure subroutine weigh(problem)
+   pure subroutine weigh_points(problem)
       type(impulse_problem), intent(inout) :: problem
       integer :: k, d, side, at
       real(wp) :: lightness(in_space)
@@ -187,7 +187,7 @@ contains
          end do
          problem%weight(k) = problem%heavy / maxval(lightness)
       end do
-   end subroutine weigh
+   end subroutine weigh_points
 
    !> Whether a point is of other bodies than the one before it: points of one pair lie together
    pure function is_next_pair(problem, k) result(is_next)
@@ -200,7 +200,7 @@ contains
 
    !> Velocities at the points, trial impulses and the points of the cones nearest to them, and what the points do, at
    !> some velocities of the bodies
-   pure subroutine look(problem, rate)
+   pure subroutine measure_rates(problem, rate)
       type(impulse_problem), intent(inout) :: problem
       real(wp), intent(in) :: rate(:)
       real(wp) :: both(12)
@@ -221,14 +221,14 @@ contains
             ! Constant sizes let the compiler unroll the loops.
             if (problem%directions == in_plane) then
                call try_impulse(6, 2, row, both, shift, weight, raised, impulse, w, trial)
-               call project(2, friction, trial, problem%state(k), near)
+               call project_on_cone(2, friction, trial, problem%state(k), near)
             else
                call try_impulse(12, 3, row, both, shift, weight, raised, impulse, w, trial)
-               call project(3, friction, trial, problem%state(k), near)
+               call project_on_cone(3, friction, trial, problem%state(k), near)
             end if
          end associate
       end do
-   end subroutine look
+   end subroutine measure_rates
 
    !> Velocities at a point, and its trial impulse
    pure subroutine try_impulse(n, m, row, both, shift, weight, raised, impulse, w, trial)
@@ -266,7 +266,7 @@ contains
 
    !> The point of the friction cone nearest to a trial impulse: itself where it lies in the cone, the apex where it
    !> lies in the polar cone, else a point of the edge beside it
-   pure subroutine project(m, friction, trial, state, near)
+   pure subroutine project_on_cone(m, friction, trial, state, near)
       integer, value :: m                           !! directions
       real(wp), intent(in) :: friction
       real(wp), intent(in) :: trial(m)
@@ -287,7 +287,7 @@ contains
          near(along_normal) = push
          near(along_tangent:) = (friction * push / across) * trial(along_tangent:)
       end if
-   end subroutine project
+   end subroutine project_on_cone
 
    !> c: by how much the parting velocity is raised where a point slides
    pure function raising(friction, sliding) result(c)
@@ -311,11 +311,11 @@ contains
 
       exact = .false.
       n = problem%points
-      call look(problem, problem%rate)
+      call measure_rates(problem, problem%rate)
       call find_missing(problem, problem%rate)
       do round = 1, most_newton
          if (.not. unchanged(problem)) then
-            call assemble(problem)
+            call assemble_matrix(problem)
             call skyline_factor(problem%matrix, status)
             problem%was(:n) = problem%state(:n)
             effort%factors = effort%factors + 1
@@ -352,7 +352,7 @@ contains
       associate (enough => -flat * slope_low)
          do tries = 0, most_tries
             problem%try(:) = problem%rate + t * problem%load
-            call look(problem, problem%try)
+            call measure_rates(problem, problem%try)
             call find_missing(problem, problem%try)
             slope = -dot_product(problem%missing, problem%load)
             whole = tries == 0
@@ -391,7 +391,7 @@ contains
    end function unchanged
 
    !> M + sum of r row row' over the directions in which points resist
-   pure subroutine assemble(problem)
+   pure subroutine assemble_matrix(problem)
       type(impulse_problem), intent(inout) :: problem
       integer :: i, k, first, pair
       problem%matrix%a(:) = 0.0_wp
@@ -409,7 +409,7 @@ contains
          call skyline_add(problem%matrix, problem%node(:, k), problem%block(:, pair))
          first = k + 1
       end do
-   end subroutine assemble
+   end subroutine assemble_matrix
 
    !> What the points of a pair resist with, unless it is what they did when last it was asked for
    pure subroutine assemble_pair(problem, first, last, pair)
@@ -429,17 +429,17 @@ contains
       do k = first, last
          if (problem%state(k) == parts) cycle
          if (problem%directions == in_plane) then
-            call resist(6, 2, problem%state(k), problem%friction(k), problem%weight(k), problem%trial(:, k), &
+            call add_resistance(6, 2, problem%state(k), problem%friction(k), problem%weight(k), problem%trial(:, k), &
                problem%row(:, :, :, k), problem%block(:, pair))
          else
-            call resist(12, 3, problem%state(k), problem%friction(k), problem%weight(k), problem%trial(:, k), &
+            call add_resistance(12, 3, problem%state(k), problem%friction(k), problem%weight(k), problem%trial(:, k), &
                problem%row(:, :, :, k), problem%block(:, pair))
          end if
       end do
    end subroutine assemble_pair
 
    !> Add to a block what a point resists with, in velocities of both bodies
-   pure subroutine resist(n, m, state, friction, weight, trial, row, block)
+   pure subroutine add_resistance(n, m, state, friction, weight, trial, row, block)
       integer, value :: n                           !! freedoms of both
       integer, value :: m                           !! directions
       integer, intent(in) :: state
@@ -472,7 +472,7 @@ contains
          way(n + 1:2 * n) = (trial(2) * row(:, m) - trial(m) * row(:, 2)) / across
          call add_outer(n, 2, [weight, turning * weight], way, block)
       end if
-   end subroutine resist
+   end subroutine add_resistance
 
    !> Add the sum of weight * row * row' to a block
    pure subroutine add_outer(n, m, weight, row, block)
@@ -582,7 +582,7 @@ contains
    !> c for the next round: as was found, and where that comes no nearer in space, as it would come to rest if
    !> every change were that share of the one before it that the last two show (Anderson 1965, of one round). In the
    !> plane, where what slides cannot turn, more steps converge so, but the others miss by more
-   pure subroutine follow(problem, rounds)
+   pure subroutine follow_states(problem, rounds)
       type(impulse_problem), intent(inout) :: problem
       integer, intent(in) :: rounds                 !! so far
       real(wp), parameter :: farthest = 100.0_wp    !! changes at once
@@ -607,6 +607,6 @@ contains
       end do
       problem%asked(:problem%points, before) = problem%asked(:problem%points, now)
       problem%change(:problem%points, before) = problem%change(:problem%points, now)
-   end subroutine follow
+   end subroutine follow_states
 
 end module nonsmooth_impulses

@@ -36,7 +36,7 @@ module rocking_block_rocker
       procedure :: coefficients
       procedure :: potential
       procedure :: series_step
-      procedure :: glide
+      procedure :: glide_samples
    end type block_rocker
 
    !> Terms of rotation and of rate times step length, in powers of the fraction of the step
@@ -128,7 +128,7 @@ contains
       real(wp), intent(in) :: tolerance(3)
       type(dense_step), intent(inout) :: step
       type(power_series) :: series
-      call expand(model, side_index(side), real(side, wp), h, q, v, value, slope, tolerance, series)
+      call expand_series(model, side_index(side), real(side, wp), h, q, v, value, slope, tolerance, series)
       call take_over(series, h, series_end(series%x, series%last + 1), &
          series_end(series%u, series%last) * (1.0_wp / h), step)
    end subroutine series_step
@@ -158,7 +158,7 @@ contains
    end subroutine take_over
 
    !> Sample after sample by the same series, with no more than the comparisons that tell where to stop
-   pure subroutine glide(model, side, start, spacing, scale, samples, first, last, tolerance, q, v, passed, &
+   pure subroutine glide_samples(model, side, start, spacing, scale, samples, first, last, tolerance, q, v, passed, &
                          step, stopped, demand)
       class(block_rocker), intent(in) :: model
       integer, intent(in) :: side
@@ -194,7 +194,7 @@ contains
             value(c) = scale * samples(c, k)
             slope(c) = scale * (samples(c, k + 1) - samples(c, k)) / spacing
          end do
-         call expand(model, i, sigma, h, q, v, value, slope, tolerance, series)
+         call expand_series(model, i, sigma, h, q, v, value, slope, tolerance, series)
          q_end = series_end(series%x, series%last + 1)
          v_end = series_end(series%u, series%last) * (1.0_wp / h)
          ! A turning point, an impact, a fall, or a step that is too long: for whoever looks closer
@@ -208,14 +208,15 @@ contains
          q = q_end
          v = v_end
          passed = passed + 1
-         if (watched) call model%watch%look(i, q, v, value(1) + slope(1) * spacing, value(2) + slope(2) * spacing, &
+         if (watched) call model%watch%check_demand(i, q, v, value(1) + slope(1) * spacing, &
+            value(2) + slope(2) * spacing, &
             begin + h, demand)
       end do
-   end subroutine glide
+   end subroutine glide_samples
 
    !> Taylor series in the fraction of the step. Sine and cosine of alpha - q follow their own recurrences
    !> (S' = -C q', C' = S q'), so one evaluation of each serves the whole step.
-   pure subroutine expand(model, i, sigma, h, q, v, value, slope, tolerance, series)
+   pure subroutine expand_series(model, i, sigma, h, q, v, value, slope, tolerance, series)
       type(block_rocker), intent(in) :: model
       integer, intent(in) :: i             !! of the side
       real(wp), intent(in) :: sigma        !! +1 or -1: the side
@@ -292,7 +293,7 @@ contains
          series%error = max((abs(x(last + 1)) + abs(x(last))) / tolerance_q, &
             (abs(u(last)) + abs(u(last - 1))) / tolerance_u)
       end associate
-   end subroutine expand
+   end subroutine expand_series
 
    !> Value at the end of the step: the sum of the terms 0 to last, small ones first
    pure function series_end(terms, last) result(total)

@@ -11,8 +11,8 @@ module rocking_ensemble
       status_not_ready, status_out_of_memory
    use rocking_arch_rocker, only : arch_rocker, arch_rocker_new
    use rocking_block_rocker, only : block_rocker, block_rocker_new
-   use rocking_restrained, only : restrain
-   use rocking_response, only : respond, response, response_options
+   use rocking_restrained, only : restrain_body
+   use rocking_response, only : find_response, response, response_options
    use rocking_rocker, only : rocker
    use rocking_soft_base_response, only : soft_base_body, soft_base_body_new, soft_base_respond
    use rocking_table_rocker, only : table_rocker, table_rocker_new
@@ -85,7 +85,7 @@ contains
          last = 2 + nint(parameters(2))
          if (last < 2 .or. last > size(parameters)) return
          call make_body(nint(parameters(1), c_int), parameters(3:last), body, status)
-         if (status == status_ok) call restrain(body, parameters(last + 1:), status)
+         if (status == status_ok) call restrain_body(body, parameters(last + 1:), status)
       case (body_watched)
          ! kind and number of the parameters of what is watched, these, and what its joints carry
          status = status_invalid_argument
@@ -104,7 +104,7 @@ contains
    end subroutine make_body
 
    !> A structure of any kind as it was given
-   subroutine build(given, body)
+   subroutine build_body(given, body)
       type(body_data), intent(in) :: given
       type(any_body), intent(out) :: body
       integer :: stat
@@ -117,7 +117,7 @@ contains
       else
          call make_body(given%kind, given%parameters, body%model, body%status)
       end if
-   end subroutine build
+   end subroutine build_body
 
    !> Structure `number` of a list, of one coordinate
    subroutine list_body(list, number, body, status)
@@ -161,7 +161,7 @@ contains
       !$omp shared(bodies, set, run_body, run_motion, run_scale, options, answers, run_status, built)
       !$omp do schedule(dynamic)
       do k = 1, size(built)
-         call build(bodies%item(k), built(k))
+         call build_body(bodies%item(k), built(k))
       end do
       !$omp end do
       !$omp do schedule(dynamic)
@@ -175,7 +175,7 @@ contains
             if (allocated(body%soft)) then
                call soft_base_respond(body%soft, ground, options(k), answers(k), run_status(k))
             else
-               call respond(body%model, ground, options(k), answers(k), run_status(k))
+               call find_response(body%model, ground, options(k), answers(k), run_status(k))
             end if
          end associate
       end do

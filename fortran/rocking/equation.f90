@@ -8,7 +8,7 @@ module rocking_equation
    use rocking_rocker, only : rocker, series_short, side_index
    implicit none
    private
-   public :: equation_of_motion, attempt, series_factor, polish_impact
+   public :: equation_of_motion, attempt_step, series_factor, polish_impact
 
    !> Equation of motion on one side during one segment of the ground motion
    type, extends(oscillator) :: equation_of_motion
@@ -49,7 +49,7 @@ contains
    end function acceleration
 
    !> One step: by the structure's own series where it has one and the ground runs in straight lines
-   subroutine attempt(problem, t, h, q, v, a, atol_q, atol_v, rtol, step)
+   subroutine attempt_step(problem, t, h, q, v, a, atol_q, atol_v, rtol, step)
       type(equation_of_motion), intent(in) :: problem
       real(wp), intent(in) :: t, h, q, v, a   !! start time, length, and state at the start
       real(wp), intent(in) :: atol_q, atol_v  !! absolute tolerances
@@ -64,7 +64,7 @@ contains
       else
          call dopri5_attempt(problem, t, h, q, v, a, atol_q, atol_v, rtol, step)
       end if
-   end subroutine attempt
+   end subroutine attempt_step
 
    !> Factor for the next step length after a series: its error grows with the power of the last term
    pure function series_factor(step) result(factor)

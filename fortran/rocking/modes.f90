@@ -32,10 +32,10 @@ module rocking_modes
    contains
       procedure :: ground
       procedure(inside), deferred :: inside
-      procedure(leave), deferred :: leave
+      procedure(leave_mode), deferred :: leave_mode
       procedure(fallen), deferred :: fallen
-      procedure(row), deferred :: row
-      procedure :: renew
+      procedure(store_row), deferred :: store_row
+      procedure :: renew_mode
       procedure :: trim_state
       procedure :: resting
       procedure :: upright
@@ -61,7 +61,7 @@ module rocking_modes
       real(wp) :: loss = 0.0_wp          !! energy lost at impacts [J]
       real(wp) :: stop_time = 0.0_wp     !! [s]
    contains
-      procedure :: note
+      procedure :: note_event
       procedure :: peak
    end type mode_history
 
@@ -77,14 +77,14 @@ module rocking_modes
       end function inside
 
       !> The mode has ended: into the next one, by an impact or not
-      subroutine leave(body, t, y, history)
+      subroutine leave_mode(body, t, y, history)
          import :: mode_rocker, mode_history, wp
          implicit none (type, external)
          class(mode_rocker), intent(inout) :: body
          real(wp), intent(in) :: t
          real(wp), intent(inout) :: y(:)
          type(mode_history), intent(inout) :: history
-      end subroutine leave
+      end subroutine leave_mode
 
       !> The place about which it has turned past recall, 0 where it stands
       pure function fallen(body, y) result(place)
@@ -96,7 +96,7 @@ module rocking_modes
       end function fallen
 
       !> What is stored of a state
-      subroutine row(body, t, y, loss, values)
+      subroutine store_row(body, t, y, loss, values)
          import :: mode_rocker, wp
          implicit none (type, external)
          class(mode_rocker), intent(in) :: body
@@ -104,7 +104,7 @@ module rocking_modes
          real(wp), intent(in) :: y(:)
          real(wp), intent(in) :: loss      !! energy lost at impacts so far [J]
          real(wp), intent(out) :: values(:)
-      end subroutine row
+      end subroutine store_row
    end interface
 
 contains
@@ -118,14 +118,14 @@ contains
    end function ground
 
    !> The ground may have jumped: the mode that follows; the same, unless a structure says otherwise
-   subroutine renew(body, t, y, history)
+   subroutine renew_mode(body, t, y, history)
       class(mode_rocker), intent(inout) :: body
       real(wp), intent(in) :: t
       real(wp), intent(in) :: y(:)
       type(mode_history), intent(inout) :: history
       associate (unused => body%moved, unused_t => t, unused_y => y, unused_history => history%events)
       end associate
-   end subroutine renew
+   end subroutine renew_mode
 
    !> Numbers that the mode fixes, without the error of the step; none, unless a structure says otherwise
    subroutine trim_state(body, y)
@@ -173,7 +173,7 @@ contains
    end function peak
 
    !> Keep an event, as far as there is room
-   subroutine note(history, kind, t, place)
+   subroutine note_event(history, kind, t, place)
       class(mode_history), intent(inout) :: history
       integer(c_int), intent(in) :: kind
       real(wp), intent(in) :: t
@@ -182,7 +182,7 @@ contains
       if (history%events > size(history%event_kind)) return
       history%event_kind(history%events) = kind
       history%event(:, history%events) = [t, real(place, wp)]
-   end subroutine note
+   end subroutine note_event
 
    !> From a state until the end time or collapse
    subroutine respond_in_modes(body, y, end_time, atol, tolerance, history, status)
@@ -214,7 +214,7 @@ contains
       end do
       h_next = 1.0e-3_wp
       attempts = 0
-      call body%renew(t, y, history)
+      call body%renew_mode(t, y, history)
       do while (t < end_time)
          attempts = attempts + 1
          if (attempts > max_attempts) status = status_too_many_steps
@@ -243,9 +243,9 @@ contains
             call next_segment()
             cycle
          end if
-         if (.not. rate_known) call body%slope(t, y, rate(:n))
+         if (.not. rate_known) call body%find_rates(t, y, rate(:n))
          rate_known = .true.
-         call step(h)
+         call take_step(h)
          if (.not. error <= 1.0_wp) then
             h_next = h * merge(max(0.1_wp, 0.9_wp * error**(-0.2_wp)), 0.1_wp, error <= huge(error))
             if (h_next <= 8.0_wp * spacing(max(t, 1.0e-3_wp))) status = status_step_too_small
@@ -260,12 +260,12 @@ contains
          y = fresh(:n)
          rate = rate_there
          if (body%fallen(y) /= 0) then
-            call history%note(event_collapse, t, body%fallen(y))
+            call history%note_event(event_collapse, t, body%fallen(y))
             history%outcome = outcome_collapse
             exit
          end if
          if (ended) then
-            call body%leave(t, y, history)
+            call body%leave_mode(t, y, history)
             rate_known = .false.
             h_next = min(h_next, 1.0e-3_wp)
          end if
@@ -286,11 +286,11 @@ contains
    contains
 
       !> One step from the present state
-      subroutine step(length)
+      subroutine take_step(length)
          real(wp), intent(in) :: length
          call dopri5_system_step(body, t, length, y, rate(:n), atol, tolerance, fresh(:n), rate_there(:n), error)
          call body%trim_state(fresh(:n))
-      end subroutine step
+      end subroutine take_step
 
       !> Where the mode ends within the step, the step ends there
       subroutine end_of_mode()
@@ -298,14 +298,14 @@ contains
          integer :: i
          low = 0.0_wp
          do i = 1, size(looks)
-            call within(looks(i), between(:n))
+            call interpolate_state(looks(i), between(:n))
             call body%trim_state(between(:n))
             if (body%inside(t + looks(i) * h, between(:n)) <= 0.0_wp) exit
             low = looks(i) * h
          end do
          if (i <= size(looks)) then
             ! the step itself decides, not its polynomial
-            call step(looks(i) * h)
+            call take_step(looks(i) * h)
             ended = body%inside(t + looks(i) * h, fresh(:n)) <= 0.0_wp
             h = looks(i) * h
             low = 0.0_wp
@@ -317,7 +317,7 @@ contains
          do i = 1, 60
             middle = 0.5_wp * (low + high)
             if (high - low <= 4.0_wp * spacing(t + h)) exit
-            call step(middle)
+            call take_step(middle)
             if (body%inside(t + middle, fresh(:n)) <= 0.0_wp) then
                high = middle
             else
@@ -325,16 +325,16 @@ contains
             end if
          end do
          h = high
-         call step(h)
+         call take_step(h)
       end subroutine end_of_mode
 
       !> The state at a fraction of the step, by the cubic through its ends
-      pure subroutine within(s, z)
+      pure subroutine interpolate_state(s, z)
          real(wp), intent(in) :: s
          real(wp), intent(out) :: z(:)
          z = y + s**2 * (3.0_wp - 2.0_wp * s) * (fresh(:n) - y) &
             + h * s * (1.0_wp - s) * ((1.0_wp - s) * rate(:n) - s * rate_there(:n))
-      end subroutine within
+      end subroutine interpolate_state
 
       !> To the next segment of the ground motion where its break is reached
       subroutine next_segment()
@@ -345,7 +345,7 @@ contains
             rate_known = .false.
          end if
          body%segment = body%segment + 1
-         call body%renew(t, y, history)
+         call body%renew_mode(t, y, history)
       end subroutine next_segment
 
       !> The end of the step, and where a number turns within it
@@ -379,7 +379,7 @@ contains
          if (.not. (s >= 0.0_wp .and. s <= 1.0_wp)) s = -root / (2.0_wp * a)
          value = fresh(k)
          if (.not. (s >= 0.0_wp .and. s <= 1.0_wp)) return
-         call within(s, z(:n))
+         call interpolate_state(s, z(:n))
          value = z(k)
       end function turning
 
@@ -388,7 +388,7 @@ contains
          do while (history%points < size(history%time))
             if (history%time(history%points + 1) > t) exit
             history%points = history%points + 1
-            call body%row(t, y, history%loss, history%state(:, history%points))
+            call body%store_row(t, y, history%loss, history%state(:, history%points))
          end do
       end subroutine write_out
 

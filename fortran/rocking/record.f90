@@ -32,16 +32,16 @@ module rocking_record
       type(restraint_state), allocatable :: memory(:)  !! of the restraints, in the end
       real(wp) :: spent = 0.0_wp                   !! energy taken up by dampers and yielding [J]
    contains
-      procedure :: note
-      procedure :: lose
-      procedure :: cover
-      procedure :: rest
+      procedure :: note_event
+      procedure :: book_loss
+      procedure :: cover_step
+      procedure :: fill_rest
    end type response_history
 
 contains
 
    !> An event; past the room it is only counted
-   subroutine note(history, kind, when, value)
+   subroutine note_event(history, kind, when, value)
       class(response_history), intent(inout) :: history
       integer(c_int), intent(in) :: kind
       real(wp), intent(in) :: when   !! [s]
@@ -50,19 +50,19 @@ contains
       if (history%events > size(history%event_kind)) return
       history%event_kind(history%events) = kind
       history%event(:, history%events) = [when, value]
-   end subroutine note
+   end subroutine note_event
 
    !> Book kinetic energy at rest as lost, or as gained back
-   subroutine lose(history, problem, rate, sign)
+   subroutine book_loss(history, problem, rate, sign)
       class(response_history), intent(inout) :: history
       type(equation_of_motion), intent(in) :: problem
       real(wp), intent(in) :: rate  !! [rad/s]
       real(wp), intent(in) :: sign  !! +1 lost, -1 gained
       history%loss = history%loss + sign * energy_of(problem, 0.0_wp, rate)
-   end subroutine lose
+   end subroutine book_loss
 
    !> Fill the output times that the first part of a step covers, and book the work done over it
-   subroutine cover(history, problem, step, covered)
+   subroutine cover_step(history, problem, step, covered)
       class(response_history), intent(inout) :: history
       type(equation_of_motion), intent(in) :: problem
       type(dense_step), intent(in) :: step
@@ -90,10 +90,10 @@ contains
       end do
       history%work = history%work + work_of(problem, step, covered)
       if (allocated(problem%memory)) history%spent = history%spent + spent_in(problem, step, covered)
-   end subroutine cover
+   end subroutine cover_step
 
    !> Fill the output times of a rest
-   subroutine rest(history, problem, until)
+   subroutine fill_rest(history, problem, until)
       class(response_history), intent(inout) :: history
       type(equation_of_motion), intent(in) :: problem
       real(wp), intent(in) :: until  !! [s]
@@ -107,7 +107,7 @@ contains
          history%state(8, history%points) = history%work - history%loss - history%spent
          if (allocated(problem%memory)) call restraint_rows(history, problem, 0.0_wp, 0.0_wp)
       end do
-   end subroutine rest
+   end subroutine fill_rest
 
    !> What restraints store, and their forces, in the rows for them
    subroutine restraint_rows(history, problem, rotation, rate)
@@ -119,7 +119,7 @@ contains
       if (size(history%state, 1) < 9 + problem%body%held%count) return
       i = side_index(problem%side)
       history%state(9, history%points) = problem%body%held%energy(i, rotation, problem%memory)
-      call problem%body%held%forces(i, rotation, rate, problem%memory, &
+      call problem%body%held%find_forces(i, rotation, rate, problem%memory, &
          history%state(10:9 + problem%body%held%count, history%points))
    end subroutine restraint_rows
 

@@ -16,7 +16,7 @@ module rocking_response
    use common_status, only : status_ok, status_cancelled, status_out_of_memory, status_too_many_steps, &
       status_step_too_small
    use rocking_crossings, only : impact_fraction, turning_fraction, crossing_fraction
-   use rocking_equation, only : equation_of_motion, attempt, series_factor, polish_impact
+   use rocking_equation, only : equation_of_motion, attempt_step, series_factor, polish_impact
    use rocking_record, only : cannot_reach, energy_of, response_history
    use rocking_rocker, only : rocker, side_index
    use rocking_uplift, only : find_uplift, last_calm
@@ -24,7 +24,7 @@ module rocking_response
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: respond, response, response_options, response_history
+   public :: find_response, response, response_options, response_history
 
    type :: response_options
       real(wp) :: end_time = 0.0_wp      !! [s]
@@ -77,19 +77,19 @@ module rocking_response
       logical :: at_hand = .false.         !! the next step was tried already
       logical :: over = .false.            !! nothing more is to be done
    contains
-      procedure :: start
+      procedure :: start_state
       procedure :: segment_end
-      procedure :: wait
+      procedure :: wait_for_uplift
       procedure :: skip_calm
       procedure :: may_glide
-      procedure :: glide
+      procedure :: glide_samples
       procedure :: take_step
-      procedure :: touch
-      procedure :: impact
-      procedure :: fall
+      procedure :: pass_touch
+      procedure :: take_impact
+      procedure :: take_fall
       procedure :: move_on
       procedure :: past_its_peak
-      procedure :: conclude
+      procedure :: conclude_run
       procedure :: count_attempt
       procedure :: quiet
       procedure :: advance_segment
@@ -97,7 +97,7 @@ module rocking_response
       procedure :: note_turning
       procedure :: leave_mode
       procedure :: hold_at_rest
-      procedure :: look
+      procedure :: check_demand
       procedure :: look_within
       procedure :: look_at_rest
    end type run_state
@@ -109,7 +109,7 @@ module rocking_response
 contains
 
    !> Rock a structure under a ground motion until collapse, the end time, or an error
-   subroutine respond(body, ground, options, answer, status, history)
+   subroutine find_response(body, ground, options, answer, status, history)
       class(rocker), intent(in), target :: body
       type(signal), intent(in) :: ground
       type(response_options), intent(in) :: options
@@ -121,15 +121,15 @@ contains
       logical :: accepted, left
 
       if (present(history)) run%history => history
-      call run%start(body, ground, options)
+      call run%start_state(body, ground, options)
       do while (run%t < options%end_time .and. .not. run%over)
          t_next = run%segment_end()
          if (run%resting) then
-            call run%wait(t_next)
+            call run%wait_for_uplift(t_next)
             if (run%resting .or. run%over) cycle
          end if
          if (run%may_glide(t_next)) then
-            call run%glide()
+            call run%glide_samples()
             if (run%t >= options%end_time .or. run%over) cycle
             t_next = run%segment_end()
          end if
@@ -143,27 +143,27 @@ contains
          if (s > 0.0_wp) then
             if (run%from_rest .and. run%q <= 0.0_wp .and. run%v <= 0.0_wp .and. run%step%q <= 0.0_wp &
                .and. s >= 1.0_wp) then
-               call run%touch()
+               call run%pass_touch()
             else
-               call run%impact(s)
+               call run%take_impact(s)
             end if
             cycle
          end if
          s = crossing_fraction(run%step, run%q, run%v, body%limit(side_index(run%problem%side)))
          if (s > 0.0_wp) then
-            call run%fall(s)
+            call run%take_fall(s)
          else
             call run%move_on(t_next)
          end if
       end do
-      call run%conclude()
+      call run%conclude_run()
       if (present(history)) call move_alloc(run%problem%memory, history%memory)
       answer = run%answer
       status = run%status
-   end subroutine respond
+   end subroutine find_response
 
    !> The state at time zero
-   subroutine start(state, body, ground, options)
+   subroutine start_state(state, body, ground, options)
       class(run_state), intent(inout) :: state
       class(rocker), intent(in), target :: body
       type(signal), intent(in) :: ground
@@ -185,7 +185,7 @@ contains
             state%over = .true.
             return
          end if
-         call body%held%fresh(side_index(options%start_side), options%start_q, state%problem%memory)
+         call body%held%reset_states(side_index(options%start_side), options%start_q, state%problem%memory)
          if (options%start_q <= 0.0_wp) call state%hold_at_rest()
       end if
       do i = 1, 2
@@ -213,7 +213,7 @@ contains
          state%last_whole = state%last_whole - 1
       end do
       call state%note_peak(state%q)
-   end subroutine start
+   end subroutine start_state
 
    !> Is the ground motion over?
    pure function quiet(state) result(answer)
@@ -231,7 +231,7 @@ contains
    end function segment_end
 
    !> At rest until the ground lifts the structure, or for a while
-   subroutine wait(state, t_next)
+   subroutine wait_for_uplift(state, t_next)
       class(run_state), intent(inout) :: state
       real(wp), intent(in) :: t_next
       real(wp) :: window, lifts
@@ -241,7 +241,7 @@ contains
       if (state%over) return
       if (state%quiet()) then
          state%t = state%options%end_time
-         if (associated(state%history)) call state%history%rest(state%problem, state%t)
+         if (associated(state%history)) call state%history%fill_rest(state%problem, state%t)
          state%over = .true.
          return
       end if
@@ -251,12 +251,12 @@ contains
       if (allocated(state%problem%body%watch)) call state%look_at_rest(lifts)
       if (found_side == 0) then
          state%t = window
-         if (associated(state%history)) call state%history%rest(state%problem, state%t)
+         if (associated(state%history)) call state%history%fill_rest(state%problem, state%t)
          if (state%t >= t_next .and. state%t < state%options%end_time) state%problem%segment = state%problem%segment + 1
          if (.not. associated(state%history)) call state%skip_calm()
          return
       end if
-      if (associated(state%history)) call state%history%rest(state%problem, lifts)
+      if (associated(state%history)) call state%history%fill_rest(state%problem, lifts)
       state%t = lifts
       state%resting = .false.
       state%from_rest = .true.
@@ -264,10 +264,10 @@ contains
       state%q = 0.0_wp
       state%v = 0.0_wp
       state%renew = .true.
-      call state%look()
+      call state%check_demand()
       state%answer%half_cycles = state%answer%half_cycles + 1
-      if (associated(state%history)) call state%history%note(event_uplift, state%t, real(found_side, wp))
-   end subroutine wait
+      if (associated(state%history)) call state%history%note_event(event_uplift, state%t, real(found_side, wp))
+   end subroutine wait_for_uplift
 
    !> Over the segments of a sampled motion that leave the structure at rest, where nothing is recorded of them
    subroutine skip_calm(state)
@@ -299,13 +299,13 @@ contains
    end function may_glide
 
    !> Over the segments in which nothing happens: what take_step and move_on do, without looking into them
-   subroutine glide(state)
+   subroutine glide_samples(state)
       class(run_state), intent(inout) :: state
       integer :: last, passed, polls
 
       associate (problem => state%problem, ground => state%problem%ground)
          last = min(state%last_whole, problem%segment - 1 + state%options%max_steps - state%attempts)
-         call problem%body%glide(problem%side, ground%start, ground%step, ground%scale, ground%samples, &
+         call problem%body%glide_samples(problem%side, ground%start, ground%step, ground%scale, ground%samples, &
             problem%segment, last, [state%atol_q, state%atol_v, state%options%tolerance], state%q, state%v, passed, &
             state%step, state%at_hand, state%answer%joints)
          if (passed == 0) return
@@ -325,7 +325,7 @@ contains
          end if
       end if
       call state%note_peak(state%q)
-   end subroutine glide
+   end subroutine glide_samples
 
    !> Try one step of at most the way to t_next; where it is refused the next try is shorter
    subroutine take_step(state, t_next, accepted)
@@ -347,7 +347,7 @@ contains
       end if
       call state%count_attempt()
       if (state%over) return
-      if (.not. state%at_hand) call attempt(state%problem, state%t, h, state%q, state%v, state%a, state%atol_q, &
+      if (.not. state%at_hand) call attempt_step(state%problem, state%t, h, state%q, state%v, state%a, state%atol_q, &
          state%atol_v, state%options%tolerance, state%step)
       state%at_hand = .false.
       if (state%problem%series) then
@@ -370,7 +370,7 @@ contains
    end subroutine take_step
 
    !> The ground only touched the limit: nothing rose
-   subroutine touch(state)
+   subroutine pass_touch(state)
       class(run_state), intent(inout) :: state
       state%answer%half_cycles = state%answer%half_cycles - 1
       state%resting = .true.
@@ -378,13 +378,13 @@ contains
       state%t = state%t + state%step%h
       if (associated(state%history)) then
          state%history%events = state%history%events - 1
-         call state%history%rest(state%problem, state%t)
+         call state%history%fill_rest(state%problem, state%t)
       end if
       call state%advance_segment()
-   end subroutine touch
+   end subroutine pass_touch
 
    !> The hinges close within the step: the other side opens, or the structure rests
-   subroutine impact(state, fraction)
+   subroutine take_impact(state, fraction)
       class(run_state), intent(inout) :: state
       real(wp), intent(in) :: fraction  !! of the step, to first accuracy
       real(wp) :: v_before
@@ -394,16 +394,16 @@ contains
          state%options%tolerance, fraction, state%step)
       call state%note_turning()
       call state%look_within(1.0_wp)
-      if (associated(state%history)) call state%history%cover(state%problem, state%step, 1.0_wp)
+      if (associated(state%history)) call state%history%cover_step(state%problem, state%step, 1.0_wp)
       state%from_rest = .false.
       state%t = state%step%t + state%step%h
       v_before = min(state%step%v, 0.0_wp)
       state%q = 0.0_wp
       state%v = v_before
-      call state%look()
+      call state%check_demand()
       if (associated(state%history)) then
-         call state%history%note(event_impact, state%t, real(state%problem%side, wp) * v_before)
-         call state%history%lose(state%problem, -v_before, 1.0_wp)
+         call state%history%note_event(event_impact, state%t, real(state%problem%side, wp) * v_before)
+         call state%history%book_loss(state%problem, -v_before, 1.0_wp)
       end if
       state%answer%impacts = state%answer%impacts + 1
       if (state%problem%body%free(side_index(-state%problem%side))) then
@@ -415,41 +415,41 @@ contains
          state%v = state%problem%body%rebound(i) * (-v_before)
       end if
       state%q = 0.0_wp
-      if (allocated(state%problem%memory)) call state%problem%body%held%settle(i, 0.0_wp, state%problem%memory)
-      if (associated(state%history)) call state%history%lose(state%problem, state%v, -1.0_wp)
+      if (allocated(state%problem%memory)) call state%problem%body%held%settle_springs(i, 0.0_wp, state%problem%memory)
+      if (associated(state%history)) call state%history%book_loss(state%problem, state%v, -1.0_wp)
       if (state%v <= state%problem%body%rest_rate(i)) then
-         if (associated(state%history)) call state%history%lose(state%problem, state%v, 1.0_wp)
+         if (associated(state%history)) call state%history%book_loss(state%problem, state%v, 1.0_wp)
          state%v = 0.0_wp
          state%resting = .true.
          if (allocated(state%problem%memory)) call state%hold_at_rest()
-         if (associated(state%history)) call state%history%note(event_rest, state%t, 0.0_wp)
+         if (associated(state%history)) call state%history%note_event(event_rest, state%t, 0.0_wp)
          state%over = state%options%stop_when_safe .and. state%quiet()
          if (state%over) return
       else
          state%answer%half_cycles = state%answer%half_cycles + 1
-         call state%look()
+         call state%check_demand()
       end if
       state%renew = .true.
       call state%advance_segment()
-   end subroutine impact
+   end subroutine take_impact
 
    !> The rotation passes the limit within the step
-   subroutine fall(state, fraction)
+   subroutine take_fall(state, fraction)
       class(run_state), intent(inout) :: state
       real(wp), intent(in) :: fraction  !! of the step
       real(wp) :: limit
       limit = state%problem%body%limit(side_index(state%problem%side))
       call state%look_within(fraction)
-      if (associated(state%history)) call state%history%cover(state%problem, state%step, fraction)
+      if (associated(state%history)) call state%history%cover_step(state%problem, state%step, fraction)
       state%t = state%step%t + fraction * state%step%h
       state%answer%outcome = outcome_collapse
       state%answer%stop_time = state%t
       call state%note_peak(limit)
       if (associated(state%history)) then
-         call state%history%note(event_collapse, state%t, real(state%problem%side, wp) * limit)
+         call state%history%note_event(event_collapse, state%t, real(state%problem%side, wp) * limit)
       end if
       state%over = .true.
-   end subroutine fall
+   end subroutine take_fall
 
    !> An ordinary step: on to its end
    subroutine move_on(state, t_next)
@@ -458,7 +458,7 @@ contains
       logical :: was_quiet, whole
       call state%note_turning()
       call state%look_within(1.0_wp)
-      if (associated(state%history)) call state%history%cover(state%problem, state%step, 1.0_wp)
+      if (associated(state%history)) call state%history%cover_step(state%problem, state%step, 1.0_wp)
       state%from_rest = .false.
       whole = state%step%h >= t_next - state%t
       state%t = state%step%t + state%step%h
@@ -469,10 +469,10 @@ contains
       call state%note_peak(state%q)
       if (allocated(state%problem%memory)) call state%problem%body%held%note_forces(side_index(state%problem%side), &
          state%q, state%v, state%problem%memory)
-      call state%look()
+      call state%check_demand()
       was_quiet = state%quiet()
       call state%advance_segment()
-      if (state%renew) call state%look()  ! the ground jumps here
+      if (state%renew) call state%check_demand()  ! the ground jumps here
       if (.not. (state%options%stop_when_safe .and. was_quiet .and. state%v <= 0.0_wp)) return
       if (state%q >= state%problem%body%critical(side_index(state%problem%side))) return
       state%over = cannot_reach(state%problem, state%q, state%v, 1.0_wp)
@@ -504,9 +504,9 @@ contains
    end function past_its_peak
 
    !> Outcome and whether it is final
-   subroutine conclude(state)
+   subroutine conclude_run(state)
       class(run_state), intent(inout) :: state
-      if (allocated(state%problem%memory)) call state%problem%body%held%settle(side_index(state%problem%side), &
+      if (allocated(state%problem%memory)) call state%problem%body%held%settle_springs(side_index(state%problem%side), &
          merge(0.0_wp, state%q, state%resting), state%problem%memory)
       if (state%answer%outcome == outcome_collapse) return
       state%answer%stop_time = state%t
@@ -518,7 +518,7 @@ contains
             state%problem%body%critical(side_index(state%problem%side)) &
             .and. cannot_reach(state%problem, state%q, state%v, 1.0_wp)
       end if
-   end subroutine conclude
+   end subroutine conclude_run
 
    !> Every pass of the loop: the limit of attempts, and now and then the request to stop
    subroutine count_attempt(state)
@@ -552,7 +552,7 @@ contains
 
       i = side_index(state%problem%side)
       until = merge(impact_at, 1.0_wp, impact_at > 0.0_wp)
-      call state%problem%body%held%leaves(i, state%step, until, state%problem%memory, fraction, which)
+      call state%problem%body%held%find_leaving(i, state%step, until, state%problem%memory, fraction, which)
       left = which > 0
       if (.not. left) return
       h = fraction * state%step%h
@@ -561,7 +561,7 @@ contains
          do k = 1, 4
             call dopri5_attempt(state%problem, state%t, h, state%q, state%v, state%a, state%atol_q, state%atol_v, &
                state%options%tolerance, state%step)
-            call state%problem%body%held%leaves(i, state%step, 1.0_wp, state%problem%memory, again, earlier)
+            call state%problem%body%held%find_leaving(i, state%step, 1.0_wp, state%problem%memory, again, earlier)
             if (earlier == 0) exit
             which = earlier
             if (again >= 1.0_wp - 1.0e-12_wp) exit
@@ -569,7 +569,7 @@ contains
          end do
          if (state%step%q > 0.0_wp .or. state%q > 0.0_wp) call state%move_on(t_next)
       end if
-      call state%problem%body%held%change(i, state%q, which, state%problem%memory)
+      call state%problem%body%held%change_mode(i, state%q, which, state%problem%memory)
       state%renew = .true.
    end subroutine leave_mode
 
@@ -577,21 +577,22 @@ contains
    subroutine hold_at_rest(state)
       class(run_state), intent(inout) :: state
       integer :: i
-      call state%problem%body%held%settle(1, 0.0_wp, state%problem%memory)
+      call state%problem%body%held%settle_springs(1, 0.0_wp, state%problem%memory)
       do i = 1, 2
          state%problem%rest_hold(i) = state%problem%body%held%moment(i, 0.0_wp, 0.0_wp, state%problem%memory)
       end do
    end subroutine hold_at_rest
 
    !> What the joints must carry in this state
-   subroutine look(state)
+   subroutine check_demand(state)
       class(run_state), intent(inout) :: state
       real(wp) :: horizontal, vertical
       if (.not. allocated(state%problem%body%watch)) return
       call state%problem%ground%value_at(state%problem%segment, state%t, horizontal, vertical)
-      call state%problem%body%watch%look(side_index(state%problem%side), state%q, state%v, horizontal, vertical, &
+      call state%problem%body%watch%check_demand(side_index(state%problem%side), state%q, state%v, horizontal, &
+         vertical, &
          state%t, state%answer%joints)
-   end subroutine look
+   end subroutine check_demand
 
    !> What they must carry within the first part of the last step, where it is long
    subroutine look_within(state, part)
@@ -605,7 +606,7 @@ contains
          x = part * real(k, wp) / real(count, wp)
          t = state%step%t + x * state%step%h
          call state%problem%ground%value_at(state%problem%segment, t, horizontal, vertical)
-         call state%problem%body%watch%look(side_index(state%problem%side), state%step%coordinate(x), &
+         call state%problem%body%watch%check_demand(side_index(state%problem%side), state%step%coordinate(x), &
             state%step%rate(x), horizontal, vertical, t, state%answer%joints)
       end do
    end subroutine look_within
@@ -650,7 +651,7 @@ contains
       if (allocated(state%problem%memory)) call state%problem%body%held%note_forces(side_index(state%problem%side), &
          state%step%coordinate(turned), 0.0_wp, state%problem%memory)
       call state%note_peak(state%step%coordinate(turned))
-      if (associated(state%history)) call state%history%note(event_peak, state%step%t + turned * state%step%h, &
+      if (associated(state%history)) call state%history%note_event(event_peak, state%step%t + turned * state%step%h, &
          real(state%problem%side, wp) * state%step%coordinate(turned))
    end subroutine note_turning
 

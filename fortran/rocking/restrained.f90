@@ -7,14 +7,14 @@ module rocking_restrained
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: restrain
+   public :: restrain_body
 
    integer, parameter :: scan = 400
 
 contains
 
    !> Add to a structure what restrains it
-   subroutine restrain(body, list, status)
+   subroutine restrain_body(body, list, status)
       class(rocker), intent(inout) :: body
       !> open to +x and to -x (1 or 0), rate after over before being thrown back to each side, number of restraints,
       !> their list (restraint_set_new)
@@ -40,7 +40,7 @@ contains
          call find_critical(body, body%held, side, status)
          if (status /= status_ok) return
       end do
-   end subroutine restrain
+   end subroutine restrain_body
 
    !> The rotation at which weight and restraints, pulled from rest for the first time, no longer push back; the limit
    !> of collapse where they do up to there
@@ -58,7 +58,7 @@ contains
       status = status_out_of_memory
       if (stat /= 0) return
       status = status_ok
-      call held%fresh(i, 0.0_wp, fresh)
+      call held%reset_states(i, 0.0_wp, fresh)
       previous = 0.0_wp
       do k = 1, scan
          q = body%limit(i) * real(k, wp) / real(scan, wp)

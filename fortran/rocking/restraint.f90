@@ -51,14 +51,14 @@ module rocking_restraint
       type(restraint_law), allocatable :: law(:)
       type(path_table) :: path(2)   !! rocking to +x and to -x
    contains
-      procedure :: fresh
-      procedure :: forces
+      procedure :: reset_states
+      procedure :: find_forces
       procedure :: moment
       procedure :: energy
       procedure :: dissipation
-      procedure :: leaves
-      procedure :: change
-      procedure :: settle
+      procedure :: find_leaving
+      procedure :: change_mode
+      procedure :: settle_springs
       procedure :: note_forces
       procedure :: work_to
       procedure :: first_moment
@@ -92,7 +92,7 @@ contains
          reach = 0.0_wp
          do i = 1, 2
             do n = 0, 16
-               call set%path(i)%at(k, 0.5_wp * set%path(i)%scale * real(n, wp) / 16.0_wp, u, du)
+               call set%path(i)%evaluate_path(k, 0.5_wp * set%path(i)%scale * real(n, wp) / 16.0_wp, u, du)
                reach = max(reach, abs(u))
             end do
          end do
@@ -117,7 +117,7 @@ contains
    end subroutine restraint_set_new
 
    !> The states after the structure was brought from rest to q once
-   pure subroutine fresh(set, i, q, state)
+   pure subroutine reset_states(set, i, q, state)
       class(restraint_set), intent(in) :: set
       integer, intent(in) :: i                           !! 1 to +x, 2 to -x
       real(wp), intent(in) :: q                          !! [rad]
@@ -125,12 +125,12 @@ contains
       real(wp) :: u, du
       integer :: k
       do k = 1, set%count
-         call set%path(i)%at(k, q, u, du)
+         call set%path(i)%evaluate_path(k, q, u, du)
          state(k)%least = set%law(k)%prestress
          state(k)%most = set%law(k)%prestress
-         call go(set%law(k), state(k), 0.0_wp, u)
+         call carry_spring(set%law(k), state(k), 0.0_wp, u)
       end do
-   end subroutine fresh
+   end subroutine reset_states
 
    !> Force of the spring without its bounds
    pure function trial(law, state, u) result(f)
@@ -160,7 +160,7 @@ contains
    end function spring_force
 
    !> Forces of all restraints, springs and dashpots
-   pure subroutine forces(set, i, q, v, state, f)
+   pure subroutine find_forces(set, i, q, v, state, f)
       class(restraint_set), intent(in) :: set
       integer, intent(in) :: i                       !! 1 to +x, 2 to -x
       real(wp), intent(in) :: q                      !! [rad]
@@ -171,7 +171,7 @@ contains
       do k = 1, set%count
          f(k) = force(set, i, k, q, v, state(k))
       end do
-   end subroutine forces
+   end subroutine find_forces
 
    !> Force of one restraint, spring and dashpot
    pure function force(set, i, k, q, v, state) result(f)
@@ -183,7 +183,7 @@ contains
       type(restraint_state), intent(in) :: state
       real(wp) :: f
       real(wp) :: u, du
-      call set%path(i)%at(k, q, u, du)
+      call set%path(i)%evaluate_path(k, q, u, du)
       f = spring_force(set%law(k), state, u) + dashpot(set%law(k), du * v)
    end function force
 
@@ -210,7 +210,7 @@ contains
       integer :: k
       m = 0.0_wp
       do k = 1, set%count
-         call set%path(i)%at(k, q, u, du)
+         call set%path(i)%evaluate_path(k, q, u, du)
          m = m + (spring_force(set%law(k), state(k), u) + dashpot(set%law(k), du * v)) * du
       end do
    end function moment
@@ -226,7 +226,7 @@ contains
       integer :: k
       m = 0.0_wp
       do k = 1, set%count
-         call set%path(i)%at(k, q, u, du)
+         call set%path(i)%evaluate_path(k, q, u, du)
          m = m + min(set%law(k)%most, max(set%law(k)%least, set%law(k)%trial(state(k), u))) * du
       end do
    end function first_moment
@@ -255,7 +255,7 @@ contains
       integer :: k
       e = 0.0_wp
       do k = 1, set%count
-         call set%path(i)%at(k, q, u, du)
+         call set%path(i)%evaluate_path(k, q, u, du)
          e = e + set%law(k)%stored(state(k), u)
       end do
    end function energy
@@ -272,7 +272,7 @@ contains
       integer :: k
       p = 0.0_wp
       do k = 1, set%count
-         call set%path(i)%at(k, q, u, du)
+         call set%path(i)%evaluate_path(k, q, u, du)
          rate = du * v
          p = p + dashpot(set%law(k), rate) * rate
          if (state(k)%mode == yields_up) p = p + set%law(k)%most * rate
@@ -303,7 +303,7 @@ contains
    !> Fraction of a step at which the first restraint leaves its mode, and which; 0 and none where all stay.
    !>
    !> A fraction of zero with a restraint named: it leaves at once.
-   subroutine leaves(set, i, step, until, state, fraction, which)
+   subroutine find_leaving(set, i, step, until, state, fraction, which)
       class(restraint_set), intent(in) :: set
       integer, intent(in) :: i                       !! 1 to +x, 2 to -x
       type(dense_step), intent(in) :: step
@@ -344,22 +344,22 @@ contains
          v = step%rate(s)
          q = step%coordinate(s)
          do last = set%count, 1, -1
-            call set%path(i)%at(last, q, u, du)
+            call set%path(i)%evaluate_path(last, q, u, du)
             if (beyond(set%law(last), state(last), u, du * v) > 0.0_wp) return
          end do
       end function last_beyond
 
-   end subroutine leaves
+   end subroutine find_leaving
 
    !> One restraint goes over to its next mode at q
-   pure subroutine change(set, i, q, k, state)
+   pure subroutine change_mode(set, i, q, k, state)
       class(restraint_set), intent(in) :: set
       integer, intent(in) :: i
       real(wp), intent(in) :: q
       integer, intent(in) :: k                        !! which
       type(restraint_state), intent(inout) :: state(:)
       real(wp) :: u, du
-      call set%path(i)%at(k, q, u, du)
+      call set%path(i)%evaluate_path(k, q, u, du)
       associate (law => set%law(k), one => state(k))
          select case (one%mode)
          case (yields_up, yields_down)
@@ -374,7 +374,7 @@ contains
             end if
          end select
       end associate
-   end subroutine change
+   end subroutine change_mode
 
    !> From yield back to elastic, the force unchanged
    pure subroutine keep_set(law, state, u)
@@ -386,7 +386,7 @@ contains
    end subroutine keep_set
 
    !> Nothing yields while the structure stands still, or just after an impact: what goes on to yield does so at once
-   pure subroutine settle(set, i, q, state)
+   pure subroutine settle_springs(set, i, q, state)
       class(restraint_set), intent(in) :: set
       integer, intent(in) :: i
       real(wp), intent(in) :: q                         !! [rad]
@@ -394,10 +394,10 @@ contains
       real(wp) :: u, du
       integer :: k
       do k = 1, set%count
-         call set%path(i)%at(k, q, u, du)
+         call set%path(i)%evaluate_path(k, q, u, du)
          if (state(k)%mode == yields_up .or. state(k)%mode == yields_down) call keep_set(set%law(k), state(k), u)
       end do
-   end subroutine settle
+   end subroutine settle_springs
 
    !> Keep the least and greatest forces
    pure subroutine note_forces(set, i, q, v, state)
@@ -431,14 +431,14 @@ contains
       integer :: k
       work = 0.0_wp
       do k = 1, set%count
-         call set%path(i)%at(k, q, u, du)
-         call set%path(i_there)%at(k, q_there, u_there, du)
+         call set%path(i)%evaluate_path(k, q, u, du)
+         call set%path(i_there)%evaluate_path(k, q_there, u_there, du)
          one = state(k)
          if (i == i_there) then
             work = work + set%law(k)%resisted(one, u, u_there)
          else
             work = work + set%law(k)%resisted(one, u, 0.0_wp)
-            call go(set%law(k), one, u, 0.0_wp)
+            call carry_spring(set%law(k), one, u, 0.0_wp)
             work = work + set%law(k)%resisted(one, 0.0_wp, u_there)
          end if
       end do
@@ -474,7 +474,7 @@ contains
    end function resisted
 
    !> Carry a spring from u to u_there
-   pure subroutine go(law, state, u, u_there)
+   pure subroutine carry_spring(law, state, u, u_there)
       type(restraint_law), intent(in) :: law
       type(restraint_state), intent(inout) :: state
       real(wp), intent(in) :: u
@@ -487,6 +487,6 @@ contains
       if (f > law%most .and. law%slack >= 0) state%set = u_there - (law%most - law%prestress) / law%stiffness
       if (f < law%least .and. law%slack <= 0) state%set = u_there - (law%least - law%prestress) / law%stiffness
       if (real(law%slack, wp) * law%trial(state, u_there) < 0.0_wp) state%mode = slack
-   end subroutine go
+   end subroutine carry_spring
 
 end module rocking_restraint

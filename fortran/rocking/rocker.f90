@@ -36,7 +36,7 @@ module rocking_rocker
       procedure(potential), deferred :: potential
       procedure :: set_rest_rate
       procedure :: series_step
-      procedure :: glide
+      procedure :: glide_samples
    end type rocker
 
    abstract interface
@@ -93,7 +93,7 @@ contains
 
    !> Whole segments of a sampled ground motion in which the structure neither turns nor touches the ground nor
    !> falls, each by one series; the state is that after the last of them. Here none: the general way takes them.
-   pure subroutine glide(model, side, start, spacing, scale, samples, first, last, tolerance, q, v, passed, &
+   pure subroutine glide_samples(model, side, start, spacing, scale, samples, first, last, tolerance, q, v, passed, &
                          step, stopped, demand)
       class(rocker), intent(in) :: model
       integer, intent(in) :: side            !! +1 or -1
@@ -114,7 +114,7 @@ contains
       stopped = .false.
       if (.false.) step%q = q + v + start + spacing + scale + samples(1, first) + samples(1, last) + tolerance(1) &
          + model%critical(side_index(side)) + demand%friction
-   end subroutine glide
+   end subroutine glide_samples
 
    !> Rest where the kinetic energy after an impact is below 1e-6 of the energy barrier.
    !>

@@ -14,7 +14,7 @@ module rocking_soft_base
    implicit none
    private
    public :: soft_base, soft_base_new, base_contact, contact_of, soft_base_parameters
-   public :: accelerations, direction, energies, hold, lever, look, settled, velocity, watched, decides
+   public :: accelerations, direction, energies, find_restoring, lever, take_signs, settled, velocity, watched, decides
 
    !> Numbers of a block: mass [kg], inertia about its centre [kg m^2], height of the centre [m], distance of the left
    !> and of the right edge from its foot [m]; stiffness [N/m^2] and damping [N s/m^2] of the base per length; 1 where
@@ -281,7 +281,7 @@ contains
 
    !> The block at a rotation, free to sink: its energy, the least that it can have there, and the moment that turns it
    !> back from a rotation to +x, of its weight and the base
-   pure subroutine hold(body, q, sunk, energy, moment)
+   pure subroutine find_restoring(body, q, sunk, energy, moment)
       type(soft_base), intent(in) :: body
       real(wp), intent(in) :: q         !! [rad]
       real(wp), intent(out) :: sunk     !! [m]
@@ -293,12 +293,12 @@ contains
       held = body
       sunk = settled(body, q)
       y = [q, sunk, 0.0_wp, 0.0_wp]
-      call look(held, y)
+      call take_signs(held, y)
       base = contact_of(held, y)
       d = direction(body, q)
       energy = sum(energies(held, y, base))
       moment = d(2) * base%moment - d(1) * body%height * body%mass * gravity
-   end subroutine hold
+   end subroutine find_restoring
 
    !> The values whose signs make the mode: both edges pressed, both pushing, the base where it lifts, the side [m]
    pure function watched(body, y) result(value)
@@ -329,7 +329,7 @@ contains
    end function decides
 
    !> Take the signs of a state; a value of zero has come to its end
-   pure subroutine look(body, y)
+   pure subroutine take_signs(body, y)
       type(soft_base), intent(inout) :: body
       real(wp), intent(in) :: y(:)
       real(wp) :: value(6)
@@ -345,6 +345,6 @@ contains
       body%push = signs(3:4)
       body%root = merge(signs(5), 1, body%damping > 0.0_wp)
       body%side = signs(6)
-   end subroutine look
+   end subroutine take_signs
 
 end module rocking_soft_base

@@ -6,7 +6,8 @@ module rocking_soft_base_response
    use common_status, only : status_invalid_argument
    use rocking_modes, only : mode_history, mode_rocker, respond_in_modes
    use rocking_response, only : response, response_options
-   use rocking_soft_base, only : accelerations, base_contact, contact_of, energies, decides, hold, lever, look, &
+   use rocking_soft_base, only : accelerations, base_contact, contact_of, energies, decides, find_restoring, lever, &
+      take_signs, &
       settled, soft_base, soft_base_new, soft_base_parameters, velocity, watched
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -28,13 +29,13 @@ module rocking_soft_base_response
       logical :: stop_when_safe = .false.
       integer :: half_cycle = 0          !! side of the last half cycle begun, 0 none
    contains
-      procedure :: slope
+      procedure :: find_rates
       procedure :: inside
-      procedure :: leave
+      procedure :: leave_mode
       procedure :: fallen
       procedure :: upright
       procedure :: known
-      procedure :: row
+      procedure :: store_row
    end type soft_base_rocker
 
    !> A block as an ensemble rocks it: its numbers (see soft_base_parameters), then the critical rotations to +x and to
@@ -82,7 +83,7 @@ contains
       y(1) = real(options%start_side, wp) * options%start_q
       y(2) = settled(body%block, y(1))
       y(3) = real(options%start_side, wp) * options%start_v
-      call rock(rocker, motion, y, options%end_time, options%tolerance, record, status)
+      call rock_block(rocker, motion, y, options%end_time, options%tolerance, record, status)
       peaks = record%peak()
       answer%outcome = record%outcome
       answer%half_cycles = record%half_cycles
@@ -105,11 +106,11 @@ contains
       integer(c_int), intent(out) :: status
       type(soft_base_rocker) :: rocker
       rocker%block = block
-      call rock(rocker, motion, y, end_time, tolerance, history, status)
+      call rock_block(rocker, motion, y, end_time, tolerance, history, status)
    end subroutine soft_base_rock
 
    !> The same of a block that knows what is asked
-   subroutine rock(rocker, motion, y, end_time, tolerance, history, status)
+   subroutine rock_block(rocker, motion, y, end_time, tolerance, history, status)
       type(soft_base_rocker), intent(inout) :: rocker
       type(signal), intent(in) :: motion
       real(wp), intent(inout) :: y(:)
@@ -131,13 +132,13 @@ contains
          unit = sqrt(gravity / block%height)
          atol(1:4) = 0.01_wp * tolerance * [angle, sunk, angle * unit, sqrt(gravity * sunk)]
          atol(5:6) = tolerance * block%mass * gravity * maxval(abs(block%place)) * angle
-         call look(rocker%block, y)
+         call take_signs(rocker%block, y)
          if (.not. abs(y(1)) > 0.0_wp) rocker%block%side = 1
          rocker%moved = any(rocker%block%down < 0)
          if (rocker%moved) call begin_half_cycle(rocker, rocker%block%side, history)
       end associate
       call respond_in_modes(rocker, y, end_time, atol, tolerance, history, status)
-   end subroutine rock
+   end subroutine rock_block
 
    !> A half cycle begins where the edge away from which it leans lifts, unless the last one was to the same side
    subroutine begin_half_cycle(rocker, side, history)
@@ -184,13 +185,13 @@ contains
       real(wp), intent(in) :: share
       logical :: answer
       real(wp) :: energy(2), sunk, moment
-      call hold(rocker%block, share * rocker%critical(1), sunk, energy(1), moment)
-      call hold(rocker%block, -share * rocker%critical(2), sunk, energy(2), moment)
+      call find_restoring(rocker%block, share * rocker%critical(1), sunk, energy(1), moment)
+      call find_restoring(rocker%block, -share * rocker%critical(2), sunk, energy(2), moment)
       answer = sum(energies(rocker%block, y, contact_of(rocker%block, y))) < minval(energy)
    end function stays_below
 
    !> Rates of the state
-   subroutine slope(system, t, y, rate)
+   subroutine find_rates(system, t, y, rate)
       class(soft_base_rocker), intent(in) :: system
       real(wp), intent(in) :: t
       real(wp), intent(in) :: y(:)
@@ -203,7 +204,7 @@ contains
       rate(3:4) = accelerations(system%block, y, base, shaking)
       rate(5) = -system%block%mass * dot_product(shaking, velocity(system%block, y))
       rate(6) = base%spent
-   end subroutine slope
+   end subroutine find_rates
 
    !> Above zero while all signs stay
    function inside(body, t, y) result(margin)
@@ -225,26 +226,26 @@ contains
    end function inside
 
    !> An edge lifts or lands, or its dashpot would pull
-   subroutine leave(body, t, y, history)
+   subroutine leave_mode(body, t, y, history)
       class(soft_base_rocker), intent(inout) :: body
       real(wp), intent(in) :: t
       real(wp), intent(inout) :: y(:)
       type(mode_history), intent(inout) :: history
       integer :: before(2), i
       before = body%block%down
-      call look(body%block, y)
+      call take_signs(body%block, y)
       do i = 1, 2
          if (body%block%down(i) == before(i)) cycle
          if (body%block%down(i) < 0) then
             body%moved = .true.
-            call history%note(event_uplift, t, 2 * i - 3)
+            call history%note_event(event_uplift, t, 2 * i - 3)
             if (y(1) * body%block%place(i) < 0.0_wp) call begin_half_cycle(body, 3 - 2 * i, history)
          else
             history%impacts(i) = history%impacts(i) + 1
-            call history%note(event_impact, t, 2 * i - 3)
+            call history%note_event(event_impact, t, 2 * i - 3)
          end if
       end do
-   end subroutine leave
+   end subroutine leave_mode
 
    !> The edge over which it has turned past recall: -1, 1, 0 none
    pure function fallen(body, y) result(place)
@@ -257,7 +258,7 @@ contains
    end function fallen
 
    !> What is stored of a state, see soft_base_rows
-   subroutine row(body, t, y, loss, values)
+   subroutine store_row(body, t, y, loss, values)
       class(soft_base_rocker), intent(in) :: body
       real(wp), intent(in) :: t
       real(wp), intent(in) :: y(:)
@@ -280,6 +281,6 @@ contains
          values(14) = base%most
          values(15) = a(1)
       end associate
-   end subroutine row
+   end subroutine store_row
 
 end module rocking_soft_base_response

@@ -16,7 +16,7 @@ module rocking_stack
    implicit none
    private
    public :: stack, stack_new, stack_impact, stack_parameters
-   public :: motion_about, solved, pressing, choose, energies, contact_forces, power
+   public :: motion_about, solved, pressing, choose_pivots, energies, contact_forces, power
 
    !> Numbers of a stack: mass [kg], inertia [kg m^2], height of the centre above its foot [m] of the lower and of the
    !> upper block; half width of the lower foot, height of the lower block, half width of the contact between [m]
@@ -68,7 +68,7 @@ contains
 
    !> From the pivot of the ground to the centre of the lower block and to the pivot between, and from there to the
    !> centre of the upper block, at rest
-   pure subroutine arms(body, s, d1, e, d2)
+   pure subroutine find_arms(body, s, d1, e, d2)
       type(stack), intent(in) :: body
       integer, intent(in) :: s(2)  !! pivots; 0 the middle
       real(wp), intent(out) :: d1(2)  !! to the centre of the lower block [m]
@@ -77,7 +77,7 @@ contains
       d1 = [-s(1) * body%half(1), body%centre(1)]
       e = [s(2) * body%half(2) - s(1) * body%half(1), body%height]
       d2 = [-s(2) * body%half(2), body%centre(2)]
-   end subroutine arms
+   end subroutine find_arms
 
    !> A vector turned clockwise
    pure function turned(v, q) result(w)
@@ -95,7 +95,7 @@ contains
       real(wp), intent(out) :: matrix(2, 2)  !! [kg m^2]
       real(wp), intent(out) :: slope         !! of the coupling by q2 - q1 [kg m^2]
       real(wp) :: d1(2), e(2), d2(2), along, across, r
-      call arms(body, s, d1, e, d2)
+      call find_arms(body, s, d1, e, d2)
       r = q(2) - q(1)
       along = dot_product(e, d2)
       across = e(1) * d2(2) - e(2) * d2(1)
@@ -115,7 +115,7 @@ contains
       real(wp), intent(in) :: ground(2)  !! acceleration to +x and up [m/s^2]
       type(pivot_equation) :: one
       real(wp) :: d1(2), e(2), d2(2), slope, first(2), second(2)
-      call arms(body, s, d1, e, d2)
+      call find_arms(body, s, d1, e, d2)
       call kinetic_matrix(body, s, q, one%matrix, slope)
       first = body%mass(1) * turned(d1, q(1)) + body%mass(2) * turned(e, q(1))
       second = body%mass(2) * turned(d2, q(2))
@@ -132,8 +132,8 @@ contains
       real(wp), intent(in) :: v(2)      !! rates before
       type(pivot_equation) :: one
       real(wp) :: d1(2), e(2), d2(2), b1(2), be(2), b2(2), x1(2), x2(2), slope
-      call arms(body, before, b1, be, b2)
-      call arms(body, s, d1, e, d2)
+      call find_arms(body, before, b1, be, b2)
+      call find_arms(body, s, d1, e, d2)
       call kinetic_matrix(body, s, q, one%matrix, slope)
       x1 = v(1) * across(turned(b1, q(1)))
       x2 = v(1) * across(turned(be, q(1))) + v(2) * across(turned(b2, q(2)))
@@ -205,7 +205,7 @@ contains
    end function pressing
 
    !> The pivots about which contacts that touch go on, by accelerations, or by rates after an impact
-   pure subroutine choose(body, touching, s, q, v, ground, x, before)
+   pure subroutine choose_pivots(body, touching, s, q, v, ground, x, before)
       type(stack), intent(in) :: body
       logical, intent(in) :: touching(2)  !! else the pivot is given
       integer, intent(inout) :: s(2)      !! pivots
@@ -246,7 +246,7 @@ contains
          end do
       end do
       s = found
-   end subroutine choose
+   end subroutine choose_pivots
 
    !> Rates after an impact at a contact, for tests and for the run
    pure subroutine stack_impact(body, s, q, v, at, s_after, v_after)
@@ -257,7 +257,7 @@ contains
       integer, intent(out) :: s_after(2)
       real(wp), intent(out) :: v_after(2)
       s_after = s
-      call choose(body, at .or. s == 0, s_after, q, v, [0.0_wp, 0.0_wp], v_after, s)
+      call choose_pivots(body, at .or. s == 0, s_after, q, v, [0.0_wp, 0.0_wp], v_after, s)
    end subroutine stack_impact
 
    !> Kinetic and potential energy [J]
@@ -268,7 +268,7 @@ contains
       real(wp) :: energy(2)
       real(wp) :: matrix(2, 2), slope, d1(2), e(2), d2(2), rise(2), w(2)
       call kinetic_matrix(body, s, q, matrix, slope)
-      call arms(body, s, d1, e, d2)
+      call find_arms(body, s, d1, e, d2)
       w = turned(d1, q(1))
       rise(1) = w(2) - d1(2)
       w = turned(e, q(1)) + turned(d2, q(2))
@@ -284,7 +284,7 @@ contains
       real(wp), intent(in) :: ground(2)
       real(wp) :: force(4)
       real(wp) :: d1(2), e(2), d2(2), x1(2), x2(2)
-      call arms(body, s, d1, e, d2)
+      call find_arms(body, s, d1, e, d2)
       x1 = bent(d1, 1)
       x2 = bent(e, 1) + bent(d2, 2)
       force(3:4) = body%mass(2) * (x2 + ground + [0.0_wp, gravity])
@@ -312,7 +312,7 @@ contains
       real(wp), intent(in) :: ground(2)
       real(wp) :: p
       real(wp) :: d1(2), e(2), d2(2), w(2), u(2)
-      call arms(body, s, d1, e, d2)
+      call find_arms(body, s, d1, e, d2)
       w = turned(body%mass(1) * d1 + body%mass(2) * e, q(1))
       u = turned(body%mass(2) * d2, q(2))
       p = -ground(1) * (v(1) * w(2) + v(2) * u(2)) + ground(2) * (v(1) * w(1) + v(2) * u(1))

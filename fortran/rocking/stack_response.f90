@@ -5,7 +5,7 @@ module rocking_stack_response
       event_uplift => rocking_event_uplift
    use common_signal, only : signal
    use rocking_modes, only : mode_history, mode_rocker, respond_in_modes
-   use rocking_stack, only : choose, contact_forces, energies, motion_about, power, pressing, solved, stack, &
+   use rocking_stack, only : choose_pivots, contact_forces, energies, motion_about, power, pressing, solved, stack, &
       stack_impact
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -24,14 +24,14 @@ module rocking_stack_response
       integer :: s(2) = 0                !! pivots
       real(wp) :: scale(2) = 0.0_wp      !! moments of the weights about the edges of the contacts [N m]
    contains
-      procedure :: slope
+      procedure :: find_rates
       procedure :: inside
-      procedure :: leave
-      procedure :: renew
+      procedure :: leave_mode
+      procedure :: renew_mode
       procedure :: trim_state
       procedure :: fallen
       procedure :: resting
-      procedure :: row
+      procedure :: store_row
       procedure :: closes
    end type stack_rocker
 
@@ -68,7 +68,7 @@ contains
    end subroutine stack_rock
 
    !> Rates of the state
-   subroutine slope(system, t, y, rate)
+   subroutine find_rates(system, t, y, rate)
       class(stack_rocker), intent(in) :: system
       real(wp), intent(in) :: t
       real(wp), intent(in) :: y(:)
@@ -78,7 +78,7 @@ contains
       rate(1:2) = y(3:4)
       rate(3:4) = solved(motion_about(system%body, system%s, y(1:2), y(3:4), shaking), system%s)
       rate(5) = power(system%body, system%s, y(1:2), y(3:4), shaking)
-   end subroutine slope
+   end subroutine find_rates
 
    !> Above zero while open contacts are open and shut ones press
    function inside(body, t, y) result(margin)
@@ -139,7 +139,7 @@ contains
    end function closes
 
    !> An impact where contacts close; else a contact no longer presses
-   subroutine leave(body, t, y, history)
+   subroutine leave_mode(body, t, y, history)
       class(stack_rocker), intent(inout) :: body
       real(wp), intent(in) :: t
       real(wp), intent(inout) :: y(:)
@@ -153,7 +153,7 @@ contains
          do contact = 1, 2
             if (.not. at(contact)) cycle
             history%impacts(contact) = history%impacts(contact) + 1
-            call history%note(event_impact, t, contact)
+            call history%note_event(event_impact, t, contact)
          end do
          if (at(1)) then
             y(2) = y(2) - merge(y(1), 0.0_wp, body%s(2) == 0)
@@ -174,13 +174,13 @@ contains
          y(3:4) = after
          gone = energies(body%body, body%s, y(1:2), y(3:4))
          history%loss = history%loss + energy(1) - gone(1)
-         if (all(body%s == 0)) call history%note(event_rest, t, 0)
+         if (all(body%s == 0)) call history%note_event(event_rest, t, 0)
       end if
-      call body%renew(t, y, history)
-   end subroutine leave
+      call body%renew_mode(t, y, history)
+   end subroutine leave_mode
 
    !> Contacts that are shut open where their edges no longer press
-   subroutine renew(body, t, y, history)
+   subroutine renew_mode(body, t, y, history)
       class(stack_rocker), intent(inout) :: body
       real(wp), intent(in) :: t
       real(wp), intent(in) :: y(:)
@@ -191,15 +191,15 @@ contains
       before = body%s
       touching = before == 0
       if (.not. any(touching)) return
-      call choose(body%body, touching, body%s, y(1:2), y(3:4), body%ground(t), x)
+      call choose_pivots(body%body, touching, body%s, y(1:2), y(3:4), body%ground(t), x)
       do contact = 1, 2
-         if (before(contact) == 0 .and. body%s(contact) /= 0) call history%note(event_uplift, t, contact)
+         if (before(contact) == 0 .and. body%s(contact) /= 0) call history%note_event(event_uplift, t, contact)
       end do
       body%moved = body%moved .or. any(body%s /= 0)
-   end subroutine renew
+   end subroutine renew_mode
 
    !> What is stored of a state, see stack_rows
-   subroutine row(body, t, y, loss, values)
+   subroutine store_row(body, t, y, loss, values)
       class(stack_rocker), intent(in) :: body
       real(wp), intent(in) :: t
       real(wp), intent(in) :: y(:)
@@ -214,6 +214,6 @@ contains
       values(9) = y(5) - loss
       values(10:11) = real(body%s, wp)
       values(12:15) = contact_forces(body%body, body%s, y(1:2), y(3:4), a, shaking)
-   end subroutine row
+   end subroutine store_row
 
 end module rocking_stack_response

@@ -38,7 +38,7 @@ contains
             else
                if (grid >= huge(grid) / 64.0_wp .or. max(f0(j), f1(j)) < -0.02_wp &
                   * (problem%rest_dv(j) + problem%rest_hold(j))) cycle
-               call crest(j, t0, t1, top)
+               call find_crest(j, t0, t1, top)
                at_top = drive(top)
                if (at_top(j) <= 0.0_wp) cycle
                root = crossing(j, t0, top)
@@ -68,7 +68,7 @@ contains
       end function drive
 
       !> Where the drive of side j is greatest between two times, by golden section
-      subroutine crest(j, first, last, top)
+      subroutine find_crest(j, first, last, top)
          integer, intent(in) :: j
          real(wp), intent(in) :: first
          real(wp), intent(in) :: last
@@ -90,7 +90,7 @@ contains
             end if
          end do
          top = 0.5_wp * (low + high)
-      end subroutine crest
+      end subroutine find_crest
 
       !> The first time at which side j is driven up, between a quiet and a driven time: by the false position, which
       !> straight lines need once, and halves where one end stays

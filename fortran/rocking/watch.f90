@@ -30,7 +30,7 @@ module rocking_watch
       !> (joint and quantity N T E, input w h q'^2, 0 to panels, side)
       real(wp), allocatable :: value(:, :, :, :)
    contains
-      procedure :: look
+      procedure :: check_demand
    end type joint_watch
 
    !> What a run demanded of the joints, up to the critical rotation
@@ -75,7 +75,7 @@ contains
    end subroutine joint_watch_new
 
    !> Enter what the joints must carry in a state
-   pure subroutine look(watch, i, q, v, horizontal, vertical, time, demand)
+   pure subroutine check_demand(watch, i, q, v, horizontal, vertical, time, demand)
       class(joint_watch), intent(in) :: watch
       integer, intent(in) :: i               !! 1 rocking to +x, 2 to -x
       real(wp), intent(in) :: q              !! rotation [rad]
@@ -98,7 +98,7 @@ contains
       force = 0.0_wp
       do k = 1, 4
          do l = 1, 3
-            call add(3 * watch%joints, weight(k) * input(l), watch%value(:, l, first + k - 1, i), force)
+            call add_scaled(3 * watch%joints, weight(k) * input(l), watch%value(:, l, first + k - 1, i), force)
          end do
       end do
       do j = 1, watch%joints
@@ -120,16 +120,16 @@ contains
          demand%friction = max(demand%friction, needed)
          demand%outside = max(demand%outside, beyond)
       end do
-   end subroutine look
+   end subroutine check_demand
 
    !> total + factor part, of lists
-   pure subroutine add(n, factor, part, total)
+   pure subroutine add_scaled(n, factor, part, total)
       integer, intent(in) :: n
       real(wp), intent(in) :: factor
       real(wp), intent(in) :: part(n)
       real(wp), intent(inout) :: total(n)
       total = total + factor * part
-   end subroutine add
+   end subroutine add_scaled
 
    !> Friction, outside, both times, both joints
    pure function flat(demand) result(list)

@@ -39,13 +39,13 @@ contains
       else if (any(choice(2, :) > choice(3, :)) .or. size(connect, 1) /= kind .or. &
                (size(connect, 1) /= 3 .and. size(connect, 1) /= 4) .or. &
                any(property(8, :) > 0.0_wp .and. choice(1, :) > 0 .and. choice(2, :) == 0) .or. &
-               size(model%xy, 1) /= 3 .or. size(flat) /= model%nodes) then
+               size(model%mesh%xy, 1) /= 3 .or. size(flat) /= model%mesh%nodes) then
          status = status_invalid_argument
       else if (info /= 0) then
          status = status_out_of_memory
       else
-         call shell_points_new(kind, section, selective, model%xy, frame, flat, connect, property, choice, &
-            model%teeth, model%options, shells, bad, status)
+         call shell_points_new(kind, section, selective, model%mesh%xy, frame, flat, connect, property, choice, &
+            model%mesh%teeth, model%mesh%options, shells, bad, status)
       end if
       call move_alloc(shells, group)
       call group_added(handle, model, connect, 6, group, status)

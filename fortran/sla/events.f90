@@ -18,18 +18,20 @@ module sla_events
    use sla_assembly, only : add_event
    use sla_c_bindings, only : extrados_sparse_change
    use sla_friction, only : find_sliders
-   use sla_group, only : bound, component, most_entries, most_rank, point_group, scan_result, slider, unbounded
+   use sla_group, only : bound, component, friction_group, most_entries, most_rank, point_event, point_group, &
+      point_place, scan_result, slider, unbounded
    use sla_guard, only : guard_every, guard_residual
-   use sla_ledger, only : account, event_log, follow_supports, log_reals, record, watch
+   use sla_ledger, only : account_state, event_log, follow_supports, log_reals, record_state, watch_monitors
    use sla_model, only : element_model, model_balance, model_follow, model_settled, model_slips, model_solve, &
       model_turns
    use sla_regions, only : regions_bring, regions_home
+   use sla_state, only : load_work, monitor_set
    use sla_release, only : hold_state, set_free
-   use sla_scan, only : bring_all, choose, crossed, scan_model, scan_scaled
+   use sla_scan, only : bring_all, choose_event, crossed, scan_model, scan_scaled
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: run_events, stop_rules
+   public :: run_events
 
    real(wp), parameter :: least_pivot = 1.0e-10_wp    !! of I - W' inv(K) W: below it the structure is a mechanism
    !> Multiplier of an event without equilibrium over the peak before, from which no state is sought any more
@@ -40,146 +42,124 @@ module sla_events
    !> What happens to a joint without a force beside its stiffness
    integer(c_int), parameter :: in_place(3) = [code_tension, code_compression, code_open]
 
-   type :: stop_rules
-      real(wp) :: lambda = unbounded               !! stage ends where it carries this multiplier
-      real(wp) :: displacement = unbounded         !! of monitor 1, absolute [m]
-      real(wp) :: fraction = -1.0_wp               !! of the peak multiplier, after it; negative: never
-      real(wp) :: compliance = 1.0e6_wp            !! fb.ub over its first value: a mechanism
-      logical :: refuse_overload = .false.         !! the first state must carry the constant loads
-      !> Where no multiplier suits all points: all loads of the last state in equilibrium are scaled down together
-      !> (intermittent proportional loading); else the constant loads stay and the greatest lower limit decides
-      logical :: proportional = .false.
-      !> The forces that a tooth sets free go onto the others at the load reached, before it grows again
-      logical :: release = .false.
-      real(wp) :: target = unbounded               !! of monitor 1 [m]: the stage ends in the state that has it
-      real(wp) :: side = 0.0_wp                    !! +1: it is reached from below, -1: from above, 0: there is none
-      real(wp) :: already = 0.0_wp                 !! loads like B that are on already, over B
-      real(wp) :: far = unbounded                  !! way of monitor 1 beyond which displacements are not small [m]
-   end type stop_rules
-
 contains
 
    !> Run up to `room` events and record them; the last one is chosen but not applied yet
-   subroutine run_events(model, rules, first, equation, share, log, reason, status)
+   subroutine run_events(model, monitors, log, reason, status)
       type(element_model), intent(inout) :: model
-      type(stop_rules), intent(in) :: rules
-      integer(c_int), intent(in) :: first(:)      !! (monitors + 1) first entry of each monitor
-      integer(c_int), intent(in) :: equation(:)   !! (entries), factor order
-      real(wp), intent(in) :: share(:)
+      type(monitor_set), intent(inout) :: monitors
       type(event_log), intent(inout) :: log
       integer(c_int), intent(out) :: reason       !! of the list sla_stop
       integer(c_int), intent(out) :: status       !! status_cancelled leaves a valid log
       type(scan_result) :: found
       type(bound) :: scaled
-      real(wp), allocatable :: ratio(:)
       real(wp) :: reached, at
       logical :: equilibrium, driven, met, turned, first_of_stage, fallen
-      integer :: info
 
-      driven = any(abs(model%moved(:, 2)) > 0.0_wp)
+      driven = any(abs(model%support%moved(:, 2)) > 0.0_wp)
       turned = .false.
       at = 0.0_wp
       reason = stop_none
-      status = status_out_of_memory
       log%count = 0
-      allocate (ratio(size(first) - 1), stat=info)
-      if (info /= 0) return
       status = status_ok
-      call watch(model, first, equation, share, ratio)
+      call watch_monitors(model, monitors)
       do while (log%count < size(log%reals, 2))
          if (cancel_requested()) then
             status = status_cancelled
             return
          end if
-         if (rules%release .and. model%pending(1) /= 0) call hold_state(model, status)
+         if (model%rules%release .and. model%loop%pending%group /= 0) call hold_state(model, status)
          if (status /= status_ok) return
-         if (model%pending(1) /= 0) then
-            call change_state(model, rules%compliance, driven, turned, reason, status)
+         if (model%loop%pending%group /= 0) then
+            call change_state(model, driven, turned, reason, status)
             if (status /= status_ok .or. reason /= stop_none) return
          end if
-         if (model%releasing) then
+         if (model%release%active) then
             call set_free(model, found, status)
             if (status /= status_ok) return
-            call record(model, found, .not. model%releasing, first, equation, share, ratio, log)
-            if (too_soft(model, driven, rules%compliance)) reason = stop_mechanism
+            call record_state(model, found, .not. model%release%active, monitors, log)
+            if (too_soft(model, driven)) reason = stop_mechanism
             if (reason /= stop_none) return
             cycle
          end if
          call scan_model(model, found, status)
          if (status /= status_ok) return
-         if (size(model%moved, 1) > 0) call follow_supports(model)
-         model%hot(:, 1) = [found%hi%group, found%hi%point]
-         model%hot(:, 2) = [found%lo%group, found%lo%point]
+         if (size(model%support%moved, 1) > 0) call follow_supports(model)
+         model%search%upper = point_place(found%hi%group, found%hi%point)
+         model%search%lower = point_place(found%lo%group, found%lo%point)
          equilibrium = found%empty%point == 0 .and. .not. crossed(found)
-         first_of_stage = .not. model%recorded
-         if (rules%refuse_overload .and. .not. model%recorded .and. .not. equilibrium) then
+         first_of_stage = .not. model%ledger%recorded
+         if (model%rules%refuse_overload .and. .not. model%ledger%recorded .and. .not. equilibrium) then
             status = status_beyond_strength
             return
          end if
          if (.not. found%bounded) reason = stop_unbounded
-         model%scale = 1.0_wp
+         model%loop%scale = 1.0_wp
          scaled = bound()
-         if (rules%proportional .and. .not. equilibrium .and. found%bounded) call scan_scaled(model, scaled, status)
+         if (model%rules%proportional .and. .not. equilibrium .and. found%bounded) then
+            call scan_scaled(model, scaled, status)
+         end if
          if (status /= status_ok) return
-         call meet_target(model, rules, found, first, equation, share, ratio(1), at, met)
-         if (equilibrium .and. rules%lambda < unbounded .and. found%hi%value >= rules%lambda .and. &
-             found%lo%value <= rules%lambda) then
+         call meet_target(model, found, monitors, at, met)
+         if (equilibrium .and. model%rules%lambda < unbounded .and. found%hi%value >= model%rules%lambda .and. &
+             found%lo%value <= model%rules%lambda) then
             reason = stop_load
          else if (equilibrium .and. met) then
             reason = stop_displacement
          else if (scaled%point /= 0) then
-            model%scale = scaled%value
-            scaled%value = model%lambda_held
-            call choose(model, scaled)
+            model%loop%scale = scaled%value
+            scaled%value = model%loop%lambda_held
+            call choose_event(model, scaled)
          else if (found%empty%point /= 0) then
-            found%empty%value = model%lambda
+            found%empty%value = model%loop%lambda
             if (found%hi%point == 0 .and. found%lo%point == 0) reason = stop_all_empty
-            call choose(model, found%empty)
+            call choose_event(model, found%empty)
          else if (equilibrium .and. found%hi%value < unbounded) then
-            call choose(model, found%hi)
+            call choose_event(model, found%hi)
          else if (found%lo%value > -unbounded .and. .not. equilibrium) then
             ! Force release holds the load: what has its lower limit above it (a crack that closes, a point that touches
             ! its strength) is damaged at the load reached
-            if (rules%release .and. model%recorded) found%lo%value = model%lambda
-            call choose(model, found%lo)
+            if (model%rules%release .and. model%ledger%recorded) found%lo%value = model%loop%lambda
+            call choose_event(model, found%lo)
          else
             reason = stop_unbounded    ! only lower limits: the load can grow for ever
          end if
          if (reason == stop_load .or. reason == stop_displacement) then
-            model%pending = 0
-            call account(model, merge(rules%lambda, at, reason == stop_load), status)
+            model%loop%pending = point_event()
+            call account_state(model, merge(model%rules%lambda, at, reason == stop_load), status)
          else if (reason == stop_unbounded) then
             return
          else
-            call account(model, model%lambda, status)
+            call account_state(model, model%loop%lambda, status)
          end if
          if (status /= status_ok) return
-         call record(model, found, equilibrium, first, equation, share, ratio, log)
+         call record_state(model, found, equilibrium, monitors, log)
          if (reason /= stop_none) return
-         if (first_of_stage) model%start_displacement = log%monitors(1, log%count) - model%lambda * model%slope
+         if (first_of_stage) model%loop%start_displacement = log%monitors(1, log%count) - &
+            model%loop%lambda * model%loop%slope
          if (equilibrium) then
-            model%lambda_held = model%lambda
-            reached = merge(log%reals(log_reals, log%count), model%lambda + rules%already, driven)
-            if (abs(log%monitors(1, log%count) - model%start_displacement) > rules%far) reason = stop_far
-            if (reached > model%peak .and. reason == stop_none) then
-               model%peak = reached
-               model%peak_displacement = log%monitors(1, log%count)
+            model%loop%lambda_held = model%loop%lambda
+            reached = merge(log%reals(log_reals, log%count), model%loop%lambda + model%rules%already, driven)
+            if (abs(log%monitors(1, log%count) - model%loop%start_displacement) > model%rules%far) reason = stop_far
+            if (reached > model%loop%peak .and. reason == stop_none) then
+               model%loop%peak = reached
+               model%loop%peak_displacement = log%monitors(1, log%count)
             end if
-            if (abs(log%monitors(1, log%count)) >= rules%displacement) reason = stop_displacement
+            if (abs(log%monitors(1, log%count)) >= model%rules%displacement) reason = stop_displacement
             if (reason == stop_none) then
-               call judge_fall(model, rules, reached, log%monitors(1, log%count), fallen)
+               call judge_fall(model, reached, log%monitors(1, log%count), fallen)
                if (fallen) reason = stop_fraction
             end if
          end if
          ! Where no multiplier brings a state back, limits run away
-         if (model%peak > 0.0_wp .and. .not. equilibrium) then
-            reached = merge(abs(model%lambda_held), model%peak, driven)
-            if (.not. abs(model%lambda) <= farthest * reached) reason = stop_lost
+         if (model%loop%peak > 0.0_wp .and. .not. equilibrium) then
+            reached = merge(abs(model%loop%lambda_held), model%loop%peak, driven)
+            if (.not. abs(model%loop%lambda) <= farthest * reached) reason = stop_lost
          end if
          ! Joints that slide make the structure unsymmetric: it may answer the load the other way, until what slides
          ! back sticks, at once. Where all were asked there is no such way.
-         if (too_soft(model, driven, rules%compliance)) then
-            if (turned .or. model%pending(3) /= code_stick) reason = stop_mechanism   ! whatever it says besides
+         if (too_soft(model, driven)) then
+            if (turned .or. model%loop%pending%code /= code_stick) reason = stop_mechanism   ! whatever it says besides
          end if
          if (reason /= stop_none) return
       end do
@@ -187,126 +167,123 @@ contains
 
    !> Does the envelope of load over displacement stay below a fraction of its peak, over a tenth of the way to it? So
    !> do all states from the first one below it that is the furthest so far; a single tooth gives one such state
-   subroutine judge_fall(model, rules, reached, displacement, fallen)
+   subroutine judge_fall(model, reached, displacement, fallen)
       type(element_model), intent(inout) :: model
-      type(stop_rules), intent(in) :: rules
       real(wp), intent(in) :: reached          !! load, or its multiplier
       real(wp), intent(in) :: displacement     !! of monitor 1 [m]
       logical, intent(out) :: fallen
       real(wp) :: way
       fallen = .false.
-      if (rules%fraction < 0.0_wp .or. .not. model%peak > 0.0_wp) return
-      way = sign(1.0_wp, model%slope) * (displacement - model%start_displacement)
-      if (reached >= rules%fraction * model%peak) then
-         model%fallen_from = unbounded
-      else if (model%fallen_from < unbounded) then
-         fallen = way >= model%fallen_from + further * abs(model%peak_displacement - model%start_displacement)
-      else if (way > model%furthest) then
-         model%fallen_from = way
-      end if
-      model%furthest = max(model%furthest, way)
+      associate (loop => model%loop, fraction => model%rules%fraction)
+         if (fraction < 0.0_wp .or. .not. loop%peak > 0.0_wp) return
+         way = sign(1.0_wp, loop%slope) * (displacement - loop%start_displacement)
+         if (reached >= fraction * loop%peak) then
+            loop%fallen_from = unbounded
+         else if (loop%fallen_from < unbounded) then
+            fallen = way >= loop%fallen_from + further * abs(loop%peak_displacement - loop%start_displacement)
+         else if (way > loop%furthest) then
+            loop%fallen_from = way
+         end if
+         loop%furthest = max(loop%furthest, way)
+      end associate
    end subroutine judge_fall
 
    !> Has the compliance to the growing load grown by a ratio; supports that move also move what has no stiffness left,
    !> unless the constant loads carry it away
-   pure function too_soft(model, driven, ratio) result(yes)
+   pure function too_soft(model, driven) result(yes)
       type(element_model), intent(in) :: model
       logical, intent(in) :: driven
-      real(wp), intent(in) :: ratio
       logical :: yes
-      if (driven) then
-         yes = model%first_constant > 0.0_wp .and. .not. model%work_now(1) <= ratio * model%first_constant
-      else
-         yes = .not. abs(merge(model%work_now(3), model%work(3), model%releasing)) <= ratio * model%first_compliance
-      end if
+      associate (loop => model%loop, ratio => model%rules%compliance, work => model%solution%work)
+         if (driven) then
+            yes = loop%first_constant > 0.0_wp .and. .not. work%aa <= ratio * loop%first_constant
+         else
+            yes = .not. abs(merge(work%bb, model%ledger%work%bb, model%release%active)) <= &
+               ratio * loop%first_compliance
+         end if
+      end associate
    end function too_soft
 
    !> The multiplier at which monitor 1 has its target, where all points admit it
-   pure subroutine meet_target(model, rules, found, first, equation, share, ratio, lambda, met)
+   pure subroutine meet_target(model, found, monitors, lambda, met)
       type(element_model), intent(in) :: model
-      type(stop_rules), intent(in) :: rules
       type(scan_result), intent(in) :: found
-      integer(c_int), intent(in) :: first(:)
-      integer(c_int), intent(in) :: equation(:)
-      real(wp), intent(in) :: share(:)
-      real(wp), intent(in) :: ratio         !! of monitor 1, see watch
+      type(monitor_set), intent(in) :: monitors
       real(wp), intent(out) :: lambda
       logical, intent(out) :: met
       real(wp) :: start, slope
-      integer :: i
       met = .false.
       lambda = 0.0_wp
-      if (.not. abs(rules%side) > 0.0_wp) return
-      start = 0.0_wp
-      slope = 0.0_wp
-      if (abs(ratio) > 0.0_wp .and. .not. model%slides) then
-         start = ratio * (model%work_now(2) - model%support(2, 1))
-         slope = ratio * (model%work_now(3) - model%support(2, 2))
-      else
-         do i = int(first(1)), int(first(2)) - 1
-            start = start + share(i) * model%ua(equation(i))
-            slope = slope + share(i) * model%ub(equation(i))
-         end do
-      end if
-      if (.not. rules%side * slope > 0.0_wp) return
-      lambda = (rules%target - start) / slope
+      if (.not. abs(model%rules%side) > 0.0_wp) return
+      associate (ratio => monitors%ratio(1), work => model%solution%work, support => model%support%work)
+         if (abs(ratio) > 0.0_wp .and. .not. model%sliding%active) then
+            start = ratio * (work%ab - support%ba)
+            slope = ratio * (work%bb - support%bb)
+         else
+            start = monitors%sum_of(1, model%solution%ua)
+            slope = monitors%sum_of(1, model%solution%ub)
+         end if
+      end associate
+      if (.not. model%rules%side * slope > 0.0_wp) return
+      lambda = (model%rules%target - start) / slope
       met = found%empty%point == 0 .and. lambda >= found%lo%value .and. lambda <= found%hi%value
    end subroutine meet_target
 
    !> The pending event; where friction then leads in a circle or nowhere, all points at its limit turn at once
-   subroutine change_state(model, softest, driven, turned, reason, status)
+   subroutine change_state(model, driven, turned, reason, status)
       type(element_model), intent(inout) :: model
-      real(wp), intent(in) :: softest           !! see too_soft
       logical, intent(in) :: driven
       logical, intent(out) :: turned            !! which points slide and which stick was asked of all of them
       integer(c_int), intent(out) :: reason
       integer(c_int), intent(out) :: status
       type(slider), allocatable :: point(:)
       real(wp), allocatable :: ua(:), ub(:), fh(:, :)
-      integer, allocatable :: turn(:, :)
-      integer :: i, place(2), info
+      type(point_event), allocatable :: turn(:)
+      type(point_event) :: pending
+      integer :: i, info
       logical :: circle, nowhere, found
       turned = .false.
-      place = model%pending(1:2)
+      pending = model%loop%pending
       circle = .false.
-      select type (group => model%holders(place(1))%group)
-      class is (point_group)
-         circle = group%undecided(place(2), model%pending(3), model%lambda)
-         if (group%slides .and. .not. model%slides .and. all(model%pending(3) /= in_place)) then
+      select type (group => model%mesh%holders(pending%group)%group)
+      class is (friction_group)
+         circle = group%undecided(pending%point, pending%code, model%loop%lambda)
+         if (group%slides .and. .not. model%sliding%active .and. all(pending%code /= in_place)) then
             call bring_all(model, status)
             if (status == status_ok) call model_slips(model, status)
             if (status /= status_ok) return
          end if
       end select
       call apply_event(model, reason, status)
-      if (.not. model%slides .or. status /= status_ok .or. reason /= stop_none) return
+      if (.not. model%sliding%active .or. status /= status_ok .or. reason /= stop_none) return
       call bring_all(model, status)
-      if (status == status_ok) call find_sliders(model%holders, point, status)
+      if (status == status_ok) call find_sliders(model%mesh%holders, point, status)
       if (status /= status_ok) return
-      allocate (ua, source=model%ua, stat=info)
-      if (info == 0) allocate (ub, source=model%ub, stat=info)
-      if (info == 0) allocate (fh, source=model%fh, stat=info)
+      allocate (ua, source=model%solution%ua, stat=info)
+      if (info == 0) allocate (ub, source=model%solution%ub, stat=info)
+      if (info == 0) allocate (fh, source=model%load%fh, stat=info)
       if (info /= 0) status = status_out_of_memory
       if (info /= 0) return
       ! Also where all are asked: a point beyond its limit has some way to go at this load, before any rate counts
-      call slide(model, reason, status)
+      call balance_sliders(model, reason, status)
       if (status /= status_ok) return
       nowhere = reason /= stop_none
       if (driven) then
-         nowhere = nowhere .or. too_soft(model, driven, softest)
+         nowhere = nowhere .or. too_soft(model, driven)
       else
-         nowhere = nowhere .or. .not. abs(model%work_now(3)) <= softest * model%first_compliance
+         nowhere = nowhere .or. &
+            .not. abs(model%solution%work%bb) <= model%rules%compliance * model%loop%first_compliance
       end if
       if (.not. (nowhere .or. circle)) return
       if (nowhere) then
          ! Back to where they had not moved yet, whose numbers have more digits
-         model%ua(:) = ua
-         model%ub(:) = ub
-         model%fh(:, :) = fh
+         model%solution%ua(:) = ua
+         model%solution%ub(:) = ub
+         model%load%fh(:, :) = fh
          do i = 1, size(point)
-            select type (group => model%holders(point(i)%group)%group)
-            class is (point_group)
-               call group%hold(point(i)%point, point(i)%held)
+            select type (group => model%mesh%holders(point(i)%group)%group)
+            class is (friction_group)
+               call group%set_held(point(i)%point, point(i)%held)
             end select
          end do
          call model_settled(model)
@@ -316,10 +293,10 @@ contains
       if (status /= status_ok) return
       reason = merge(stop_none, stop_mechanism, found)
       if (found) then
-         do i = 1, size(turn, 2)
-            call account(model, model%lambda, status)
+         do i = 1, size(turn)
+            call account_state(model, model%loop%lambda, status)
             if (status /= status_ok) return
-            model%pending = turn(:, i)
+            model%loop%pending = turn(i)
             call apply_event(model, reason, status)
             if (status /= status_ok .or. reason /= stop_none) return
             call model_follow(model, status)
@@ -327,7 +304,7 @@ contains
             if (status /= status_ok) return
          end do
       end if
-      if (found) call slide(model, reason, status)
+      if (found) call balance_sliders(model, reason, status)
    end subroutine change_state
 
    !> Damage the pending point; the factor follows, and the displacements on the path of its element
@@ -341,35 +318,37 @@ contains
 
       reason = stop_none
       status = status_ok
-      select type (group => model%holders(model%pending(1))%group)
-      class is (point_group)
-         if (model%releasing) then
-            call group%damage(model%pending(2), model%pending(3), 0.0_wp, model%from, model%ub, model%event, tooth)
-         else
-            call group%damage(model%pending(2), model%pending(3), model%lambda, model%ua, model%ub, model%event, tooth)
-         end if
-      end select
-      model%pending = 0
-      model%events = model%events + 1
-      model%tree%now = model%tree%now + 1
-      associate (event => model%event, tree => model%tree)
+      associate (loop => model%loop, event => model%loop%event, tree => model%search%tree, ledger => model%ledger, &
+         load => model%load, release => model%release, ua => model%solution%ua, ub => model%solution%ub, &
+         z => model%solution%z)
+         select type (group => model%mesh%holders(loop%pending%group)%group)
+         class is (point_group)
+            if (release%active) then
+               call group%damage(loop%pending%point, loop%pending%code, 0.0_wp, release%from, ub, event, tooth)
+            else
+               call group%damage(loop%pending%point, loop%pending%code, loop%lambda, ua, ub, event, tooth)
+            end if
+         end select
+         loop%pending = point_event()
+         loop%events = loop%events + 1
+         tree%now = tree%now + 1
          if (event%rank == 0) return
          ! Flexibilities that have not followed the event before this one are lost
          model%friction%known = model%friction%known .and. model%friction%current
          model%friction%current = .false.
-         model%cracked = model%cracked + model%scale**2 * event%crack
+         ledger%cracked = ledger%cracked + loop%scale**2 * event%crack
          n = event%entries
          do i = 1, event%rank
-            before(:, i) = [component(event, i, model%ua), component(event, i, model%ub)]
-            model%before(i) = model%scale * (before(1, i) + model%lambda * before(2, i)) - event%origin(i)
-            if (model%releasing) then
-               model%before(i) = component(event, i, model%from)
-               model%dissipated = model%dissipated + 0.5_wp * event%sign(i) * model%before(i)**2
+            before(:, i) = [component(event, i, ua), component(event, i, ub)]
+            loop%before(i) = loop%scale * (before(1, i) + loop%lambda * before(2, i)) - event%origin(i)
+            if (release%active) then
+               loop%before(i) = component(event, i, release%from)
+               ledger%dissipated = ledger%dissipated + 0.5_wp * event%sign(i) * loop%before(i)**2
             end if
-            if (event%cracks .and. event%sign(i) > 0.0_wp) model%cracked = model%cracked + 0.5_wp * model%before(i)**2
+            if (event%cracks .and. event%sign(i) > 0.0_wp) ledger%cracked = ledger%cracked + 0.5_wp * loop%before(i)**2
          end do
-         if (model%refactor) then
-            call add_event(event, model%start, model%row, model%value)
+         if (model%stiffness%refactor) then
+            call add_event(event, model%stiffness%start, model%stiffness%row, model%stiffness%value)
             call model_solve(model, status)
             if (status == status_not_positive_definite) then
                status = status_ok
@@ -377,10 +356,10 @@ contains
             end if
             return
          end if
-         model%origin_energy = model%origin_energy + event%shift
+         model%sliding%origin_energy = model%sliding%origin_energy + event%shift
          f = 0
          do i = 1, n
-            if (event%index(i) > model%equations) cycle     ! of a support that moves
+            if (event%index(i) > model%mesh%equations) cycle     ! of a support that moves
             f = f + 1
             unknown(f) = i
          end do
@@ -400,8 +379,8 @@ contains
                   event%w(unknown(1:f), i)
                do k = 1, n
                   associate (to => event%index(k), w_k => event%w(k, i))
-                     model%fo(to) = model%fo(to) - event%sign(i) * event%origin(i) * w_k
-                     model%fh(to, :) = model%fh(to, :) - event%sign(i) * event%hold(:, i) * w_k
+                     load%fo(to) = load%fo(to) - event%sign(i) * event%origin(i) * w_k
+                     load%fh(to, :) = load%fh(to, :) - event%sign(i) * event%hold(:, i) * w_k
                   end associate
                end do
             end do
@@ -411,13 +390,13 @@ contains
             k = regions_home(tree, event%index(1:n))
             do while (k > 0)
                path = path + 1
-               model%list(path) = k
-               model%z(tree%part(k)%first:tree%part(k)%last, :) = 0.0_wp   ! part of a region may lie off the path
+               model%search%list(path) = k
+               z(tree%part(k)%first:tree%part(k)%last, :) = 0.0_wp   ! part of a region may lie off the path
                k = tree%part(k)%parent
             end do
             index0(1:f) = event%index(unknown(1:f)) - 1_c_int
-            status = extrados_sparse_change(model%handle, int(changes, c_int), sense, int(f, c_int), index0, w, &
-               2_c_int, b, model%z, least)
+            status = extrados_sparse_change(model%stiffness%factor, int(changes, c_int), sense, int(f, c_int), index0, &
+               w, 2_c_int, b, z, least)
             if (status == status_not_positive_definite .or. (status == status_ok .and. least < least_pivot)) then
                status = status_ok
                reason = stop_mechanism
@@ -425,21 +404,24 @@ contains
             if (status /= status_ok .or. reason /= stop_none) return
             ! From the root down to the element
             do i = path, 1, -1
-               call regions_bring(tree, model%list(i), model%handle, .true., model%ua, model%ub, model%z, status)
+               call regions_bring(tree, model%search%list(i), model%stiffness%factor, .true., ua, ub, z, status)
                if (status /= status_ok) return
             end do
          end if
-         do i = 1, merge(0, event%rank, model%slides)   ! sliding friction lets the loads do other work, see account
-            after = [component(event, i, model%ua), component(event, i, model%ub)]
-            model%work_now = model%work_now + event%sign(i) * &
-               [before(1, i) * after(1), before(1, i) * after(2), before(2, i) * after(2)]
+         ! Sliding friction lets the loads do other work, see account_state
+         do i = 1, merge(0, event%rank, model%sliding%active)
+            after = [component(event, i, ua), component(event, i, ub)]
+            associate (work => model%solution%work, s => event%sign(i))
+               work = load_work(work%aa + s * (before(1, i) * after(1)), work%ab + s * (before(1, i) * after(2)), &
+                  work%ba + s * (before(1, i) * after(2)), work%bb + s * (before(2, i) * after(2)))
+            end associate
          end do
       end associate
-      if (mod(model%events, guard_every) == 0) call guard_residual(model, status)
+      if (mod(model%loop%events, guard_every) == 0) call guard_residual(model, status)
    end subroutine apply_event
 
    !> What slides balances with what changed, and has come as far as it is
-   subroutine slide(model, reason, status)
+   subroutine balance_sliders(model, reason, status)
       type(element_model), intent(inout) :: model
       integer(c_int), intent(inout) :: reason
       integer(c_int), intent(out) :: status
@@ -452,12 +434,12 @@ contains
          reason = stop_mechanism
       end if
       if (reason /= stop_none) return
-      do g = 1, size(model%holders)
-         select type (group => model%holders(g)%group)
-         class is (point_group)
-            call group%advance(model%lambda, model%ua, model%ub)
+      do g = 1, size(model%mesh%holders)
+         select type (group => model%mesh%holders(g)%group)
+         class is (friction_group)
+            call group%advance(model%loop%lambda, model%solution%ua, model%solution%ub)
          end select
       end do
-   end subroutine slide
+   end subroutine balance_sliders
 
 end module sla_events

@@ -13,13 +13,13 @@
 module sla_friction
    use common_kinds, only : wp
    use common_status, only : status_ok, status_not_positive_definite, status_out_of_memory
-   use sla_c_bindings, only : extrados_sparse_plain, extrados_sparse_solve
-   use sla_group, only : event_vectors, group_holder, most_rank, point_group, slider
-   use, intrinsic :: iso_c_binding, only : c_int, c_ptr
+   use sla_group, only : event_vectors, friction_group, group_holder, most_rank, slider
+   use sla_stiffness, only : stiffness_matrix, stiffness_solve
+   use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
    public :: friction_store, friction_balance, friction_flexibility, friction_follow
-   public :: eliminate, find_sliders, product_of
+   public :: eliminate_system, find_sliders, product_of
 
    !> Pivot of the unsymmetric system, whose diagonal is near one, below which the joints slide on without more load
    real(wp), parameter :: least_pivot = 1.0e-9_wp
@@ -39,30 +39,28 @@ module sla_friction
 contains
 
    !> Forces of sliding friction and displacements that balance with them
-   subroutine friction_balance(store, holders, event, handle, fresh, value, n, ua, ub, fh, status)
+   subroutine friction_balance(store, holders, event, stiffness, ua, ub, fh, status)
       type(friction_store), intent(inout) :: store
       type(group_holder), intent(inout) :: holders(:)
       type(event_vectors), intent(in) :: event !! by which the factor changed since the last balance
-      type(c_ptr), intent(in) :: handle        !! of the factor
-      logical, intent(in) :: fresh             !! solve with a new factor of `value`
-      real(wp), intent(in), contiguous :: value(:)  !! of the stiffness
-      integer, intent(in) :: n                 !! equations
-      real(wp), intent(inout) :: ua(0:)        !! under the constant loads; beyond n supports that move [m]
+      type(stiffness_matrix), intent(in) :: stiffness
+      real(wp), intent(inout) :: ua(0:)        !! under the constant loads; beyond the equations supports that move [m]
       real(wp), intent(inout) :: ub(0:)        !! per unit multiplier [m]
       real(wp), intent(inout) :: fh(0:, :)     !! (0:, 2) forces of friction, constant and per unit multiplier [N]
       integer(c_int), intent(out) :: status    !! not_positive_definite: what slides is a mechanism; nothing was changed
       type(slider), allocatable :: point(:)
       real(wp), allocatable :: coupling(:, :), change(:, :), force(:, :), answer(:, :)
       integer, allocatable :: at(:)
-      integer :: i, j, m, info
+      integer :: i, j, m, n, info
 
+      n = size(stiffness%start) - 1
       call find_sliders(holders, point, status)
       if (status /= status_ok) return
       m = size(point)
       allocate (coupling(m, m), change(m, 2), force(size(ua) - 1, 2), answer(n, 2), at(m), stat=info)
       if (info /= 0) status = status_out_of_memory
       if (info /= 0) return
-      call friction_flexibility(store, point, event, handle, fresh, value, n, at, status)
+      call friction_flexibility(store, point, event, stiffness, at, status)
       if (status /= status_ok .or. m == 0) return
       do j = 1, m
          do i = 1, m
@@ -73,7 +71,7 @@ contains
             product_of(point(j)%across, point(j), ub(1:))] + point(j)%law(2) * &
             [product_of(point(j)%slip, point(j), ua(1:)), product_of(point(j)%slip, point(j), ub(1:))] - point(j)%held
       end do
-      call eliminate(coupling, change, status)
+      call eliminate_system(coupling, change, status)
       if (status /= status_ok) return
       force = 0.0_wp
       do j = 1, m
@@ -81,13 +79,13 @@ contains
             call add_force(-point(j)%area * change(j, i) * point(j)%slip, point(j), force(:, i))
          end do
          select type (group => holders(point(j)%group)%group)
-         class is (point_group)
-            call group%hold(point(j)%point, point(j)%held + change(j, :))
+         class is (friction_group)
+            call group%set_held(point(j)%point, point(j)%held + change(j, :))
          end select
       end do
       fh(1:, :) = fh(1:, :) + force
       answer(:, :) = force(1:n, :)
-      call solve(handle, fresh, value, answer, status)
+      call solve_vectors(stiffness, answer, status)
       ua(1:n) = ua(1:n) + answer(:, 1)
       ub(1:n) = ub(1:n) + answer(:, 2)
    end subroutine friction_balance
@@ -101,7 +99,7 @@ contains
       m = 0
       do g = 1, size(holders)
          select type (group => holders(g)%group)
-         class is (point_group)
+         class is (friction_group)
             m = m + group%sliding()
          end select
       end do
@@ -111,7 +109,7 @@ contains
       m = 0
       do g = 1, size(holders)
          select type (group => holders(g)%group)
-         class is (point_group)
+         class is (friction_group)
             call group%sliders(point, m)
             point(m - group%sliding() + 1:m)%group = g
          end select
@@ -119,14 +117,11 @@ contains
    end subroutine find_sliders
 
    !> Where in the store some points are, with the flexibilities between them of the factor as it is
-   subroutine friction_flexibility(store, point, event, handle, fresh, value, n, at, status)
+   subroutine friction_flexibility(store, point, event, stiffness, at, status)
       type(friction_store), intent(inout) :: store
       type(slider), intent(in) :: point(:)
       type(event_vectors), intent(in) :: event
-      type(c_ptr), intent(in) :: handle
-      logical, intent(in) :: fresh
-      real(wp), intent(in), contiguous :: value(:)
-      integer, intent(in) :: n                 !! equations
+      type(stiffness_matrix), intent(in) :: stiffness
       integer, intent(out) :: at(:)            !! (points)
       integer(c_int), intent(out) :: status
       type(slider), allocatable :: all_of(:)
@@ -135,7 +130,7 @@ contains
       integer, allocatable :: kept(:)
       integer :: i, j, k, old, count, info
 
-      call friction_follow(store, event, handle, fresh, value, n, status)
+      call friction_follow(store, event, stiffness, status)
       if (status /= status_ok) return
       old = 0
       if (store%known) old = size(store%point)
@@ -165,7 +160,7 @@ contains
       do k = 1, size(at)
          if (at(k) == 0) count = count + 1
       end do
-      allocate (all_of(count), jump(2, count, count), x(n, 2), stat=info)
+      allocate (all_of(count), jump(2, count, count), x(size(stiffness%start) - 1, 2), stat=info)
       if (info /= 0) status = status_out_of_memory
       if (info /= 0) return
       do k = 1, i
@@ -182,7 +177,7 @@ contains
          x = 0.0_wp
          call add_force(point(k)%slip, point(k), x(:, 1))
          call add_force(point(k)%across, point(k), x(:, 2))
-         call solve(handle, fresh, value, x, status)
+         call solve_vectors(stiffness, x, status)
          if (status /= status_ok) return
          do j = 1, i
             jump(:, j, i) = [product_of(all_of(j)%across, all_of(j), x(:, 1)), &
@@ -197,18 +192,16 @@ contains
    end subroutine friction_flexibility
 
    !> The flexibilities after an event, from those before it
-   subroutine friction_follow(store, event, handle, fresh, value, n, status)
+   subroutine friction_follow(store, event, stiffness, status)
       type(friction_store), intent(inout) :: store
       type(event_vectors), intent(in) :: event
-      type(c_ptr), intent(in) :: handle
-      logical, intent(in) :: fresh
-      real(wp), intent(in), contiguous :: value(:)
-      integer, intent(in) :: n                 !! equations
+      type(stiffness_matrix), intent(in) :: stiffness
       integer(c_int), intent(out) :: status
       real(wp), allocatable :: z(:, :), moved(:, :, :), copy(:, :), left(:, :)
       real(wp) :: small(most_rank, most_rank)
-      integer :: i, j, k, m, r, info
+      integer :: i, j, k, m, n, r, info
 
+      n = size(stiffness%start) - 1
       status = status_ok
       if (.not. store%known .or. store%current) return
       store%known = .false.      ! until it has succeeded
@@ -223,7 +216,7 @@ contains
             if (event%index(i) <= n) z(event%index(i), k) = event%w(i, k)
          end do
       end do
-      if (r > 0) call solve(handle, fresh, value, z, status)
+      if (r > 0) call solve_vectors(stiffness, z, status)
       if (status /= status_ok) return
       do k = 1, r
          do i = 1, r
@@ -241,7 +234,7 @@ contains
       do j = 1, m
          copy(:, :) = small(1:r, 1:r)
          left(:, 1) = moved(2, :, j)
-         call eliminate(copy, left, status)
+         call eliminate_system(copy, left, status)
          if (status /= status_ok) return
          do i = 1, m
             do k = 1, r
@@ -254,24 +247,18 @@ contains
    end subroutine friction_follow
 
    !> Displacements of some loads
-   subroutine solve(handle, fresh, value, x, status)
-      type(c_ptr), intent(in) :: handle
-      logical, intent(in) :: fresh
-      real(wp), intent(in), contiguous :: value(:)
+   subroutine solve_vectors(stiffness, x, status)
+      type(stiffness_matrix), intent(in) :: stiffness
       real(wp), intent(inout), contiguous :: x(:, :)
       integer(c_int), intent(out) :: status
       integer :: j, last
       status = status_ok
       do j = 1, size(x, 2), most_vectors
          last = min(j + most_vectors - 1, size(x, 2))
-         if (fresh) then
-            status = extrados_sparse_plain(handle, value, int(last - j + 1, c_int), x(:, j:last))
-         else
-            status = extrados_sparse_solve(handle, int(last - j + 1, c_int), x(:, j:last))
-         end if
+         call stiffness_solve(stiffness, x(:, j:last), status)
          if (status /= status_ok) return
       end do
-   end subroutine solve
+   end subroutine solve_vectors
 
    !> Add the entries of a point to forces of the equations
    pure subroutine add_force(entries, point, force)
@@ -300,7 +287,7 @@ contains
    end function product_of
 
    !> Gaussian elimination with row pivots, column by column; the right sides become the answers
-   pure subroutine eliminate(a, b, status)
+   pure subroutine eliminate_system(a, b, status)
       real(wp), intent(inout), contiguous :: a(:, :)
       real(wp), intent(inout), contiguous :: b(:, :)
       integer(c_int), intent(out) :: status
@@ -315,10 +302,10 @@ contains
          end if
          if (best /= k) then
             do j = k, n
-               call swap(a(k, j), a(best, j))
+               call swap_values(a(k, j), a(best, j))
             end do
             do j = 1, size(b, 2)
-               call swap(b(k, j), b(best, j))
+               call swap_values(b(k, j), b(best, j))
             end do
          end if
          a(k + 1:, k) = a(k + 1:, k) / a(k, k)
@@ -335,14 +322,14 @@ contains
             b(1:k - 1, j) = b(1:k - 1, j) - b(k, j) * a(1:k - 1, k)
          end do
       end do
-   end subroutine eliminate
+   end subroutine eliminate_system
 
-   pure subroutine swap(a, b)
+   pure subroutine swap_values(a, b)
       real(wp), intent(inout) :: a, b
       real(wp) :: kept
       kept = a
       a = b
       b = kept
-   end subroutine swap
+   end subroutine swap_values
 
 end module sla_friction

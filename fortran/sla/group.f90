@@ -19,9 +19,10 @@
 !>                 most `most_rank`. Stiffening vectors may come in any order. They must give the new `matrix` exactly.
 !>   state         all that damage is, as `state_rows` numbers per point, there and back: resume and stages rest on it
 !>   report        rows of numbers per point for figures, those of a plane point where they mean something
-!>   margin        optional: a lower bound of what a range of elements bears, by which regions may wait. Without it they
-!>                 are looked at in each event: right, and slow.
-!>   origins ...   optional: forces beside the stiffness, for what slides
+!>   margin        a lower bound of what a range of elements carries, by which regions may wait. A bound of -1 makes
+!>                 them looked at in each event: right, and slow.
+!>
+!> Points that slide have forces beside their stiffness: their groups extend friction_group, see there.
 !>
 !> A constructor returns the offending element and a status of extrados_status.h (bad geometry, out of memory, invalid
 !> argument); none of the procedures above may fail. The facade is that of `bars` in api_sla_model. Equations are by
@@ -32,16 +33,29 @@ module sla_group
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: element_group, point_group, group_holder, slider, bound, scan_result, event_vectors, material_options
+   public :: element_group, point_group, friction_group, group_holder, slider, point_place, point_event, bound
+   public :: scan_result, event_vectors, material_options
    public :: below, unbounded, most_entries, most_rank, offer_hi, offer_lo, offer_empty, linear_bound, &
       component, along, admitted, report_rows, state_rows
 
    real(wp), parameter :: unbounded = huge(1.0_wp)
+   !> Freedoms of an element; vectors of an event, as many as the factor takes (extrados_most_changes)
    integer, parameter :: most_entries = 24, most_rank = 5
    !> Rows of a point's report, see plane and bar
    integer, parameter :: report_rows = 19
 
-   !> A limit of the load multiplier and the point that sets it
+   !> A point of a model
+   type :: point_place
+      integer :: group = 0             !! 0: none
+      integer :: point = 0             !! of its group
+   end type point_place
+
+   !> What happens to a point
+   type, extends(point_place) :: point_event
+      integer :: code = 0              !! of the list sla_event
+   end type point_event
+
+   !> A limit of the load multiplier, the point that sets it and what happens there
    type :: bound
       real(wp) :: value = 0.0_wp
       integer :: group = 0
@@ -117,25 +131,31 @@ module sla_group
       integer :: points = 0                !! of the group
       integer :: offset = 0                !! points of the groups before it
       integer :: directions = 2            !! crack directions of a point; a bar has one
-      logical :: slides = .false.          !! it can come to have forces beside its stiffness, see origins
       type(material_options) :: options
    contains
       procedure(scan_interface), deferred :: scan
       procedure(damage_interface), deferred :: damage
       procedure(report_interface), deferred :: report
       procedure(state_interface), deferred :: state
-      procedure :: margin
-      procedure :: origins
-      procedure :: slipped
-      procedure :: sliding
-      procedure :: sliders
-      procedure :: turned_back
-      procedure :: undecided
-      procedure :: hold
-      procedure :: advance
-      procedure :: excess
-      procedure :: elastic
+      procedure(margin_interface), deferred :: margin
    end type point_group
+
+   !> Elements whose points can slide: their stress is k d - k0 + h, with a force h that follows the displacements, see
+   !> sla_friction, and k0 that of a spring whose origin moved
+   type, abstract, extends(point_group) :: friction_group
+      logical :: slides = .false.          !! there is friction: points can come to have forces beside their stiffness
+   contains
+      procedure(origins_interface), deferred :: origins
+      procedure(slipped_interface), deferred :: slipped
+      procedure(sliding_interface), deferred :: sliding
+      procedure(sliders_interface), deferred :: sliders
+      procedure(turned_back_interface), deferred :: turned_back
+      procedure(undecided_interface), deferred :: undecided
+      procedure(set_held_interface), deferred :: set_held
+      procedure(advance_interface), deferred :: advance
+      procedure(excess_interface), deferred :: excess
+      procedure(elastic_interface), deferred :: elastic
+   end type friction_group
 
    type :: group_holder
       class(element_group), allocatable :: group
@@ -214,124 +234,120 @@ module sla_group
          real(wp), intent(inout) :: values(:, :)   !! (state_rows, points)
       end subroutine state_interface
 
+      !> What a range of elements can bear before a point leaves its limits at one of the multipliers `lambda`: the
+      !> least sqrt(2 U) of the strain energies U [J] that a change of the displacements must bring into them.
+      !> For a component of the stress that has `slack` left at a point of volume w and stiffness D of that
+      !> component it is slack sqrt(w / D).
+      pure subroutine margin_interface(group, first, last, ua, ub, lambda, least)
+         import :: point_group, wp
+         implicit none (type, external)
+         class(point_group), intent(in) :: group
+         integer, intent(in) :: first
+         integer, intent(in) :: last
+         real(wp), intent(in) :: ua(0:)
+         real(wp), intent(in) :: ub(0:)
+         real(wp), intent(in) :: lambda(:)
+         real(wp), intent(inout) :: least(:)     !! sqrt(2 U) by multiplier [J^1/2]
+      end subroutine margin_interface
+
+      !> Add the forces of k0 and of -h, and the energy that k0 alone leaves
+      pure subroutine origins_interface(group, springs, held, energy)
+         import :: friction_group, wp
+         implicit none (type, external)
+         class(friction_group), intent(in) :: group
+         real(wp), intent(inout) :: springs(0:)    !! [N]
+         real(wp), intent(inout) :: held(0:, :)    !! (0:, 2) constant and per unit multiplier [N]
+         real(wp), intent(inout) :: energy         !! [J]
+      end subroutine origins_interface
+
+      !> Does a point have forces beside its stiffness?
+      pure function slipped_interface(group) result(yes)
+         import :: friction_group
+         implicit none (type, external)
+         class(friction_group), intent(in) :: group
+         logical :: yes
+      end function slipped_interface
+
+      !> How many points slide
+      pure function sliding_interface(group) result(count)
+         import :: friction_group
+         implicit none (type, external)
+         class(friction_group), intent(in) :: group
+         integer :: count
+      end function sliding_interface
+
+      !> Append the points that slide
+      pure subroutine sliders_interface(group, list, count)
+         import :: friction_group, slider
+         implicit none (type, external)
+         class(friction_group), intent(in) :: group
+         type(slider), intent(inout) :: list(:)
+         integer, intent(inout) :: count
+      end subroutine sliders_interface
+
+      !> Append the points that have stuck at this very load; `held` is the force of their friction, whose spring is
+      !> whole
+      pure subroutine turned_back_interface(group, lambda, list, count)
+         import :: friction_group, slider, wp
+         implicit none (type, external)
+         class(friction_group), intent(in) :: group
+         real(wp), intent(in) :: lambda
+         type(slider), intent(inout) :: list(:)    !! ignored where it is too short
+         integer, intent(inout) :: count
+      end subroutine turned_back_interface
+
+      !> Has a point that is about to change done the opposite at this very load?
+      pure function undecided_interface(group, point, code, lambda) result(yes)
+         import :: friction_group, wp
+         implicit none (type, external)
+         class(friction_group), intent(in) :: group
+         integer, intent(in) :: point
+         integer, intent(in) :: code
+         real(wp), intent(in) :: lambda
+         logical :: yes
+      end function undecided_interface
+
+      !> Take over the force h of a point that slides
+      pure subroutine set_held_interface(group, point, held)
+         import :: friction_group, wp
+         implicit none (type, external)
+         class(friction_group), intent(inout) :: group
+         integer, intent(in) :: point
+         real(wp), intent(in) :: held(2)     !! constant and per unit multiplier [Pa]
+      end subroutine set_held_interface
+
+      !> What slides has come as far as in the state ua + lambda ub
+      pure subroutine advance_interface(group, lambda, ua, ub)
+         import :: friction_group, wp
+         implicit none (type, external)
+         class(friction_group), intent(inout) :: group
+         real(wp), intent(in) :: lambda
+         real(wp), intent(in) :: ua(0:)
+         real(wp), intent(in) :: ub(0:)
+      end subroutine advance_interface
+
+      !> Energy that the stiffness stores at points that slide and that their forces take back [J]
+      pure function excess_interface(group, u) result(energy)
+         import :: friction_group, wp
+         implicit none (type, external)
+         class(friction_group), intent(in) :: group
+         real(wp), intent(in) :: u(0:)
+         real(wp) :: energy
+      end function excess_interface
+
+      !> Energy of the elastic slip of points that slide, which their stiffness does not have [J]
+      pure function elastic_interface(group, lambda, u) result(energy)
+         import :: friction_group, wp
+         implicit none (type, external)
+         class(friction_group), intent(in) :: group
+         real(wp), intent(in) :: lambda
+         real(wp), intent(in) :: u(0:)
+         real(wp) :: energy
+      end function elastic_interface
+
    end interface
 
 contains
-
-   !> What a range of elements can bear before a point leaves its limits at one of the multipliers `lambda`: the
-   !> least sqrt(2 U) of the strain energies U [J] that a change of the displacements must bring into them.
-   !> For a component of the stress that has `slack` left at a point of volume w and stiffness D of that
-   !> component it is slack sqrt(w / D). Here for points of which nothing is known: they are looked at in each event.
-   pure subroutine margin(group, first, last, ua, ub, lambda, least)
-      class(point_group), intent(in) :: group
-      integer, intent(in) :: first
-      integer, intent(in) :: last
-      real(wp), intent(in) :: ua(0:)
-      real(wp), intent(in) :: ub(0:)
-      real(wp), intent(in) :: lambda(:)
-      real(wp), intent(inout) :: least(:)     !! sqrt(2 U) by multiplier [J^1/2]
-      associate (unused_group => group%points, unused_first => first, unused_last => last, unused_a => ua, &
-         unused_b => ub, unused_load => lambda)
-      end associate
-      least = -1.0_wp
-   end subroutine margin
-
-   !> Does a point have forces beside its stiffness, see origins?
-   pure function slipped(group) result(yes)
-      class(point_group), intent(in) :: group
-      logical :: yes
-      associate (unused => group%points)
-      end associate
-      yes = .false.
-   end function slipped
-
-   !> Points whose stress is k d - k0 + h: add the forces of k0 and of -h, and the energy that k0 alone leaves
-   pure subroutine origins(group, springs, held, energy)
-      class(point_group), intent(in) :: group
-      real(wp), intent(inout) :: springs(0:)    !! [N]
-      real(wp), intent(inout) :: held(0:, :)    !! (0:, 2) constant and per unit multiplier [N]
-      real(wp), intent(inout) :: energy         !! [J]
-      associate (none => group, same => springs, likewise => held, unchanged => energy)   ! most groups have none
-      end associate
-   end subroutine origins
-
-   !> How many points slide
-   pure function sliding(group) result(count)
-      class(point_group), intent(in) :: group
-      integer :: count
-      count = 0 * group%points      ! most groups have none
-   end function sliding
-
-   !> Append the points that slide
-   pure subroutine sliders(group, list, count)
-      class(point_group), intent(in) :: group
-      type(slider), intent(inout) :: list(:)
-      integer, intent(inout) :: count
-      associate (none => group, same => list, unchanged => count)
-      end associate
-   end subroutine sliders
-
-   !> Append the points that have stuck at this very load; `held` is the force of their friction, whose spring is whole
-   pure subroutine turned_back(group, lambda, list, count)
-      class(point_group), intent(in) :: group
-      real(wp), intent(in) :: lambda
-      type(slider), intent(inout) :: list(:)    !! ignored where it is too short
-      integer, intent(inout) :: count
-      associate (none => group, load => lambda, same => list, unchanged => count)
-      end associate
-   end subroutine turned_back
-
-   !> Has a point that is about to change done the opposite at this very load?
-   pure function undecided(group, point, code, lambda) result(yes)
-      class(point_group), intent(in) :: group
-      integer, intent(in) :: point
-      integer, intent(in) :: code
-      real(wp), intent(in) :: lambda
-      logical :: yes
-      associate (none => group, p => point, c => code, load => lambda)
-      end associate
-      yes = .false.
-   end function undecided
-
-   !> Take over the force of a point that slides
-   pure subroutine hold(group, point, held)
-      class(point_group), intent(inout) :: group
-      integer, intent(in) :: point
-      real(wp), intent(in) :: held(2)     !! constant and per unit multiplier [Pa]
-      associate (none => group, p => point, h => held)
-      end associate
-   end subroutine hold
-
-   !> Energy that the stiffness stores at points that slide and that their forces take back [J]
-   pure function excess(group, u) result(energy)
-      class(point_group), intent(in) :: group
-      real(wp), intent(in) :: u(0:)
-      real(wp) :: energy
-      associate (none => group, same => u)
-      end associate
-      energy = 0.0_wp
-   end function excess
-
-   !> Energy of the elastic slip of points that slide, which their stiffness does not have [J]
-   pure function elastic(group, lambda, u) result(energy)
-      class(point_group), intent(in) :: group
-      real(wp), intent(in) :: lambda
-      real(wp), intent(in) :: u(0:)
-      real(wp) :: energy
-      associate (none => group, load => lambda, same => u)
-      end associate
-      energy = 0.0_wp
-   end function elastic
-
-   !> What slides has come as far as in the state ua + lambda ub
-   pure subroutine advance(group, lambda, ua, ub)
-      class(point_group), intent(inout) :: group
-      real(wp), intent(in) :: lambda
-      real(wp), intent(in) :: ua(0:)
-      real(wp), intent(in) :: ub(0:)
-      associate (none => group, load => lambda, a => ua, b => ub)
-      end associate
-   end subroutine advance
 
    !> Displacements of an element's own freedoms
    pure subroutine gather(group, element, u, local)

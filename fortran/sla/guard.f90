@@ -23,49 +23,51 @@ contains
       real(wp) :: ratio
       integer :: n
 
-      n = model%equations
+      n = model%mesh%equations
       call bring_all(model, status)
       if (status /= status_ok) return
-      model%guard(1) = model%guard(1) + 1
-      call residual(model, model%ua, model%ub)
-      if (model%residual <= most_residual) then
+      model%checks%checks = model%checks%checks + 1
+      call residual(model, model%solution%ua, model%solution%ub)
+      if (model%checks%residual <= most_residual) then
          call model_settled(model)
          return
       end if
-      model%guard(2) = model%guard(2) + 1
-      status = extrados_sparse_solve(model%handle, 2_c_int, model%z)
+      model%checks%solutions = model%checks%solutions + 1
+      status = extrados_sparse_solve(model%stiffness%factor, 2_c_int, model%solution%z)
       if (status /= status_ok) return
-      model%ua(1:n) = model%ua(1:n) + model%z(:, 1)
-      model%ub(1:n) = model%ub(1:n) + model%z(:, 2)
+      model%solution%ua(1:n) = model%solution%ua(1:n) + model%solution%z(:, 1)
+      model%solution%ub(1:n) = model%solution%ub(1:n) + model%solution%z(:, 2)
       call model_settled(model)
-      call residual(model, model%ua, model%ub)
-      if (model%residual <= most_residual) return
-      model%guard(3) = model%guard(3) + 1
+      call residual(model, model%solution%ua, model%solution%ub)
+      if (model%checks%residual <= most_residual) return
+      model%checks%factors = model%checks%factors + 1
       call model_factor(model, node, direction, ratio, status)
       if (status == status_ok) call model_solve(model, status)
-      if (status == status_ok) call residual(model, model%ua, model%ub)
+      if (status == status_ok) call residual(model, model%solution%ua, model%solution%ub)
    end subroutine guard_residual
 
-   !> Residual forces into z, the larger relative norm into model%residual
+   !> Residual forces into z, the larger relative norm into model%checks%residual
    subroutine residual(model, ua, ub)
       type(element_model), intent(inout) :: model
       real(wp), intent(in) :: ua(0:)
       real(wp), intent(in) :: ub(0:)
       real(wp) :: load
       integer :: k, g, n
-      n = model%equations
-      model%residual = 0.0_wp
-      do k = 1, 2
-         model%force = 0.0_wp
-         do g = 1, size(model%holders)
-            if (k == 1) call model%holders(g)%group%force(ua, model%force)
-            if (k == 2) call model%holders(g)%group%force(ub, model%force)
+      n = model%mesh%equations
+      model%checks%residual = 0.0_wp
+      associate (loads => model%load, z => model%solution%z, force => model%solution%force)
+         do k = 1, 2
+            force = 0.0_wp
+            do g = 1, size(model%mesh%holders)
+               if (k == 1) call model%mesh%holders(g)%group%force(ua, force)
+               if (k == 2) call model%mesh%holders(g)%group%force(ub, force)
+            end do
+            if (k == 1) z(:, k) = loads%fa(1:n) + loads%fo(1:n) + loads%fh(1:n, 1) - force(1:n)
+            if (k == 2) z(:, k) = loads%fb(1:n) + loads%fh(1:n, 2) - force(1:n)
+            load = merge(norm2(loads%fa), norm2(loads%fb), k == 1) + norm2(model%support%reaction(:, k))
+            if (load > 0.0_wp) model%checks%residual = max(model%checks%residual, norm2(z(:, k)) / load)
          end do
-         if (k == 1) model%z(:, k) = model%fa(1:n) + model%fo(1:n) + model%fh(1:n, 1) - model%force(1:n)
-         if (k == 2) model%z(:, k) = model%fb(1:n) + model%fh(1:n, 2) - model%force(1:n)
-         load = merge(norm2(model%fa), norm2(model%fb), k == 1) + norm2(model%reaction(:, k))
-         if (load > 0.0_wp) model%residual = max(model%residual, norm2(model%z(:, k)) / load)
-      end do
+      end associate
    end subroutine residual
 
 end module sla_guard

@@ -64,7 +64,7 @@ contains
       call model_take(handle, stage_new, stage_new, model, status)
       if (status /= status_ok) return
       call check_nodes(model, connect, 1_c_int, status)
-      if (any(table < 0) .or. any(table > model%teeth%tables())) status = status_bad_index
+      if (any(table < 0) .or. any(table > model%mesh%teeth%tables())) status = status_bad_index
       if (status /= status_ok) call handle_leave(handle)
    end subroutine group_begun
 
@@ -78,7 +78,7 @@ contains
       integer(c_int), intent(inout) :: status                        !! of the group that was made
       integer(c_int), allocatable :: node(:, :), direction(:, :)
       if (status == status_ok) call all_directions(connect, directions, node, direction, status)
-      if (status == status_ok) call model_add(model, group, node, direction, status)
+      if (status == status_ok) call model_add(model%mesh, group, node, direction, status)
       call handle_leave(handle)
    end subroutine group_added
 
@@ -88,7 +88,7 @@ contains
       integer(c_int), intent(in) :: node(:, :)       !! 1-based
       integer(c_int), intent(in) :: lowest           !! 1, or 0 where 0 is the ground
       integer(c_int), intent(out) :: status
-      status = merge(status_bad_index, status_ok, any(node < lowest) .or. any(node > model%nodes))
+      status = merge(status_bad_index, status_ok, any(node < lowest) .or. any(node > model%mesh%nodes))
    end subroutine check_nodes
 
    !> Node and direction of each freedom of elements that use the first freedoms of their nodes

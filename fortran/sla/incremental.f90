@@ -28,12 +28,12 @@ contains
 
       count = 0
       status = status_ok
-      do g = 1, size(model%holders)
-         select type (group => model%holders(g)%group)
+      do g = 1, size(model%mesh%holders)
+         select type (group => model%mesh%holders(g)%group)
          class is (point_group)
             do e = 1, group%elements
                found = scan_result()
-               call group%scan(e, e, model%ua, model%ub, lambda, model%noise, found)
+               call group%scan(e, e, model%solution%ua, model%solution%ub, lambda, model%search%noise, found)
                worst = bound()
                if (found%empty%point /= 0) then
                   worst = found%empty
@@ -43,12 +43,12 @@ contains
                   worst = found%lo
                end if
                if (worst%point == 0) cycle
-               call group%damage(worst%point, worst%code, lambda, model%ua, model%ub, event, tooth)
+               call group%damage(worst%point, worst%code, lambda, model%solution%ua, model%solution%ub, event, tooth)
                count = count + 1
-               model%cracked = model%cracked + event%crack
+               model%ledger%cracked = model%ledger%cracked + event%crack
                do i = 1, merge(event%rank, 0, event%cracks)
-                  if (event%sign(i) > 0.0_wp) model%cracked = model%cracked + &
-                     0.5_wp * along(event, i, model%ua, model%ub, lambda)**2
+                  if (event%sign(i) > 0.0_wp) model%ledger%cracked = model%ledger%cracked + &
+                     0.5_wp * along(event, i, model%solution%ua, model%solution%ub, lambda)**2
                end do
             end do
          end select

@@ -35,7 +35,7 @@ module sla_interface
       procedure :: sliders
       procedure :: turned_back
       procedure :: undecided
-      procedure :: hold
+      procedure :: set_held
       procedure :: advance
       procedure :: excess
       procedure :: elastic
@@ -161,7 +161,7 @@ contains
          do p = 2 * e - 1, 2 * e
             law = along(group, e, p)
             d = jump(group, e, p, local)
-            call add(group, e, p, [across(group, e, p) * d(1), law%k * d(2)], f)
+            call add_point_forces(group, e, p, [across(group, e, p) * d(1), law%k * d(2)], f)
             if (.not. allocated(group%row)) cycle
             n = group%freedoms
             associate (w => group%row(:, 3, p))
@@ -175,7 +175,7 @@ contains
    end subroutine force
 
    !> Add the forces of the stresses s of a point
-   pure subroutine add(group, e, p, s, f)
+   pure subroutine add_point_forces(group, e, p, s, f)
       class(interface_group), intent(in) :: group
       integer, intent(in) :: e, p
       real(wp), intent(in) :: s(2)      !! sigma, tau [Pa]
@@ -186,7 +186,7 @@ contains
       do i = 1, group%freedoms
          f(group%equation(i, e)) = f(group%equation(i, e)) + part(i) * group%factor(i, e)
       end do
-   end subroutine add
+   end subroutine add_point_forces
 
    pure function slipped(group) result(yes)
       class(interface_group), intent(in) :: group
@@ -212,9 +212,9 @@ contains
          e = (p + 1) / 2
          law = along(group, e, p)
          energy = energy + group%area(p) * law%e0
-         if (abs(law%k0) > 0.0_wp) call add(group, e, p, [0.0_wp, law%k0], springs)
+         if (abs(law%k0) > 0.0_wp) call add_point_forces(group, e, p, [0.0_wp, law%k0], springs)
          do i = 1, 2
-            if (abs(law%h(i)) > 0.0_wp) call add(group, e, p, [0.0_wp, -law%h(i)], held(:, i))
+            if (abs(law%h(i)) > 0.0_wp) call add_point_forces(group, e, p, [0.0_wp, -law%h(i)], held(:, i))
          end do
       end do
    end subroutine origins
@@ -236,7 +236,7 @@ contains
       do p = 1, group%points
          if (.not. is_sliding(group, p)) cycle
          count = count + 1
-         call describe(group, p, list(count))
+         call describe_friction(group, p, list(count))
       end do
    end subroutine sliders
 
@@ -250,12 +250,12 @@ contains
          if (group%mode(p) /= sticks .or. .not. abs(lambda - group%stuck(p)) <= same * abs(lambda)) cycle
          if (.not. is_closed(group, p)) cycle
          count = count + 1
-         if (count <= size(list)) call describe(group, p, list(count))
+         if (count <= size(list)) call describe_friction(group, p, list(count))
       end do
    end subroutine turned_back
 
    !> What the friction of a point at its limit is made of
-   pure subroutine describe(group, point, as)
+   pure subroutine describe_friction(group, point, as)
       class(interface_group), intent(in) :: group
       integer, intent(in) :: point
       type(slider), intent(inout) :: as
@@ -282,7 +282,7 @@ contains
       as%law = [as%sense * as%strength, -soft * shear(group, e, p)]
       as%spring = soft * shear(group, e, p)
       as%held = group%held(:, p)
-   end subroutine describe
+   end subroutine describe_friction
 
    pure function undecided(group, point, code, lambda) result(yes)
       class(interface_group), intent(in) :: group
@@ -293,12 +293,12 @@ contains
       yes = code == code_slide .and. abs(lambda - group%stuck(point)) <= same * abs(lambda)
    end function undecided
 
-   pure subroutine hold(group, point, held)
+   pure subroutine set_held(group, point, held)
       class(interface_group), intent(inout) :: group
       integer, intent(in) :: point
       real(wp), intent(in) :: held(2)
       group%held(:, point) = held
-   end subroutine hold
+   end subroutine set_held
 
    pure function excess(group, u) result(energy)
       class(interface_group), intent(in) :: group
@@ -346,7 +346,7 @@ contains
          call group%gather(e, ub, other)
          d = jump(group, e, p, local + lambda * other)
          friction = group%held(1, p) + lambda * group%held(2, p) + soft * shear(group, e, p) * d(2)
-         slip = without(group, e, p, d(2), friction)
+         slip = inelastic_slip(group, e, p, d(2), friction)
          if (group%mode(p) == slides_up) group%mark(p) = max(group%mark(p), slip)
          if (group%mode(p) == slides_down) group%mark(p) = min(group%mark(p), slip)
       end do
@@ -397,7 +397,7 @@ contains
             end if
             group%mark(p) = d(2)
             group%held(:, p) = 0.0_wp
-            if (group%mode(p) /= sticks) call begin(group, e, p, 0.0_wp, d, moved, lambda)
+            if (group%mode(p) /= sticks) call begin_sliding(group, e, p, 0.0_wp, d, moved, lambda)
             tooth = int(group%changes(p))
          case (code_wear)
             if (group%slip(p) == 1) then
@@ -410,12 +410,12 @@ contains
                modulus(group, e, group%slip(p) + 1_c_int)) * (abs(d(2)) - group%start(p))**2
             group%slip(p) = group%slip(p) + 1_c_int
             if (group%mode(p) /= sticks) then
-               call begin(group, e, p, friction, d, moved, lambda)
+               call begin_sliding(group, e, p, friction, d, moved, lambda)
             else   ! friction keeps its force, with more stiffness
                friction = (shear(group, e, p) - bond_of(group, e, p, group%slip(p) - 1_c_int)) * &
                   (d(2) - group%mark(p))
             end if
-            group%mark(p) = without(group, e, p, d(2), friction)
+            group%mark(p) = inelastic_slip(group, e, p, d(2), friction)
             if (law%table(e) /= 0) then
                call wear_with(group%teeth, law%slip_table(e), group%slip(p), law%table(e), group%tooth(p))
                if (group%tooth(p) > 1 .and. d(1) <= 0.0_wp) group%shut(p) = 1
@@ -424,9 +424,9 @@ contains
          case (code_slide)
             change = (shear(group, e, p) - bond(group, e, p)) * (d(2) - group%mark(p))
             group%mode(p) = merge(slides_up, slides_down, change > 0.0_wp)
-            call begin(group, e, p, change, d, moved, lambda)
+            call begin_sliding(group, e, p, change, d, moved, lambda)
          case default
-            group%mark(p) = without(group, e, p, d(2), friction)
+            group%mark(p) = inelastic_slip(group, e, p, d(2), friction)
             group%mode(p) = sticks
             group%held(:, p) = 0.0_wp
             group%stuck(p) = lambda
@@ -454,17 +454,17 @@ contains
    end subroutine damage
 
    !> Slip but for what is elastic in its friction [m]
-   pure function without(group, e, p, slip, friction) result(mark)
+   pure function inelastic_slip(group, e, p, slip, friction) result(mark)
       class(interface_group), intent(in) :: group
       integer, intent(in) :: e, p
       real(wp), intent(in) :: slip        !! [m]
       real(wp), intent(in) :: friction    !! [Pa]
       real(wp) :: mark
       mark = slip - friction / (shear(group, e, p) - bond(group, e, p))
-   end function without
+   end function inelastic_slip
 
    !> The force of a point that begins to slide with a friction, see `slider`; its balance is found with all the others'
-   pure subroutine begin(group, e, p, friction, d, moved, lambda)
+   pure subroutine begin_sliding(group, e, p, friction, d, moved, lambda)
       class(interface_group), intent(inout) :: group
       integer, intent(in) :: e, p
       real(wp), intent(in) :: friction    !! [Pa]
@@ -475,7 +475,7 @@ contains
       spring = soft * shear(group, e, p)
       group%held(2, p) = -spring * moved(2)
       group%held(1, p) = friction - spring * d(2) - lambda * group%held(2, p)
-   end subroutine begin
+   end subroutine begin_sliding
 
    !> One more vector of the change of a stiffness, softening where it is positive
    pure subroutine add_vector(group, e, p, v, change, event)
@@ -497,13 +497,13 @@ contains
       integer(c_int), intent(in) :: its_table           !! of the one that follows
       integer(c_int), intent(inout) :: its_tooth
       if (tooth > 1) its_tooth = max(its_tooth, 2_c_int)
-      do while (left(teeth, its_table, its_tooth) > left(teeth, table, tooth))
+      do while (strength_left(teeth, its_table, its_tooth) > strength_left(teeth, table, tooth))
          its_tooth = its_tooth + 1_c_int
       end do
    end subroutine wear_with
 
    !> Part of a strength that is left, 1 before the first tooth has passed
-   pure function left(teeth, table, tooth) result(part)
+   pure function strength_left(teeth, table, tooth) result(part)
       type(tooth_tables), intent(in) :: teeth
       integer(c_int), intent(in) :: table, tooth
       real(wp) :: part, strength
@@ -513,7 +513,7 @@ contains
       if (table == 0) return
       strength = teeth%strength_of(table, tooth, 1.0_wp)
       if (strength < unbounded) part = strength / teeth%strength_of(table, 1_c_int, 1.0_wp)
-   end function left
+   end function strength_left
 
    !> Rows: 1 stretch of the cohesion's slip [m], 2 and 7 held force, constant and per multiplier, over the power of two
    !> above the shear stiffness (no digit is lost) [m], 3 cracked, 4 tension tooth, 5 tooth of the cohesion,

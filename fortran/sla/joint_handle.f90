@@ -37,7 +37,7 @@ contains
       if (any(choice(4, :) < 0)) then
          status = status_bad_index
       else if (.not. (all(property(3:4, :) > 0.0_wp) .and. all(property(6, :) > 0.0_wp) .and. ripple > 0.0_wp .and. &
-                      ripple < 0.25_wp) .or. size(model%xy, 1) /= merge(3, 2, in_space)) then
+                      ripple < 0.25_wp) .or. size(model%mesh%xy, 1) /= merge(3, 2, in_space)) then
          status = status_invalid_argument
       else if (info /= 0) then
          status = status_out_of_memory
@@ -54,7 +54,7 @@ contains
          strength%slip_table(:) = choice(3, :)
          strength%dry(:) = choice(4, :)
          strength%ripple = ripple
-         call interface_group_new(property(1:2, :), property(7:8, :), strength, model%teeth, model%options, &
+         call interface_group_new(property(1:2, :), property(7:8, :), strength, model%mesh%teeth, model%mesh%options, &
             new_joints, bad, status)
       end if
       if (status == status_ok .and. in_space) call interface_between_shells(new_joints, row, status)

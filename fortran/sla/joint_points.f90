@@ -27,7 +27,7 @@ module sla_joint_points
       code_close => sla_event_close, code_open => sla_event_open, code_wear => sla_event_wear, &
       code_slide => sla_event_slide, code_stick => sla_event_stick
    use common_status, only : status_ok, status_out_of_memory
-   use sla_group, only : point_group, scan_result, unbounded, linear_bound, offer_hi, most_entries
+   use sla_group, only : friction_group, scan_result, unbounded, linear_bound, offer_hi, most_entries
    use sla_tables, only : tooth_tables
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -59,7 +59,7 @@ module sla_joint_points
       real(wp) :: ripple = 0.02_wp              !! see `turned`
    end type joint_law
 
-   type, abstract, extends(point_group) :: joint_points
+   type, abstract, extends(friction_group) :: joint_points
       type(joint_law) :: law
       type(tooth_tables) :: teeth
       real(wp), allocatable :: normal(:, :)      !! (2, elements) from the lower to the upper side
@@ -323,7 +323,7 @@ contains
          tb = spring * db(2)
          if (group%mode(p) == sticks) then
             do side = 1, -1, -2
-               call reach(side * tb + mu * sb, -side * ta - mu * sa, scale, lambda, noise, p, code_slide, found)
+               call offer_reach(side * tb + mu * sb, -side * ta - mu * sa, scale, lambda, noise, p, code_slide, found)
             end do
             return
          end if
@@ -334,7 +334,7 @@ contains
          ta = ta - group%held(1, p) - k * da(2)
          tb = tb - group%held(2, p) - k * db(2)
          k = side * (group%held(1, p) + lambda * group%held(2, p) + k * (da(2) + lambda * db(2)))
-         if (-side * tb > noise) call reach(-side * tb, turned * law%ripple * max(k, scale) + side * ta, 0.0_wp, &
+         if (-side * tb > noise) call offer_reach(-side * tb, turned * law%ripple * max(k, scale) + side * ta, 0.0_wp, &
             lambda, noise, p, code_stick, found)
       end associate
    end subroutine scan_point
@@ -364,13 +364,14 @@ contains
             db = jump(group, e, p, lb)
             k = across(group, e, p)
             f = group%teeth%strength_of(group%law%crush_table(e), group%crush(p), 1.0_wp)
-            if (f < unbounded) call lower([-k, 0.0_wp], f, k, w, da, db, lambda, least)
+            if (f < unbounded) call lower_margin([-k, 0.0_wp], f, k, w, da, db, lambda, least)
             if (is_closed(group, p) .and. group%tooth(p) > 1) then
-               call lower([k, 0.0_wp], 0.0_wp, k, w, da, db, lambda, least)
+               call lower_margin([k, 0.0_wp], 0.0_wp, k, w, da, db, lambda, least)
             else
                f = group%teeth%strength_of(group%law%table(e), group%tooth(p), 1.0_wp)
-               if (f < unbounded) call lower([k, 0.0_wp], f, k, w, da, db, lambda, least)
-               if (group%tooth(p) > 1 .and. group%changes(p) < group%options%most_changes) call lower([-k, 0.0_wp], &
+               if (f < unbounded) call lower_margin([k, 0.0_wp], f, k, w, da, db, lambda, least)
+               if (group%tooth(p) > 1 .and. group%changes(p) < group%options%most_changes) call lower_margin([-k, &
+                  0.0_wp], &
                   0.0_wp, k, w, da, db, lambda, least)
             end if
             mu = group%law%friction(e)
@@ -379,18 +380,19 @@ contains
             f = group%teeth%strength_of(group%law%slip_table(e), group%slip(p), 1.0_wp)
             if (f < unbounded .or. group%slip(p) == 1) then
                part = merge(0.0_wp, mu, is_closed(group, p) .and. group%slip(p) > 1)
-               call lower_both([part * k, bonded], 0.0_wp, f, part**2 * k + bonded, w, da, db, lambda, least)
+               call lower_margin_both([part * k, bonded], 0.0_wp, f, part**2 * k + bonded, w, da, db, lambda, least)
             end if
             if (.not. (is_closed(group, p) .and. slips(group, e, p))) cycle
             spring = shear(group, e, p) - bonded
-            call lower_both([mu * k, spring], group%mark(p), 0.0_wp, mu**2 * k + spring, w, da, db, lambda, least)
+            call lower_margin_both([mu * k, spring], group%mark(p), 0.0_wp, mu**2 * k + spring, w, da, db, lambda, &
+               least)
          end do
       end do
    end subroutine margin
 
    !> What a limit c.d <= f of the jumps d = da + lambda db leaves. A change with the energy U adds at most
    !> sqrt(2 U stiff / w), where the joint is no softer than k across and s along and stiff = c_n^2 / k + c_s^2 / s
-   pure subroutine lower(c, f, stiff, area, da, db, lambda, least)
+   pure subroutine lower_margin(c, f, stiff, area, da, db, lambda, least)
       real(wp), intent(in) :: c(2)            !! [Pa/m]
       real(wp), intent(in) :: f               !! [Pa]
       real(wp), intent(in) :: stiff           !! [Pa/m]
@@ -401,10 +403,10 @@ contains
       real(wp), intent(inout) :: least(:)     !! see point_group
       if (.not. stiff > 0.0_wp) return
       least = min(least, sqrt(area / stiff) * (f - dot_product(c, da) - lambda * dot_product(c, db)))
-   end subroutine lower
+   end subroutine lower_margin
 
    !> As lower, of slip from `start` in both senses
-   pure subroutine lower_both(c, start, f, stiff, area, da, db, lambda, least)
+   pure subroutine lower_margin_both(c, start, f, stiff, area, da, db, lambda, least)
       real(wp), intent(in) :: c(2)            !! [Pa/m]
       real(wp), intent(in) :: start           !! [m]
       real(wp), intent(in) :: f               !! [Pa]
@@ -414,13 +416,13 @@ contains
       real(wp), intent(in) :: db(2)           !! [m]
       real(wp), intent(in) :: lambda(:)
       real(wp), intent(inout) :: least(:)     !! see point_group
-      call lower(c, f + c(2) * start, stiff, area, da, db, lambda, least)
-      call lower([c(1), -c(2)], f - c(2) * start, stiff, area, da, db, lambda, least)
-   end subroutine lower_both
+      call lower_margin(c, f + c(2) * start, stiff, area, da, db, lambda, least)
+      call lower_margin([c(1), -c(2)], f - c(2) * start, stiff, area, da, db, lambda, least)
+   end subroutine lower_margin_both
 
    !> What grows by `rate` per unit multiplier reaches `room` as the load grows, or at once where it is beyond: it never
    !> asks for less load than there is. A load that falls for the next tooth is the method's, no reversal.
-   pure subroutine reach(rate, room, least, lambda, noise, point, code, found)
+   pure subroutine offer_reach(rate, room, least, lambda, noise, point, code, found)
       real(wp), intent(in) :: rate     !! [Pa]
       real(wp), intent(in) :: room     !! [Pa]
       real(wp), intent(in) :: least    !! [Pa]
@@ -433,6 +435,6 @@ contains
       else if (room < rate * lambda - least) then
          call offer_hi(found, lambda, point, code)
       end if
-   end subroutine reach
+   end subroutine offer_reach
 
 end module sla_joint_points

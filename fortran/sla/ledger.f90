@@ -5,11 +5,12 @@
 module sla_ledger
    use common_kinds, only : wp
    use sla_group, only : along, point_group, scan_result
-   use sla_model, only : element_model, held_work, model_reactions, model_recorded
+   use sla_model, only : element_model, held_work, load_products, model_reactions, model_recorded
+   use sla_state, only : load_work, monitor_set
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: account, follow_supports, record, watch, event_log, log_reals, log_integers
+   public :: account_state, follow_supports, record_state, watch_monitors, event_log, log_reals, log_integers
 
    integer, parameter :: log_reals = 11, log_integers = 4
 
@@ -29,198 +30,199 @@ contains
 
    !> Energy ledger up to the state lambda: external work by the trapezium between successive states,
    !> dissipation at the damaged points alone; the stored energy must close the balance
-   subroutine account(model, lambda, status)
+   subroutine account_state(model, lambda, status)
       type(element_model), intent(inout) :: model
       real(wp), intent(in) :: lambda
       integer(c_int), intent(out) :: status
       logical :: counted
-      real(wp) :: now(3), held(2), after, was, s, t, cross, free(4), before(4), elastic
-      integer :: i, n
+      type(load_work) :: now, free, before
+      real(wp) :: held(2), after, was, s, t, elastic
+      integer :: i
 
-      was = model%lambda_recorded
-      s = model%scale
-      t = model%scale_recorded
-      if (model%slides) then
-         held = held_work(model, lambda)
-         n = model%equations
-         now = [dot_product(model%fa, model%ua(0:n)) + model%support(1, 1), &
-            dot_product(model%fa, model%ub(0:n)) + model%support(1, 2), &
-            dot_product(model%fb, model%ub(0:n)) + model%support(2, 2)]
-         ! fa.ub too, but for friction that slides
-         cross = dot_product(model%fb, model%ua(0:n)) + model%support(2, 1)
-      else
+      associate (ledger => model%ledger, sliding => model%sliding, support => model%support%work, &
+         ua => model%solution%ua, ub => model%solution%ub, fh => model%load%fh)
+         was = ledger%lambda
+         s = model%loop%scale
+         t = ledger%scale
          held = 0.0_wp
-         now = model%work_now
-         cross = now(2)
-      end if
-      counted = model%recorded
-      if (.not. model%recorded) then
-         ! The first state of a stage: the constant loads are on, or were brought on by the stage before.
-         ! From there on A does the work lambda fa.ub, also beside the forces of friction, where fb.ua is another.
-         if (model%carried) model%external = model%external - 0.5_wp * now(1)
-         model%external = model%external + 0.5_wp * s**2 * (now(1) + lambda * (now(2) + &
-            merge(now(2), cross, model%carried) + lambda * now(3)))
-         model%recorded = .true.
-      else
-         associate (event => model%event)
-            do i = 1, event%rank
-               after = s * along(event, i, model%ua, model%ub, lambda) - event%origin(i)
-               model%dissipated = model%dissipated + 0.5_wp * event%sign(i) * (model%before(i) * after - &
-                  event%origin(i)**2)
-            end do
-            model%dissipated = model%dissipated - event%shift
-         end associate
-         ! Work of the held forces, (fh_old + fh_new) . (u_new - u_old) / 2
-         if (model%slides) model%dissipated = model%dissipated - model%excess - 0.5_wp * dot_product( &
-            model%fh(:, 1) + lambda * model%fh(:, 2) + model%f_before, model%ua + lambda * model%ub - model%u_before)
-         ! (f_old + f_new) . (u_new - u_old) / 2 with f = s (A + lambda B), u = s (ua + lambda ub); the loads alone
-         free = [now, cross] - [model%support(1, 1), model%support(1, 2), model%support(2, 2), model%support(2, 1)]
-         before = [model%work, model%cross] - [model%support_was(1, 1), model%support_was(1, 2), &
-            model%support_was(2, 2), model%support_was(2, 1)]
-         model%external = model%external + 0.5_wp * ( &
-            s * (s + t) * free(1) + s * (s + t) * lambda * free(2) &
-            + s * (s * lambda + t * was) * (free(4) + lambda * free(3)) &
-            - t * (s + t) * before(1) - t * (s + t) * was * before(2) &
-            - t * (s * lambda + t * was) * (before(4) + was * before(3)))
-         ! The reactions of supports that move with lambda
-         model%external = model%external + 0.5_wp * (lambda - was) * (model%support(1, 2) &
-            + lambda * model%support(2, 2) + model%support_was(1, 2) + was * model%support_was(2, 2))
-      end if
-      model%event%rank = 0
-      elastic = model%elastic
-      call model_recorded(model, lambda, status)
-      if (counted) model%dissipated = model%dissipated + model%excess + elastic - model%elastic
-      model%held = held
-      model%cross = cross
-      model%work = now
-      model%support_was = model%support
-      model%lambda_recorded = lambda
-      model%scale_recorded = s
-      model%lambda = lambda
-      ! Where joints have slid under the constant loads, energies count from there: their way is not known
-      if (model%slides .and. .not. (counted .or. model%carried)) model%external = stored_energy(model)
-   end subroutine account
+         now = model%solution%work
+         if (sliding%active) then
+            held = held_work(model, lambda)
+            now = load_products(model)
+         end if
+         counted = ledger%recorded
+         if (.not. counted) then
+            ! The first state of a stage: the constant loads are on, or were brought on by the stage before.
+            ! From there on A does the work lambda fa.ub, also beside the forces of friction, where fb.ua is another.
+            if (ledger%carried) ledger%external = ledger%external - 0.5_wp * now%aa
+            ledger%external = ledger%external + 0.5_wp * s**2 * (now%aa + lambda * (now%ab + &
+               merge(now%ab, now%ba, ledger%carried) + lambda * now%bb))
+            ledger%recorded = .true.
+         else
+            associate (event => model%loop%event)
+               do i = 1, event%rank
+                  after = s * along(event, i, ua, ub, lambda) - event%origin(i)
+                  ledger%dissipated = ledger%dissipated + 0.5_wp * event%sign(i) * (model%loop%before(i) * after - &
+                     event%origin(i)**2)
+               end do
+               ledger%dissipated = ledger%dissipated - event%shift
+            end associate
+            ! Work of the held forces, (fh_old + fh_new) . (u_new - u_old) / 2
+            if (sliding%active) ledger%dissipated = ledger%dissipated - sliding%excess - 0.5_wp * dot_product( &
+               fh(:, 1) + lambda * fh(:, 2) + sliding%f_before, ua + lambda * ub - sliding%u_before)
+            ! (f_old + f_new) . (u_new - u_old) / 2 with f = s (A + lambda B), u = s (ua + lambda ub); the loads alone
+            free = now - support
+            before = ledger%work - ledger%support_work
+            ledger%external = ledger%external + 0.5_wp * ( &
+               s * (s + t) * free%aa + s * (s + t) * lambda * free%ab &
+               + s * (s * lambda + t * was) * (free%ba + lambda * free%bb) &
+               - t * (s + t) * before%aa - t * (s + t) * was * before%ab &
+               - t * (s * lambda + t * was) * (before%ba + was * before%bb))
+            ! The reactions of supports that move with lambda
+            ledger%external = ledger%external + 0.5_wp * (lambda - was) * (support%ab + lambda * support%bb + &
+               ledger%support_work%ab + was * ledger%support_work%bb)
+         end if
+         model%loop%event%rank = 0
+         elastic = sliding%elastic
+         call model_recorded(model, lambda, status)
+         if (counted) ledger%dissipated = ledger%dissipated + sliding%excess + elastic - sliding%elastic
+         sliding%held = held
+         ledger%work = now
+         ledger%support_work = support
+         ledger%lambda = lambda
+         ledger%scale = s
+         model%loop%lambda = lambda
+         ! Where joints have slid under the constant loads, energies count from there: their way is not known
+         if (sliding%active .and. .not. (counted .or. ledger%carried)) ledger%external = stored_energy(model)
+      end associate
+   end subroutine account_state
 
    !> Energy stored in the last state [J]
    pure function stored_energy(model) result(stored)
       type(element_model), intent(in) :: model
       real(wp) :: stored
-      stored = 0.5_wp * model%scale**2 * &
-         (model%work(1) + model%lambda * (model%work(2) + model%cross + model%lambda * model%work(3)))
-      ! u K u / 2 - fo.u and the energy of the origins, with K u = f + fo + fh
-      if (model%slides) stored = stored + model%origin_energy - model%excess + model%elastic + 0.5_wp * ( &
-         model%held(1) + &
-         model%lambda * model%held(2) - dot_product(model%fo, model%u_before))
+      associate (work => model%ledger%work, lambda => model%loop%lambda, sliding => model%sliding)
+         stored = 0.5_wp * model%loop%scale**2 * (work%aa + lambda * (work%ab + work%ba + lambda * work%bb))
+         ! u K u / 2 - fo.u and the energy of the origins, with K u = f + fo + fh
+         if (sliding%active) stored = stored + sliding%origin_energy - sliding%excess + sliding%elastic + 0.5_wp * ( &
+            sliding%held(1) + lambda * sliding%held(2) - dot_product(model%load%fo, sliding%u_before))
+      end associate
    end function stored_energy
 
    !> The forces of moved supports and their part in the work after an event
    subroutine follow_supports(model)
       type(element_model), intent(inout) :: model
-      real(wp) :: was(2, 2)
-      was = model%support
+      type(load_work) :: was, change
+      was = model%support%work
       call model_reactions(model)
-      associate (change => model%support - was)
-         model%work_now = model%work_now + [2.0_wp * change(1, 1), change(1, 2) + change(2, 1), 2.0_wp * change(2, 2)]
+      change = model%support%work - was
+      associate (work => model%solution%work)
+         work = load_work(work%aa + 2.0_wp * change%aa, work%ab + (change%ab + change%ba), &
+            work%ba + (change%ab + change%ba), work%bb + 2.0_wp * change%bb)
       end associate
    end subroutine follow_supports
 
    !> One row of the log
-   subroutine record(model, found, equilibrium, first, equation, share, ratio, log)
+   subroutine record_state(model, found, equilibrium, monitors, log)
       type(element_model), intent(inout) :: model
       type(scan_result), intent(in) :: found
       logical, intent(in) :: equilibrium
-      integer(c_int), intent(in) :: first(:)
-      integer(c_int), intent(in) :: equation(:)
-      real(wp), intent(in) :: share(:)
-      real(wp), intent(in) :: ratio(:)      !! see watch
+      type(monitor_set), intent(in) :: monitors
       type(event_log), intent(inout) :: log
       real(wp) :: slope
       integer :: k, i, offset
 
       log%count = log%count + 1
-      log%reals(:, log%count) = [model%lambda, found%hi%value, found%lo%value, stored_energy(model), model%external, &
-         model%dissipated, model%cracked, model%work(3), model%residual, model%scale, &
-         model%support(1, 2) + model%lambda * model%support(2, 2)]
-      offset = 0
-      if (model%pending(1) /= 0) then
-         select type (group => model%holders(model%pending(1))%group)
-         class is (point_group)
-            offset = group%offset
-         end select
-      end if
-      log%integers(:, log%count) = [int(offset + model%pending(2), c_int), int(model%pending(3), c_int), &
-         int(model%events, c_int), merge(1_c_int, 0_c_int, equilibrium)]
-      do k = 1, size(log%monitors, 1)
-         if (abs(ratio(k)) > 0.0_wp) then
-            slope = ratio(k) * (model%work(3) - model%support(2, 2))
-            log%monitors(k, log%count) = ratio(k) * (model%cross - model%support(2, 1)) + model%lambda * slope
-         else
-            log%monitors(k, log%count) = 0.0_wp
-            slope = 0.0_wp
-            do i = int(first(k)), int(first(k + 1)) - 1
-               log%monitors(k, log%count) = log%monitors(k, log%count) + &
-                  share(i) * (model%ua(equation(i)) + model%lambda * model%ub(equation(i)))
-               slope = slope + share(i) * model%ub(equation(i))
-            end do
+      associate (row => log%count, loop => model%loop, ledger => model%ledger, support => model%support%work, &
+         solution => model%solution, release => model%release)
+         log%reals(:, row) = [loop%lambda, found%hi%value, found%lo%value, stored_energy(model), ledger%external, &
+            ledger%dissipated, ledger%cracked, ledger%work%bb, model%checks%residual, loop%scale, &
+            support%ab + loop%lambda * support%bb]
+         offset = 0
+         if (loop%pending%group /= 0) then
+            select type (group => model%mesh%holders(loop%pending%group)%group)
+            class is (point_group)
+               offset = group%offset
+            end select
          end if
-         log%monitors(k, log%count) = model%scale * log%monitors(k, log%count)
-         if (k == 1) model%slope = slope
-      end do
-      if (.not. model%releasing) return
-      log%reals([4, log_reals], log%count) = model%free
-      do k = 1, size(log%monitors, 1)
-         log%monitors(k, log%count) = 0.0_wp
-         do i = int(first(k)), int(first(k + 1)) - 1
-            associate (q => equation(i))
-               log%monitors(k, log%count) = log%monitors(k, log%count) + share(i) * (model%from(q) + &
-                  model%released * (model%ua(q) + model%lambda * model%ub(q) - model%from(q)))
+         log%integers(:, row) = [int(offset + loop%pending%point, c_int), int(loop%pending%code, c_int), &
+            int(loop%events, c_int), merge(1_c_int, 0_c_int, equilibrium)]
+         do k = 1, size(log%monitors, 1)
+            associate (value => log%monitors(k, row), ratio => monitors%ratio(k))
+               if (abs(ratio) > 0.0_wp) then
+                  slope = ratio * (ledger%work%bb - support%bb)
+                  value = ratio * (ledger%work%ba - support%ba) + loop%lambda * slope
+               else
+                  value = 0.0_wp
+                  do i = int(monitors%first(k)), int(monitors%first(k + 1)) - 1
+                     associate (q => monitors%equation(i))
+                        value = value + monitors%share(i) * (solution%ua(q) + loop%lambda * solution%ub(q))
+                     end associate
+                  end do
+                  slope = monitors%sum_of(k, solution%ub)
+               end if
+               value = loop%scale * value
             end associate
+            if (k == 1) loop%slope = slope
          end do
-      end do
-   end subroutine record
+         if (.not. release%active) return
+         log%reals([4, log_reals], row) = [release%stored, release%force]
+         do k = 1, size(log%monitors, 1)
+            log%monitors(k, row) = 0.0_wp
+            do i = int(monitors%first(k)), int(monitors%first(k + 1)) - 1
+               associate (q => monitors%equation(i), from => release%from)
+                  log%monitors(k, row) = log%monitors(k, row) + monitors%share(i) * (from(q) + &
+                     release%part * (solution%ua(q) + loop%lambda * solution%ub(q) - from(q)))
+               end associate
+            end do
+         end do
+      end associate
+   end subroutine record_state
 
    !> A monitor on which the reference load does its work follows from that work. The regions of the others are
    !> brought up to date in each event
-   subroutine watch(model, first, equation, share, ratio)
+   subroutine watch_monitors(model, monitors)
       type(element_model), intent(inout) :: model
-      integer(c_int), intent(in) :: first(:)
-      integer(c_int), intent(in) :: equation(:)
-      real(wp), intent(in) :: share(:)
-      real(wp), intent(out) :: ratio(:)           !! (monitors) to the work, 0: not of this kind [1/N]
+      type(monitor_set), intent(inout) :: monitors
       real(wp), parameter :: same = 1.0e-12_wp
       integer :: i, k, n, greatest
-      n = model%equations
-      model%watched = .false.
+      n = model%mesh%equations
+      model%search%watched = .false.
       call watch_supports(model)
-      do k = 1, size(ratio)
-         model%force = 0.0_wp
-         do i = int(first(k)), int(first(k + 1)) - 1
-            model%force(equation(i)) = model%force(equation(i)) + share(i)
+      associate (force => model%solution%force, fb => model%load%fb, equation => monitors%equation, &
+         ratio => monitors%ratio)
+         do k = 1, size(ratio)
+            force = 0.0_wp
+            do i = int(monitors%first(k)), int(monitors%first(k + 1)) - 1
+               force(equation(i)) = force(equation(i)) + monitors%share(i)
+            end do
+            force(0) = 0.0_wp
+            greatest = maxloc(abs(fb), dim=1) - 1
+            ratio(k) = 0.0_wp
+            if (abs(fb(greatest)) > 0.0_wp) ratio(k) = force(greatest) / fb(greatest)
+            if (maxval(abs(force(0:n) - ratio(k) * fb)) <= same * maxval(abs(force))) then
+               if (.not. any(abs(force(n + 1:)) > 0.0_wp)) cycle
+            end if
+            ratio(k) = 0.0_wp
+            do i = int(monitors%first(k)), int(monitors%first(k + 1)) - 1
+               if (equation(i) > 0 .and. equation(i) <= n) then
+                  model%search%watched(model%search%tree%of(equation(i))) = .true.
+               end if
+            end do
          end do
-         model%force(0) = 0.0_wp
-         greatest = maxloc(abs(model%fb), dim=1) - 1
-         ratio(k) = 0.0_wp
-         if (abs(model%fb(greatest)) > 0.0_wp) ratio(k) = model%force(greatest) / model%fb(greatest)
-         if (maxval(abs(model%force(0:n) - ratio(k) * model%fb)) <= same * maxval(abs(model%force))) then
-            if (.not. any(abs(model%force(n + 1:)) > 0.0_wp)) cycle
-         end if
-         ratio(k) = 0.0_wp
-         do i = int(first(k)), int(first(k + 1)) - 1
-            if (equation(i) > 0 .and. equation(i) <= n) model%watched(model%tree%of(equation(i))) = .true.
-         end do
-      end do
-      model%wanted(:) = model%watched
-   end subroutine watch
+      end associate
+      model%search%wanted(:) = model%search%watched
+   end subroutine watch_monitors
 
    !> The regions beside moved supports are brought up to date in each event
    subroutine watch_supports(model)
       type(element_model), intent(inout) :: model
       integer :: i, j, q
-      do i = 1, size(model%beside, 2)
-         associate (e => model%beside(2, i), group => model%holders(model%beside(1, i))%group)
+      do i = 1, size(model%support%beside, 2)
+         associate (e => model%support%beside(2, i), group => model%mesh%holders(model%support%beside(1, i))%group)
             do j = 1, group%freedoms
                q = int(group%equation(j, e))
-               if (q > 0 .and. q <= model%equations) model%watched(model%tree%of(q)) = .true.
+               if (q > 0 .and. q <= model%mesh%equations) model%search%watched(model%search%tree%of(q)) = .true.
             end do
          end associate
       end do

@@ -7,12 +7,12 @@ module sla_loads
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: distribute
+   public :: distribute_force
 
 contains
 
    !> Nodal forces of a uniform force per area in each element
-   pure subroutine distribute(kind, nx, ny, xy, connect, density, force, bad, status)
+   pure subroutine distribute_force(kind, nx, ny, xy, connect, density, force, bad, status)
       integer(c_int), intent(in) :: kind
       integer(c_int), intent(in) :: nx
       integer(c_int), intent(in) :: ny
@@ -49,6 +49,6 @@ contains
             end do
          end do
       end do
-   end subroutine distribute
+   end subroutine distribute_force
 
 end module sla_loads

@@ -119,7 +119,7 @@ contains
          pressed = 0.0_wp
          if (.not. group%options%closure) pressed = &
             group%teeth%strength_of(group%table_of(e, p, 3 - k), 1_c_int, share_of(group, e, p, 3 - k))
-         if (s(3 - k) > -pressed) call follow(group, e, p, k, follows)
+         if (s(3 - k) > -pressed) call follow_crack(group, e, p, k, follows)
       end if
       after = direction_modulus(group, e, p, k)
       call group%refresh(p)
@@ -152,7 +152,7 @@ contains
    end subroutine damage_point
 
    !> Teeth of the other direction, so that it is not much stiffer than that of crack k
-   pure subroutine follow(group, e, p, k, follows)
+   pure subroutine follow_crack(group, e, p, k, follows)
       class(plane_damage), intent(inout) :: group
       integer, intent(in) :: e
       integer, intent(in) :: p
@@ -168,7 +168,7 @@ contains
          group%tooth(other, p) = group%tooth(other, p) + 1_c_int
          follows = .true.
       end do
-   end subroutine follow
+   end subroutine follow_crack
 
    !> The vectors of a change of the stiffness and of the axes, up to three, some of which may stiffen
    pure subroutine add_change(group, e, p, old, delta, event)

@@ -337,20 +337,21 @@ contains
       if (group%cracked(p) == 0 .or. (group%options%cracking == isotropic .and. group%axis(e) == axis_free)) then
          f = group%limit(1, p)
          if (f < unbounded .and. is_bedded(group, e)) then
-            call cone(f, 1.0_wp, in_joint_axes(group%bed(e), sa, f), in_joint_axes(group%bed(e), sb, 0.0_wp), lambda, &
+            call limit_by_cone(f, 1.0_wp, in_joint_axes(group%bed(e), sa, f), in_joint_axes(group%bed(e), sb, &
+               0.0_wp), lambda, &
                noise, p, code_tension, found)
          else if (f < unbounded) then
-            call cone(f, 1.0_wp, sa, sb, lambda, noise, p, code_tension, found)
+            call limit_by_cone(f, 1.0_wp, sa, sb, lambda, noise, p, code_tension, found)
             fc = group%lateral(e)
-            if (fc > 0.0_wp) call cone(f * fc / (f + fc), (fc - f) / (fc + f), sa, sb, lambda, noise, p, &
+            if (fc > 0.0_wp) call limit_by_cone(f * fc / (f + fc), (fc - f) / (fc + f), sa, sb, lambda, noise, p, &
                code_tension, found)
          end if
          f = group%limit(3, p)
          more = group%confinement(e)
          if (f < unbounded .and. group%bed(e)%crush > 0.0_wp) then
-            call ellipse(group%bed(e), f, sa, sb, noise, lambda, p, code_compression + 1, found)
+            call limit_by_ellipse(group%bed(e), f, sa, sb, noise, lambda, p, code_compression + 1, found)
          else if (f < unbounded) then
-            call cone(f / (1.0_wp + more), (more - 1.0_wp) / (more + 1.0_wp), sa, sb, lambda, noise, &
+            call limit_by_cone(f / (1.0_wp + more), (more - 1.0_wp) / (more + 1.0_wp), sa, sb, lambda, noise, &
                p, code_compression + 1, found)
          end if
          return
@@ -378,7 +379,7 @@ contains
    end subroutine scan_point
 
    !> Limits of an uncracked point under one criterion
-   pure subroutine cone(alpha, beta, sa, sb, lambda, noise, p, code, found)
+   pure subroutine limit_by_cone(alpha, beta, sa, sb, lambda, noise, p, code, found)
       real(wp), intent(in) :: alpha, beta        !! r <= alpha - beta m, see sla_interval
       real(wp), intent(in) :: sa(3), sb(3)       !! [Pa]
       real(wp), intent(in) :: lambda
@@ -405,10 +406,10 @@ contains
          if (hi < unbounded) call offer_hi(found, hi, p, code)
          if (lo > -unbounded) call offer_lo(found, lo, p, code)
       end if
-   end subroutine cone
+   end subroutine limit_by_cone
 
    !> Limits of an uncracked point under Hill's criterion
-   pure subroutine ellipse(bed, f, sa, sb, noise, lambda, p, code, found)
+   pure subroutine limit_by_ellipse(bed, f, sa, sb, noise, lambda, p, code, found)
       type(bedding), intent(in) :: bed
       real(wp), intent(in) :: f                  !! compressive strength across the beds [Pa]
       real(wp), intent(in) :: sa(3), sb(3)       !! [Pa]
@@ -431,7 +432,7 @@ contains
          call offer_hi(found, hi, p, code)
          call offer_lo(found, lo, p, code)
       end if
-   end subroutine ellipse
+   end subroutine limit_by_ellipse
 
    !> True where the stress lies safely inside r <= alpha - beta m; in this module so that it is inlined
    pure function inside_cone(alpha, beta, s) result(inside)
@@ -478,16 +479,19 @@ contains
                if (f < unbounded .and. is_bedded(group, e)) then
                   ! Shear of the image changes more than that of the stress: c' D c of the worst direction c
                   nu = group%stiff(2, p) / group%stiff(1, p)
-                  call lower(f, 1.0_wp, in_joint_axes(group%bed(e), sa, f), in_joint_axes(group%bed(e), sb, 0.0_wp), &
+                  call lower_margin(f, 1.0_wp, in_joint_axes(group%bed(e), sa, f), in_joint_axes(group%bed(e), sb, &
+                     0.0_wp), &
                      share / sqrt(1.0_wp + 0.5_wp * (1.0_wp - nu) * (group%bed(e)%shear**2 - 1.0_wp)), lambda, least)
                else if (f < unbounded) then
-                  call lower(f, 1.0_wp, sa, sb, share, lambda, least)
+                  call lower_margin(f, 1.0_wp, sa, sb, share, lambda, least)
                   fc = group%lateral(e)
-                  if (fc > 0.0_wp) call lower(f * fc / (f + fc), (fc - f) / (fc + f), sa, sb, share, lambda, least)
+                  if (fc > 0.0_wp) call lower_margin(f * fc / (f + fc), (fc - f) / (fc + f), sa, sb, share, lambda, &
+                     least)
                end if
                f = group%limit(3, p)
                more = group%confinement(e)
-               if (f < unbounded) call lower(f / (1.0_wp + more), (more - 1.0_wp) / (more + 1.0_wp), sa, sb, share, &
+               if (f < unbounded) call lower_margin(f / (1.0_wp + more), (more - 1.0_wp) / (more + 1.0_wp), sa, sb, &
+                  share, &
                   lambda, least)
                cycle
             end if
@@ -516,7 +520,7 @@ contains
    end subroutine margin
 
    !> What r <= alpha - beta m has left; for |beta| <= 1 no more than the greater principal stress of a change uses it
-   pure subroutine lower(alpha, beta, sa, sb, share, lambda, least)
+   pure subroutine lower_margin(alpha, beta, sa, sb, share, lambda, least)
       real(wp), intent(in) :: alpha, beta        !! see sla_interval
       real(wp), intent(in) :: sa(3), sb(3)       !! [Pa]
       real(wp), intent(in) :: share              !! factor on the stress that is left
@@ -529,7 +533,7 @@ contains
             - sqrt(0.25_wp * (sa(1) - sa(2) + lambda(j) * (sb(1) - sb(2)))**2 + (sa(3) + lambda(j) * sb(3))**2)
          least(j) = min(least(j), share * left)
       end do
-   end subroutine lower
+   end subroutine lower_margin
 
    !> Table of a point's tension teeth: of its element's until it cracks, then of its crack band
    pure function table_of(group, e, p, k) result(table)

@@ -456,13 +456,13 @@ contains
       real(wp), intent(inout) :: ub(0:)
       real(wp), intent(inout), contiguous :: z(:, :)   !! (n, 2), work
       integer(c_int), intent(out) :: status
-      call move(tree, tree%part(k), handle, path, ua, ub, z, status)
-      call keep(tree, tree%part(k), ua, ub)
+      call move_region(tree, tree%part(k), handle, path, ua, ub, z, status)
+      call keep_edge(tree, tree%part(k), ua, ub)
       tree%part(k)%seen = tree%now
    end subroutine regions_bring
 
    !> The displacements of the equations of one region follow those of its edge
-   subroutine move(tree, part, handle, path, ua, ub, z, status)
+   subroutine move_region(tree, part, handle, path, ua, ub, z, status)
       type(region_tree), intent(in) :: tree
       type(region), intent(in) :: part
       type(c_ptr), intent(in) :: handle
@@ -481,9 +481,9 @@ contains
       status = extrados_sparse_backward(handle, part%first_block, part%last_block, 2_c_int, z)
       ua(part%first:part%last) = ua(part%first:part%last) + z(part%first:part%last, 1)
       ub(part%first:part%last) = ub(part%first:part%last) + z(part%first:part%last, 2)
-   end subroutine move
+   end subroutine move_region
 
-   pure subroutine keep(tree, part, ua, ub)
+   pure subroutine keep_edge(tree, part, ua, ub)
       type(region_tree), intent(inout) :: tree
       type(region), intent(in) :: part
       real(wp), intent(in) :: ua(0:)
@@ -492,7 +492,7 @@ contains
       do i = part%edge + 1, part%edge + part%edges
          tree%kept(:, i) = [ua(tree%edge(i)), ub(tree%edge(i))]
       end do
-   end subroutine keep
+   end subroutine keep_edge
 
    !> All displacements as they are now, to be read: what waits goes on waiting
    subroutine regions_made_up(tree, handle, ua, ub, z, status)
@@ -505,7 +505,7 @@ contains
       integer :: k
       status = status_ok
       do k = size(tree%part), 1, -1
-         call move(tree, tree%part(k), handle, .false., ua, ub, z, status)
+         call move_region(tree, tree%part(k), handle, .false., ua, ub, z, status)
          if (status /= status_ok) return
       end do
    end subroutine regions_made_up

@@ -5,13 +5,13 @@
 module sla_scan
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
-   use sla_group, only : below, bound, point_group, scan_result, unbounded
+   use sla_group, only : below, bound, point_event, point_group, point_place, scan_result, unbounded
    use sla_model, only : element_model
    use sla_regions, only : levels, regions_bring, regions_calm, regions_home, regions_margins, regions_window
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: scan_model, scan_scaled, scan_way, bring_all, crossed, choose
+   public :: scan_model, scan_scaled, scan_way, bring_all, crossed, choose_event
 
    integer, parameter :: few = 100                    !! regions that are looked at sooner by one thread
 
@@ -27,34 +27,33 @@ contains
       logical :: calm
 
       found = scan_result()
-      associate (tree => model%tree)
+      associate (search => model%search, tree => model%search%tree, ua => model%solution%ua, ub => model%solution%ub)
          count = size(tree%part)
          if (tree%settled) then
             ! First what is surely concerned, which gives limits to ask the others with.
-            do k = 1, size(model%hot, 2)
-               if (model%hot(1, k) > 0) model%wanted(element_region(model, model%hot(:, k))) = .true.
-            end do
+            if (search%upper%group > 0) search%wanted(element_region(model, search%upper)) = .true.
+            if (search%lower%group > 0) search%wanted(element_region(model, search%lower)) = .true.
             call bring_wanted(model, near, status)
             if (status /= status_ok) return
-            call scan_list(model, model%ua, model%ub, model%noise, guess_limits(model), 1, near, found)
+            call scan_list(model, ua, ub, search%noise, guess_limits(model), 1, near, found)
             if (found%hi%value < tree%lambda(levels) .and. found%lo%value > tree%lambda(1) .and. &
                 found%hi%value > tree%lambda(1) .and. found%lo%value < tree%lambda(levels)) then
                count = near
                k = size(tree%part)
                do while (k >= 1)
                   if (tree%part(k)%seen /= tree%now) then
-                     call regions_calm(tree, k, model%ua, model%ub, found%hi%value, found%lo%value, calm)
+                     call regions_calm(tree, k, ua, ub, found%hi%value, found%lo%value, calm)
                      if (calm) then
                         k = tree%part(k)%lowest - 1
                         cycle
                      end if
-                     call bring(model, k, count, status)
+                     call bring_region(model, k, count, status)
                      if (status /= status_ok) return
                   end if
                   k = k - 1
                end do
-               call scan_list(model, model%ua, model%ub, model%noise, guess_limits(model), near + 1, count, found)
-               call regions_margins(tree, model%holders, model%ua, model%ub)
+               call scan_list(model, ua, ub, search%noise, guess_limits(model), near + 1, count, found)
+               call regions_margins(tree, model%mesh%holders, ua, ub)
                return
             end if
          end if
@@ -63,14 +62,14 @@ contains
          if (status /= status_ok) return
          found = scan_result()
          do k = 1, count
-            model%list(k) = k
+            search%list(k) = k
          end do
-         call scan_list(model, model%ua, model%ub, model%noise, guess_limits(model), 1, count, found)
-         tree%settled = tree%measured .and. .not. model%slides
+         call scan_list(model, ua, ub, search%noise, guess_limits(model), 1, count, found)
+         tree%settled = tree%measured .and. .not. model%sliding%active
          if (tree%settled) tree%settled = found%hi%value < unbounded .and. found%lo%value > -unbounded
          if (.not. tree%settled) return
          call regions_window(tree, found%hi%value, found%lo%value)
-         call regions_margins(tree, model%holders, model%ua, model%ub)
+         call regions_margins(tree, model%mesh%holders, ua, ub)
       end associate
    end subroutine scan_model
 
@@ -85,15 +84,15 @@ contains
 
       call bring_all(model, status)
       if (status /= status_ok) return
-      model%tree%settled = .false.                   ! the margins were those of before
-      allocate (zero, u, mold=model%ua, stat=info)
+      model%search%tree%settled = .false.                   ! the margins were those of before
+      allocate (zero, u, mold=model%solution%ua, stat=info)
       if (info /= 0) then
          status = status_out_of_memory
          return
       end if
       zero(:) = 0.0_wp
-      u(:) = model%ua + model%lambda_held * model%ub
-      call scan_way(model, zero, u, model%lambda_held, found)
+      u(:) = model%solution%ua + model%loop%lambda_held * model%solution%ub
+      call scan_way(model, zero, u, model%loop%lambda_held, found)
       if (found%hi%point /= 0) limit = found%hi
    end subroutine scan_scaled
 
@@ -105,11 +104,12 @@ contains
       real(wp), intent(in) :: load                   !! multiplier that the way is compared with
       type(scan_result), intent(out) :: found
       integer :: k
-      do k = 1, size(model%list)
-         model%list(k) = k
+      do k = 1, size(model%search%list)
+         model%search%list(k) = k
       end do
       found = scan_result()
-      call scan_list(model, u, way, model%noise * max(abs(load), 1.0_wp), scan_result(), 1, size(model%list), found)
+      call scan_list(model, u, way, model%search%noise * max(abs(load), 1.0_wp), scan_result(), 1, &
+         size(model%search%list), found)
    end subroutine scan_way
 
    !> Limits over the listed regions, joined to those found before
@@ -126,27 +126,30 @@ contains
       integer :: i, k
 
       guess = near
-      call loosen(found, guess)
+      call loosen_limits(found, guess)
       !$omp parallel do schedule(static) default(none) &
       !$omp shared(model, ua, ub, noise, guess, first, last) private(i, k) &
       !$omp num_threads(model%threads) if(model%threads > 1 .and. last - first > few)
       do i = first, last
-         model%part(i) = guess
-         associate (part => model%tree%part(model%list(i)))
+         model%search%part(i) = guess
+         associate (part => model%search%tree%part(model%search%list(i)))
             do k = part%run + 1, part%run + part%runs
-               select type (group => model%holders(model%tree%run(1, k))%group)
+               select type (group => model%mesh%holders(model%search%tree%run(1, k))%group)
                class is (point_group)
-                  call scan_run(group, model%tree%run(:, k), ua, ub, model%lambda, noise, model%part(i))
+                  call scan_run(group, model%search%tree%run(:, k), ua, ub, model%loop%lambda, noise, &
+                     model%search%part(i))
                end select
             end do
          end associate
       end do
       !$omp end parallel do
       do i = first, last
-         associate (part => model%part(i))
+         associate (part => model%search%part(i))
             found%bounded = found%bounded .or. part%bounded
-            if (part%hi%point /= 0 .and. wins(part%hi, part%hi%value, found%hi, found%hi%value)) found%hi = part%hi
-            if (part%lo%point /= 0 .and. wins(part%lo, -part%lo%value, found%lo, -found%lo%value)) found%lo = part%lo
+            if (part%hi%point /= 0 .and. takes_place(part%hi, part%hi%value, found%hi, &
+               found%hi%value)) found%hi = part%hi
+            if (part%lo%point /= 0 .and. takes_place(part%lo, -part%lo%value, found%lo, &
+               -found%lo%value)) found%lo = part%lo
             if (part%empty%point == 0) cycle
             if (found%empty%point == 0 .or. part%empty%value > found%empty%value .or. &
                 (.not. part%empty%value < found%empty%value .and. earlier(part%empty, found%empty))) then
@@ -176,7 +179,7 @@ contains
    end subroutine scan_run
 
    !> Does a limit take the place of another one: it is less, or the same of an earlier point
-   pure function wins(new, value, old, least) result(better)
+   pure function takes_place(new, value, old, least) result(better)
       type(bound), intent(in) :: new
       real(wp), intent(in) :: value          !! of the new, the least wins
       type(bound), intent(in) :: old
@@ -184,7 +187,7 @@ contains
       logical :: better
       better = below(value, least)
       if (.not. better .and. old%point /= 0 .and. .not. below(least, value)) better = earlier(new, old)
-   end function wins
+   end function takes_place
 
    !> Does a point come before another
    pure function earlier(a, b) result(first)
@@ -197,25 +200,31 @@ contains
    function guess_limits(model) result(guess)
       type(element_model), intent(in) :: model
       type(scan_result) :: guess
-      type(scan_result) :: found
-      integer :: k, g, e
 
       guess = scan_result()
-      do k = 1, size(model%hot, 2)
-         g = model%hot(1, k)
-         if (g == 0) cycle
-         select type (group => model%holders(g)%group)
+      call join_limits(model%search%upper)
+      call join_limits(model%search%lower)
+
+   contains
+
+      subroutine join_limits(place)
+         type(point_place), intent(in) :: place
+         type(scan_result) :: found
+         integer :: e
+         if (place%group == 0) return
+         select type (group => model%mesh%holders(place%group)%group)
          class is (point_group)
-            e = 1 + (model%hot(2, k) - 1) / (group%points / group%elements)
+            e = 1 + (place%point - 1) / (group%points / group%elements)
             found = scan_result()
-            call group%scan(e, e, model%ua, model%ub, model%lambda, model%noise, found)
-            call loosen(found, guess)
+            call group%scan(e, e, model%solution%ua, model%solution%ub, model%loop%lambda, model%search%noise, found)
+            call loosen_limits(found, guess)
          end select
-      end do
+      end subroutine join_limits
+
    end function guess_limits
 
    !> Limits that leave room for equals of those found
-   pure subroutine loosen(found, guess)
+   pure subroutine loosen_limits(found, guess)
       type(scan_result), intent(in) :: found
       type(scan_result), intent(inout) :: guess
       real(wp), parameter :: room = 1.0e-9_wp
@@ -223,7 +232,7 @@ contains
          max(room * abs(found%hi%value), tiny(room)))
       if (found%lo%point /= 0) guess%lo%value = max(guess%lo%value, found%lo%value - &
          max(room * abs(found%lo%value), tiny(room)))
-   end subroutine loosen
+   end subroutine loosen_limits
 
    !> Do the limits leave no multiplier, by more than rounding? A joint that closes at zero stress would open again at
    !> the same load, then close, many times over.
@@ -237,22 +246,22 @@ contains
    end function crossed
 
    !> The point to damage next and its multiplier
-   pure subroutine choose(model, chosen)
+   pure subroutine choose_event(model, chosen)
       type(element_model), intent(inout) :: model
       type(bound), intent(in) :: chosen
-      model%pending = [chosen%group, chosen%point, chosen%code]
-      model%lambda = chosen%value
-   end subroutine choose
+      model%loop%pending = point_event(chosen%group, chosen%point, chosen%code)
+      model%loop%lambda = chosen%value
+   end subroutine choose_event
 
    !> The region of the first freedom of a point's element
    pure function element_region(model, place) result(k)
       type(element_model), intent(in) :: model
-      integer, intent(in) :: place(2)        !! group and point
+      type(point_place), intent(in) :: place
       integer :: k
-      k = size(model%tree%part)
-      select type (group => model%holders(place(1))%group)
+      k = size(model%search%tree%part)
+      select type (group => model%mesh%holders(place%group)%group)
       class is (point_group)
-         k = regions_home(model%tree, group%equation(:, 1 + (place(2) - 1) / (group%points / group%elements)))
+         k = regions_home(model%search%tree, group%equation(:, 1 + (place%point - 1) / (group%points / group%elements)))
       end select
    end function element_region
 
@@ -264,34 +273,35 @@ contains
       integer :: k
       status = status_ok
       count = 0
-      associate (tree => model%tree)
+      associate (tree => model%search%tree)
          do k = 1, size(tree%part)
-            if (.not. model%wanted(k) .and. tree%part(k)%seen /= tree%now) cycle
-            if (tree%part(k)%parent > 0) model%wanted(tree%part(k)%parent) = .true.
+            if (.not. model%search%wanted(k) .and. tree%part(k)%seen /= tree%now) cycle
+            if (tree%part(k)%parent > 0) model%search%wanted(tree%part(k)%parent) = .true.
          end do
          do k = size(tree%part), 1, -1
             if (tree%part(k)%seen == tree%now) then
                count = count + 1
-               model%list(count) = k
-            else if (model%wanted(k)) then
-               call bring(model, k, count, status)
+               model%search%list(count) = k
+            else if (model%search%wanted(k)) then
+               call bring_region(model, k, count, status)
                if (status /= status_ok) return
             end if
          end do
-         model%wanted(:) = model%watched
+         model%search%wanted(:) = model%search%watched
       end associate
    end subroutine bring_wanted
 
    !> Bring one region up to date and put it on the list
-   subroutine bring(model, k, count, status)
+   subroutine bring_region(model, k, count, status)
       type(element_model), intent(inout) :: model
       integer, intent(in) :: k
       integer, intent(inout) :: count
       integer(c_int), intent(out) :: status
-      call regions_bring(model%tree, k, model%handle, .false., model%ua, model%ub, model%z, status)
+      call regions_bring(model%search%tree, k, model%stiffness%factor, .false., model%solution%ua, model%solution%ub, &
+         model%solution%z, status)
       count = count + 1
-      model%list(count) = k
-   end subroutine bring
+      model%search%list(count) = k
+   end subroutine bring_region
 
    !> Bring all regions up to date
    subroutine bring_all(model, status)
@@ -300,12 +310,12 @@ contains
       integer :: k, count
       status = status_ok
       count = 0
-      do k = size(model%tree%part), 1, -1
-         if (model%tree%part(k)%seen /= model%tree%now) call bring(model, k, count, status)
+      do k = size(model%search%tree%part), 1, -1
+         if (model%search%tree%part(k)%seen /= model%search%tree%now) call bring_region(model, k, count, status)
          if (status /= status_ok) return
       end do
-      model%tree%part(:)%patience = 0
-      model%tree%part(:)%failed = 0
+      model%search%tree%part(:)%patience = 0
+      model%search%tree%part(:)%failed = 0
    end subroutine bring_all
 
 end module sla_scan

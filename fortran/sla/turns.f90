@@ -14,9 +14,10 @@ module sla_turns
    use common_kinds, only : wp
    use common_lists, only : code_slide => sla_event_slide, code_stick => sla_event_stick
    use common_status, only : status_ok, status_out_of_memory
-   use sla_friction, only : friction_flexibility, friction_store, eliminate, find_sliders, product_of
-   use sla_group, only : event_vectors, group_holder, point_group, slider
-   use, intrinsic :: iso_c_binding, only : c_int, c_ptr
+   use sla_friction, only : friction_flexibility, friction_store, eliminate_system, find_sliders, product_of
+   use sla_group, only : event_vectors, friction_group, group_holder, point_event, slider
+   use sla_stiffness, only : stiffness_matrix
+   use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
    public :: friction_turns
@@ -24,23 +25,21 @@ module sla_turns
 contains
 
    !> The changes that let the structure go on with more load, all made at once
-   subroutine friction_turns(store, holders, event, handle, fresh, value, n, lambda, ua, ub, change, found, status)
+   subroutine friction_turns(store, holders, event, stiffness, lambda, ua, ub, change, found, status)
       type(friction_store), intent(inout) :: store
       type(group_holder), intent(in) :: holders(:)
       type(event_vectors), intent(in) :: event           !! by which the factor changed since the last balance
-      type(c_ptr), intent(in) :: handle                  !! of the factor
-      logical, intent(in) :: fresh                       !! solve with a new factor of `value`
-      real(wp), intent(in), contiguous :: value(:)
-      integer, intent(in) :: n                           !! equations
+      type(stiffness_matrix), intent(in) :: stiffness
       real(wp), intent(in) :: lambda
       real(wp), intent(in) :: ua(0:)
       real(wp), intent(in) :: ub(0:)
-      integer, allocatable, intent(out) :: change(:, :)  !! (3, changes) group, point, code
+      type(point_event), allocatable, intent(out) :: change(:)
       logical, intent(out) :: found                      !! false: no motion goes on with more load
       integer(c_int), intent(out) :: status
       type(slider), allocatable :: point(:)
       real(wp), allocatable :: g(:, :), f(:, :), g0(:), f0(:), matrix(:, :), side(:, :)
-      integer, allocatable :: rows(:, :), at(:)
+      type(point_event), allocatable :: turn(:)
+      integer, allocatable :: at(:)
       logical, allocatable :: sliding(:)
       integer :: i, j, m, slides, count, info
 
@@ -48,11 +47,11 @@ contains
       call find_limited(holders, lambda, ua, ub, point, slides, status)
       if (status /= status_ok) return
       m = size(point)
-      allocate (g(m, m), f(m, m), g0(m), f0(m), matrix(m, m), side(m, m + 1), sliding(m), rows(3, m), at(m), &
+      allocate (g(m, m), f(m, m), g0(m), f0(m), matrix(m, m), side(m, m + 1), sliding(m), turn(m), at(m), &
          stat=info)
       if (info /= 0) status = status_out_of_memory
       if (info /= 0 .or. m == 0) return
-      call friction_flexibility(store, point, event, handle, fresh, value, n, at, status)
+      call friction_flexibility(store, point, event, stiffness, at, status)
       if (status /= status_ok) return
       do i = 1, m
          associate (p => point(i))
@@ -76,7 +75,7 @@ contains
          side(i, i) = 1.0_wp
       end do
       side(:, m + 1) = -g0
-      call eliminate(g, side, status)
+      call eliminate_system(g, side, status)
       if (status /= status_ok) then     ! all of them stuck are a mechanism
          status = status_ok
          return
@@ -94,11 +93,11 @@ contains
       do i = 1, m
          if (sliding(i) .eqv. i <= slides) cycle
          count = count + 1
-         rows(:, count) = [point(i)%group, point(i)%point, int(merge(code_slide, code_stick, sliding(i)))]
+         turn(count) = point_event(point(i)%group, point(i)%point, int(merge(code_slide, code_stick, sliding(i))))
       end do
-      allocate (change(3, count), stat=info)
+      allocate (change(count), stat=info)
       if (info /= 0) status = status_out_of_memory
-      if (info == 0) change(:, :) = rows(:, 1:count)
+      if (info == 0) change(:) = turn(1:count)
    end subroutine friction_turns
 
    !> Points at the limit of their friction: those that slide, then those that have stuck at this very load
@@ -120,7 +119,7 @@ contains
       count = slides
       do g = 1, size(holders)
          select type (group => holders(g)%group)
-         class is (point_group)
+         class is (friction_group)
             call group%turned_back(lambda, none, count)
          end select
       end do
@@ -131,7 +130,7 @@ contains
       count = slides
       do g = 1, size(holders)
          select type (group => holders(g)%group)
-         class is (point_group)
+         class is (friction_group)
             before = count
             call group%turned_back(lambda, point, count)
             point(before + 1:count)%group = g

@@ -149,7 +149,7 @@ def one(name: str, case: Case) -> None:
     n = len(assembly.mass)
 
     def solids(stiffness: float, beta: float) -> dem3.Solids:
-        return solids_of(assembly, dem3.Law(stiffness, stiffness, FRICTION, beta))
+        return solids_of(assembly, dem3.Law(stiffness, stiffness, FRICTION, damping=beta))
 
     def moved(run: dem3.Run) -> np.ndarray:
         return run.place[:, :n] - run.settled[:n]
@@ -210,7 +210,7 @@ def sizes() -> None:
     print("cost over size: walls of units in running bond, one thread, processor time")
     for length, height in ((2.4, 1.0), (4.8, 2.0), (9.6, 4.0), (19.2, 8.0), (32.0, 12.0)):
         assembly = make_wall(Bond(0.4, 0.2), 0.2, height, [(length, False, [])])
-        solids = solids_of(assembly, dem3.Law(5e9, 5e9, FRICTION, 1e-3))
+        solids = solids_of(assembly, dem3.Law(5e9, 5e9, FRICTION, damping=1e-3))
         n = len(assembly.mass)
         spent, steps = {}, {}
         for seconds in (1e-6, max(0.008, 8.0 / n)):  # the first search takes as long as many steps
@@ -231,7 +231,7 @@ def threads() -> None:
     print(f"two threads against one, wall clock; load {os.getloadavg()[0]:.1f} on {os.cpu_count()} cores")
     for length, height in ((2.8, 1.4), (5.2, 3.2), (12.6, 3.2), (19.2, 8.0)):
         assembly = make_wall(Bond(0.4, 0.2), 0.2, height, [(length, False, [])])
-        solids = solids_of(assembly, dem3.Law(5e9, 5e9, FRICTION, 1e-3))
+        solids = solids_of(assembly, dem3.Law(5e9, 5e9, FRICTION, damping=1e-3))
         n = len(assembly.mass)
         took = {}
         for count in (1, 2) * 4:

@@ -158,7 +158,7 @@ if __name__ == "__main__":  # LMGC90 keeps one simulation in a process, and may 
     from extrados.core.dem_run import STILL
 
     case = CASES[sys.argv[1]]
-    blocks = solids_of(case.assembly(), dem3.Law(case.stiffness, case.stiffness, FRICTION, 0.0))
+    blocks = solids_of(case.assembly(), dem3.Law(case.stiffness, case.stiffness, FRICTION, damping=0.0))
     shaken = (STILL, case.ground) if case.way else (case.ground, STILL)
     answer = lmgc90(blocks, *shaken, case.seconds, float(sys.argv[2]))
     np.savez(sys.argv[3], seconds=answer.seconds, time=answer.time, moved=answer.moved)

@@ -3,10 +3,10 @@ program test_dem
    use common_kinds, only : wp
    use common_status, only : status_ok, status_bad_geometry, status_invalid_argument
    use dem_bodies, only : body, body_set, body_set_new, body_turn
-   use dem_contacts, only : contact_pair, contact_set, overlap, measure
+   use dem_contacts, only : contact_pair, contact_set, overlap, measure_overlap
    use dem_joint, only : joint_law
-   use dem_law, only : act, elastic_energy
-   use dem_search, only : search
+   use dem_law, only : apply_pair_law, elastic_energy
+   use dem_search, only : search_pairs
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none (type, external)
    real(wp), parameter :: box(2, 4) = reshape([0.0_wp, 0.0_wp, 2.0_wp, 0.0_wp, 2.0_wp, 1.0_wp, 0.0_wp, 1.0_wp], [2, 4])
@@ -66,23 +66,23 @@ contains
       allocate (contacts%law_first(3), contacts%law_body(0), contacts%law_number(0))
       contacts%law_first = 1
       contacts%skin = 0.02_wp * set%size
-      call search(set, contacts, .true., status)
+      call search_pairs(set, contacts, .true., status)
       if (status /= status_ok .or. contacts%pairs /= 1) error stop 'a box and a floor make one pair'
       associate (pair => contacts%pair(1), a => set%item(contacts%pair(1)%bodies(1)), &
                  b => set%item(contacts%pair(1)%bodies(2)))
          if (pair%law /= 1) error stop 'the law of a joint without an entry'
-         call measure(pair, a, b, now)
+         call measure_overlap(pair, a, b, now)
          if (abs(now%width - 2.0_wp) > 1e-14_wp .or. maxval(abs(now%gap)) > 1e-14_wp) error stop 'at rest'
          if (abs(minval(now%x)) > 1e-14_wp .or. abs(maxval(now%x) - 2.0_wp) > 1e-14_wp) error stop 'points at the ends'
          set%item(1)%y = 0.5_wp + rise
-         call measure(pair, a, b, now)
+         call measure_overlap(pair, a, b, now)
          if (maxval(abs(now%gap - rise)) > 1e-14_wp) error stop 'risen'
          ! about the corner (2, 0): clockwise, so that the other corner lifts by 2 sin(turn)
          set%item(1)%angle = -turn
          call body_turn(set%item(1))
          set%item(1)%x = 2.0_wp - cos(turn) + 0.5_wp * sin(turn)
          set%item(1)%y = sin(turn) + 0.5_wp * cos(turn)
-         call measure(pair, a, b, now)
+         call measure_overlap(pair, a, b, now)
          if (abs(minval(now%gap)) > 1e-14_wp) error stop 'the corner it turns about'
          if (abs(maxval(now%gap) - 2.0_wp * sin(turn)) > 1e-6_wp * turn) error stop 'the corner that lifts'
       end associate
@@ -119,12 +119,12 @@ contains
       type(contact_pair) :: pair
       type(overlap) :: now
       call scene([-deep, -deep], a, b, pair, now)
-      call act(dry, 0.0_wp, 0.0_wp, now, a, b, pair)
+      call apply_pair_law(dry, 0.0_wp, 0.0_wp, now, a, b, pair)
       call near(b%fy, 2.0_wp * 2.0e8_wp * deep, 'normal force of a whole joint')
       call near(b%moment + 1.0_wp, 1.0_wp, 'moment of a whole joint')
       call near(elastic_energy(dry, pair), 0.5_wp * (2.0e8_wp * 2.0_wp) * deep**2, 'energy of the springs')
       call scene([-deep, deep], a, b, pair, now)
-      call act(dry, 0.0_wp, 0.0_wp, now, a, b, pair)
+      call apply_pair_law(dry, 0.0_wp, 0.0_wp, now, a, b, pair)
       call near(b%fy, 2.0e8_wp * deep, 'normal force at one corner')
       call near(b%moment, -2.0e8_wp * deep, 'moment of one corner')
       if (pair%point(2)%closed) error stop 'an open point is closed'
@@ -139,13 +139,13 @@ contains
       real(wp) :: slip
       call scene([-deep, -deep], a, b, pair, now)
       b%vx = 0.25_wp * weight / 1.0e8_wp / drift        ! half of what it can bear
-      call act(dry, 0.0_wp, drift, now, a, b, pair)
+      call apply_pair_law(dry, 0.0_wp, drift, now, a, b, pair)
       call near(b%fx, -0.5_wp * weight, 'sticking')
       if (maxval(abs(pair%point%friction_loss)) > 0.0_wp) error stop 'what sticks loses energy'
       call scene([-deep, -deep], a, b, pair, now)
       slip = 2.0_wp * weight / 1.0e8_wp
       b%vx = slip / drift
-      call act(dry, 0.0_wp, drift, now, a, b, pair)
+      call apply_pair_law(dry, 0.0_wp, drift, now, a, b, pair)
       call near(b%fx, -0.5_wp * 2.0_wp * weight, 'sliding: mu N at both points')
       call near(pair%point(1)%friction_loss, (slip - 0.5_wp * weight / 1.0e8_wp) * 0.25_wp * weight, 'loss in sliding')
    end subroutine friction
@@ -161,11 +161,11 @@ contains
       law%damping = beta
       call scene([-deep, -deep], a, b, pair, now)
       b%py = -speed
-      call act(law, 0.0_wp, 0.0_wp, now, a, b, pair)
+      call apply_pair_law(law, 0.0_wp, 0.0_wp, now, a, b, pair)
       call near(b%fy, 2.0_wp * (stiff * deep + beta * stiff * speed), 'dashpots in compression')
       call scene([-deep, -deep], a, b, pair, now)
       b%py = 2.0_wp * deep / beta
-      call act(law, 0.0_wp, 0.0_wp, now, a, b, pair)
+      call apply_pair_law(law, 0.0_wp, 0.0_wp, now, a, b, pair)
       call near(b%fy + 1.0_wp, 1.0_wp, 'a dashpot that would pull')
    end subroutine dashpots
 
@@ -181,15 +181,15 @@ contains
       law%cohesion = 2.0_wp * law%tension   ! or the shear criterion would end the bond first
       call scene([open, open], a, b, pair, now)
       pair%point%bonded = .true.
-      call act(law, 0.0_wp, 0.0_wp, now, a, b, pair)
+      call apply_pair_law(law, 0.0_wp, 0.0_wp, now, a, b, pair)
       call near(b%fy, -2.0_wp * law%normal_stiffness * open, 'mortar in tension')
       if (.not. all(pair%point%bonded)) error stop 'mortar fails below its strength'
       now%gap = 2.0_wp * open
       b%fy = 0.0_wp
-      call act(law, 0.0_wp, 0.0_wp, now, a, b, pair)
+      call apply_pair_law(law, 0.0_wp, 0.0_wp, now, a, b, pair)
       if (any(pair%point%bonded) .or. abs(b%fy) > 0.0_wp) error stop 'mortar torn'
       now%gap = open
-      call act(law, 0.0_wp, 0.0_wp, now, a, b, pair)
+      call apply_pair_law(law, 0.0_wp, 0.0_wp, now, a, b, pair)
       if (any(pair%point%bonded) .or. abs(b%fy) > 0.0_wp) error stop 'torn mortar heals'
    end subroutine mortar
 

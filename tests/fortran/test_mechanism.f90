@@ -116,9 +116,9 @@ contains
          reshape([1_c_int, 1_c_int, 1_c_int, 2_c_int, 2_c_int, 1_c_int, 2_c_int, 2_c_int, 3_c_int, 1_c_int, &
          3_c_int, 2_c_int, 4_c_int, 1_c_int, 4_c_int, 2_c_int], [2, 8]), 1_c_int, 1.0_wp, made, rest, status)
       call demand(status == status_ok, 'linkage that locks')
-      call made%advance(rest, acos(cosine) - start - 1.0e-6_wp, next, status)
+      call made%advance_state(rest, acos(cosine) - start - 1.0e-6_wp, next, status)
       call demand(next%closed, 'short of the lock')
-      call made%advance(rest, acos(cosine) - start + 1.0e-6_wp, next, status)
+      call made%advance_state(rest, acos(cosine) - start + 1.0e-6_wp, next, status)
       call demand(.not. next%closed, 'past the lock')
       call table_new(made, rest, -1, table, facts, status)
       call demand(status == status_ok, 'table up to the lock')

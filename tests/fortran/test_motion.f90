@@ -3,8 +3,8 @@ program test_motion
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    use common_kinds, only : wp, pi
    use common_status, only : status_ok, status_invalid_argument
-   use motion_generator, only : generate
-   use motion_measures, only : measures, measure_count
+   use motion_generator, only : generate_motions
+   use motion_measures, only : measure_motions, measure_count
    use motion_oscillator, only : oscillator_history, response_spectra
    implicit none (type, external)
    integer, parameter :: n = 801
@@ -34,14 +34,14 @@ program test_motion
       peak, status)
    if (status /= status_invalid_argument) error stop 'a period too short for the sampling is taken'
 
-   call measures(reshape(a, [n, 1]), step, 1_c_int, value, status)
+   call measure_motions(reshape(a, [n, 1]), step, 1_c_int, value, status)
    if (abs(value(3, 1) - 8.0_wp) > 1e-12_wp .or. abs(value(6, 1) - 8.0_wp) > 1e-12_wp) error stop 'PGV or CAV'
 
    line = [1.0_wp, 2.0_wp, 5.0_wp]
    window = 1.0_wp
-   call generate(line, line, step, window, 7_c_int64_t, 0_c_int64_t, 2_c_int, whole, status)
+   call generate_motions(line, line, step, window, 7_c_int64_t, 0_c_int64_t, 2_c_int, whole, status)
    if (status /= status_ok) error stop 'no motions'
-   call generate(line, line, step, window, 7_c_int64_t, 3_c_int64_t, 1_c_int, part, status)
+   call generate_motions(line, line, step, window, 7_c_int64_t, 3_c_int64_t, 1_c_int, part, status)
    if (any(abs(part - whole(:, 4:5)) > 0.0_wp)) error stop 'a motion depends on its batch'
    print '(a)', 'motion: all right'
 end program test_motion

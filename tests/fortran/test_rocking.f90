@@ -7,7 +7,7 @@ program test_rocking
    use common_status, only : status_ok, status_invalid_argument
    use rocking_arch_rocker, only : arch_rocker, arch_rocker_new
    use rocking_block_rocker, only : block_rocker, block_rocker_new
-   use rocking_response, only : respond, response, response_options, response_history
+   use rocking_response, only : find_response, response, response_options, response_history
    use rocking_rocker, only : rocker
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none (type, external)
@@ -82,7 +82,7 @@ contains
       record%state => state
       record%event => event
       record%event_kind => kinds
-      call respond(stone, still, response_options(end_time=6.0_wp, start_q=start * alpha), answer, status, record)
+      call find_response(stone, still, response_options(end_time=6.0_wp, start_q=start * alpha), answer, status, record)
       if (status /= status_ok .or. answer%outcome /= rocking_outcome_recovery) error stop 'free rocking'
       ratio = start
       moment = 0.0_wp

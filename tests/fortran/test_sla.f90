@@ -3,13 +3,14 @@ program test_sla
    use common_kinds, only : wp
    use common_status, only : status_ok
    use common_lists, only : element_q4 => sla_element_q4, law_linear => sla_law_linear
-   use sla_events, only : run_events, stop_rules
+   use sla_events, only : run_events
    use sla_group, only : element_group, material_options
    use sla_handle, only : all_directions
    use sla_ledger, only : event_log, log_reals, log_integers
    use sla_model, only : element_model, model_new, model_add, model_prepare, model_factor, model_loads, model_free
    use sla_plane, only : plane_group, plane_group_new
    use sla_sawtooth, only : make_teeth
+   use sla_state, only : monitor_set
    use sla_tables, only : tooth_tables, tooth_tables_new
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none (type, external)
@@ -32,7 +33,7 @@ contains
       type(tooth_tables) :: teeth
       type(plane_group), allocatable :: plane
       class(element_group), allocatable :: group
-      type(stop_rules) :: rules
+      type(monitor_set) :: monitors
       type(event_log) :: log
       real(wp) :: xy(2, (nx + 1) * (ny + 1)), factor(2, (nx + 1) * (ny + 1)), load(2, (nx + 1) * (ny + 1))
       integer(c_int) :: equation(2, (nx + 1) * (ny + 1)), connect(4, nx * ny), bad, row, node, direction, reason
@@ -75,13 +76,14 @@ contains
       if (status /= status_ok) error stop 'no elements'
       call move_alloc(plane, group)
       call all_directions(connect, 2, nodes, directions, status)
-      if (status == status_ok) call model_add(model, group, nodes, directions, status)
+      if (status == status_ok) call model_add(model%mesh, group, nodes, directions, status)
       if (status == status_ok) call model_prepare(model, 0_c_int, huge(1_c_int64_t), status)
       if (status == status_ok) call model_factor(model, node, direction, ratio, status)
       if (status == status_ok) call model_loads(model, 0.0_wp * load, load, .false., status)
       if (status /= status_ok) error stop 'no factor'
       allocate (log%reals(log_reals, 600), log%integers(log_integers, 600), log%monitors(1, 600))
-      call run_events(model, rules, [1_c_int, 2_c_int], [model%equation(1, size(xy, 2))], [1.0_wp], log, reason, status)
+      monitors = monitor_set([1_c_int, 2_c_int], [model%mesh%equation(1, size(xy, 2))], [1.0_wp], [0.0_wp])
+      call run_events(model, monitors, log, reason, status)
       if (status /= status_ok .or. log%count < 100) error stop 'the events stopped too early'
       gap = maxval(abs(log%reals(5, 1:log%count) - log%reals(4, 1:log%count) - log%reals(6, 1:log%count))) &
          / maxval(log%reals(5, 1:log%count))

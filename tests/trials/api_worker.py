@@ -170,7 +170,7 @@ def solids(centroid, mass, inertia, vertices, faces, owner, joint, law, end_time
     """A cube on a support in space, shaken; on springs with a dowel."""
     dowels = None if rigid else dem3.Dowels(doweled, place, axis, stiffness, strength, reach, 1e-3)
     bodies = dem3.Solids(
-        centroid, mass, inertia, [vertices, vertices - [0.0, 0.0, 1.0]], [faces, faces], owner, [dem3.Law(1e8, 1e8, 0.6, 1e-3)],
+        centroid, mass, inertia, [vertices, vertices - [0.0, 0.0, 1.0]], [faces, faces], owner, [dem3.Law(1e8, 1e8, 0.6, damping=1e-3)],
         {joint: law}, dowels,
     )  # fmt: skip
     options = dem3.Options(

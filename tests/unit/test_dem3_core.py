@@ -56,7 +56,7 @@ def test_a_free_body_turns_as_euler_says() -> None:
 
 
 def test_a_block_settles_as_far_as_its_joint_gives() -> None:
-    run = dem3.run(solids([box((0, 0, 0), (1, 1, 4))], Law(1e9, 1e9, 0.6, 1e-4)), Options(end_time=0.2))
+    run = dem3.run(solids([box((0, 0, 0), (1, 1, 4))], Law(1e9, 1e9, 0.6, damping=1e-4)), Options(end_time=0.2))
     assert run.reason == "end" and 2.0 - run.place[-1, 0, 2] == pytest.approx(DENSITY * GRAVITY * 4.0 / 1e9, rel=1e-5)
     assert run.residual < 1e-9
 
@@ -67,7 +67,8 @@ def test_round_drums_bear_on_all_of_their_faces(sides: int) -> None:
     angle = 2.0 * np.pi * np.arange(sides) / sides
     ring = 0.5 * np.column_stack([np.cos(angle), np.sin(angle)])
     run = dem3.run(
-        solids([prism(ring, k * 1.0, k + 1.0) for k in range(2)], Law(1e9, 1e9, 0.6, 1e-4)), Options(end_time=0.05)
+        solids([prism(ring, k * 1.0, k + 1.0) for k in range(2)], Law(1e9, 1e9, 0.6, damping=1e-4)),
+        Options(end_time=0.05),
     )
     assert [0.5 - run.place[-1, 0, 2], 1.5 - run.place[-1, 1, 2]] == pytest.approx(
         [DENSITY * GRAVITY * 2.0 / 1e9, DENSITY * GRAVITY * 3.0 / 1e9], rel=1e-3
@@ -76,7 +77,7 @@ def test_round_drums_bear_on_all_of_their_faces(sides: int) -> None:
 
 
 def test_a_tiny_step_of_the_run_keeps_nothing_from_rest() -> None:
-    block = solids([box((0, 0, 0), (1, 1, 4))], Law(1e9, 1e9, 0.6, 1e-4))
+    block = solids([box((0, 0, 0), (1, 1, 4))], Law(1e9, 1e9, 0.6, damping=1e-4))
     run = dem3.run(block, Options(end_time=1e-5, step=1e-6, settle_steps=4000))
     assert run.reason == "end" and run.settling_steps < 4000 and run.step == pytest.approx(1e-6)
 
@@ -93,13 +94,15 @@ def test_sliding_down_a_slope_in_any_direction(direction: float) -> None:
     """Coulomb's cone: straight down the slope, at g (sin - mu cos), whichever way the block lies."""
     slope, mu, turn = np.radians(25.0), 0.3, np.radians(direction)
     gravity = GRAVITY * np.array([np.sin(slope) * np.cos(turn), np.sin(slope) * np.sin(turn), -np.cos(slope)])
-    model = solids([box((-1, -1, 0), (1, 1, 0.2))], Law(1e9, 1e9, mu, 1e-4))
+    model = solids([box((-1, -1, 0), (1, 1, 0.2))], Law(1e9, 1e9, mu, damping=1e-4))
     run = dem3.run(model, Options(end_time=1.0, gravity=tuple(gravity), output_step=0.5), rate=np.zeros((2, 6)))
     gone = run.place[-1, 0, :2] - run.place[0, 0, :2]
     exact = 0.5 * GRAVITY * (np.sin(slope) - mu * np.cos(slope)) * run.time[-1] ** 2
     assert gone == pytest.approx(exact * np.array([np.cos(turn), np.sin(turn)]), abs=1e-5 * exact)
     assert run.turn[-1, 0] == pytest.approx(np.eye(3), abs=1e-6) and run.residual < 1e-9
-    held = dem3.run(replace(model, laws=[Law(1e9, 1e9, 0.5, 1e-4)]), Options(end_time=0.5, gravity=tuple(gravity)))
+    held = dem3.run(
+        replace(model, laws=[Law(1e9, 1e9, 0.5, damping=1e-4)]), Options(end_time=0.5, gravity=tuple(gravity))
+    )
     assert np.abs(held.place[-1, 0] - held.place[0, 0]).max() < 1e-7  # tan 25 = .466 < .5
 
 
@@ -118,7 +121,9 @@ def rocking(
     """Rotation towards the way of the ground over time, and the run."""
     half = np.array([0.5 * WIDE, 0.5, 0.0]) if way[0] else np.array([0.5, 0.5 * WIDE, 0.0])
     given = Options(**{"end_time": seconds, "step": 5e-5, "way": way, **options})
-    run = dem3.run(solids([box(-half, half + np.array([0, 0, HIGH]))], Law(K, K, MU, BETA)), given, shaken(seconds))
+    run = dem3.run(
+        solids([box(-half, half + np.array([0, 0, HIGH]))], Law(K, K, MU, damping=BETA)), given, shaken(seconds)
+    )
     up = run.turn[:, 0, :, 2]
     return np.arctan2(up @ np.array(way), up[:, 2]), run
 
@@ -156,7 +161,7 @@ def test_a_block_that_slides_off_an_edge_falls_as_in_the_plane() -> None:
         given = {"end_time": 0.4 / speed + 0.2, "step": 5e-6, "residual_limit": 1.0}
         plane = dem.run(bodies, dem.Options(**given), rate=np.array([[speed, 0, 0], np.zeros(3)]))
         space = dem3.run(
-            solids([block], Law(1e9, 1e9, 0.0, 1e-5)),
+            solids([block], Law(1e9, 1e9, 0.0, damping=1e-5)),
             Options(**given),
             rate=np.array([[speed, 0, 0, 0, 0, 0], np.zeros(6)]),
         )
@@ -170,7 +175,7 @@ def test_a_dashpot_foresees_what_shear_does_to_its_speed() -> None:
     is off by 1.0e-5 m; without that foresight by 2.1e-5."""
     rod = box((-0.05, -0.05, -1), (0.05, 0.05, 1)).moved(Rotation.from_rotvec([0, np.radians(30.0), 0]).as_matrix())
     rod = rod.moved(np.eye(3), np.array([0, 0, 1e-4 - rod.vertices[:, 2].min()]))
-    model, rate = solids([rod], Law(1e9, 1e9, 1.0, 1e-2)), np.array([[0.5, 0, -1.0, 0, 0, 0], np.zeros(6)])
+    model, rate = solids([rod], Law(1e9, 1e9, 1.0, damping=1e-2)), np.array([[0.5, 0, -1.0, 0, 0, 0], np.zeros(6)])
 
     def way(step: float) -> np.ndarray:
         return dem3.run(model, Options(end_time=0.06, step=step, residual_limit=1.0), rate=rate).place[:, 0]
@@ -188,7 +193,7 @@ def test_both_planes_rock_alike() -> None:
 
 def test_two_components_are_one_along_their_sum() -> None:
     """A motion along 30 degrees is its parts along x and y, whichever of them is called along."""
-    block = solids([box((-0.5, -0.5, 0), (0.5, 0.5, HIGH))], Law(K, K, MU, BETA))
+    block = solids([box((-0.5, -0.5, 0), (0.5, 0.5, HIGH))], Law(K, K, MU, damping=BETA))
     one, turn = shaken(0.3), np.radians(30.0)
     assert one.samples is not None
     part = [Ground(samples=f * one.samples, step=one.step) for f in (np.cos(turn), np.sin(turn), -np.cos(turn))]
@@ -215,7 +220,7 @@ def test_sliding_on_ground_that_moves_in_a_circle() -> None:
         )
         for phase in (0.5 * np.pi, 0.0)
     ]
-    slab = solids([box((-1, -1, 0), (1, 1, 0.2))], Law(1e10, 1e10, mu, 1e-5))
+    slab = solids([box((-1, -1, 0), (1, 1, 0.2))], Law(1e10, 1e10, mu, damping=1e-5))
     run = dem3.run(slab, Options(end_time=1.0), grounds[0], across=grounds[1])
 
     def point(t: float, state: np.ndarray) -> np.ndarray:
@@ -236,7 +241,7 @@ def test_no_bit_depends_on_threads_pauses_or_a_state_taken_back(monkeypatch) -> 
     """A wall of six stones in two courses that rocks and slides; a state of another run is refused."""
     parts = [box((x, 0, z), (x + 0.5, 0.3, z + 0.25)) for z in (0.0, 0.25) for x in (0.0, 0.5, 1.0)]
     model, options = (
-        solids(parts, Law(1e9, 1e9, 0.5, 1e-4)),
+        solids(parts, Law(1e9, 1e9, 0.5, damping=1e-4)),
         Options(end_time=0.02, output_step=0.005, way=(0.6, 0.8, 0.0)),
     )
     once = dem3.run(model, options, shaken(1.0), scale=3.0)
@@ -274,7 +279,7 @@ def test_one_contact_keeps_exact_energy() -> None:
         assert run.residual < off
         assert run.energy["elastic"].max() == pytest.approx(2000.0 * GRAVITY * fall, rel=1e-3)
     damped = dem3.run(
-        solids([block], Law(1e7, 1e7, 0.0, 2e-3)), Options(end_time=0.5, step=1e-4), rate=np.zeros((2, 6))
+        solids([block], Law(1e7, 1e7, 0.0, damping=2e-3)), Options(end_time=0.5, step=1e-4), rate=np.zeros((2, 6))
     )
     lost = damped.energy["damping"][-1]
     assert lost > 0.3 * 2000.0 * GRAVITY * 0.01 and damped.residual < 1e-3
@@ -295,7 +300,7 @@ def test_a_column_falls_where_limit_analysis_says(direction: float) -> None:
         push = share * limit.gamma * GRAVITY
         gravity = (push * np.cos(turn), push * np.sin(turn), -GRAVITY)
         run = dem3.run(
-            solids(parts, Law(1e11, 1e11, 0.7, 1e-5)),
+            solids(parts, Law(1e11, 1e11, 0.7, damping=1e-5)),
             Options(end_time=2.0, gravity=gravity, settle_steps=0, collapse=0.05, output_step=0.1), rate=np.zeros((4, 6)),
         )  # fmt: skip
         found.append((run.reason, float(np.linalg.norm(run.place[-1, 2] - run.place[0, 2]))))
@@ -334,7 +339,7 @@ def test_bars_that_cross_rest_on_each_other_by_their_edges(angle: float) -> None
     lower = prism(side, -1.0, 1.0).moved(Rotation.from_rotvec([0, np.pi / 2, 0]).as_matrix())
     across = Rotation.from_rotvec([0, 0, np.radians(angle)]) * Rotation.from_rotvec([0, np.pi / 2, 0])
     upper = prism(side, -1.5, 1.5).moved(across.as_matrix(), np.array([0, 0, 0.2]))
-    model = solids([upper, lower], Law(1e10, 1e10, 0.5, 1e-4), floor=False)
+    model = solids([upper, lower], Law(1e10, 1e10, 0.5, damping=1e-4), floor=False)
     model = replace(model, mass=np.array([model.mass[0], 0.0]))
     run = dem3.run(model, Options(end_time=0.05, output_step=0.01), rate=np.zeros((2, 6)))
     assert run.reason == "end"
@@ -368,11 +373,13 @@ def test_dashpots_between_blocks_that_both_move() -> None:
     given = Options(end_time=0.02, output_step=0.001, step=step, gravity=(0, 0, 0), residual_limit=1e9)
     cubes = [box((0, 0, 0), (1, 1, 1)), box((0, 0, 1 + apart), (1, 1, 2 + apart))]
     both = dem3.run(
-        solids(cubes, Law(stiffness, stiffness, 0.0, beta), floor=False), given,
+        solids(cubes, Law(stiffness, stiffness, 0.0, damping=beta), floor=False), given,
         rate=np.array([[0, 0, speed, 0, 0, 0], [0, 0, -speed, 0, 0, 0]]),
     )  # fmt: skip
     wall = solids(
-        [cubes[0], box((0, 0, 1 + 0.5 * apart), (1, 1, 2))], Law(2 * stiffness, 2 * stiffness, 0.0, beta), floor=False
+        [cubes[0], box((0, 0, 1 + 0.5 * apart), (1, 1, 2))],
+        Law(2 * stiffness, 2 * stiffness, 0.0, damping=beta),
+        floor=False,
     )
     one = dem3.run(
         replace(wall, mass=np.array([mass, 0.0])), given, rate=np.array([[0, 0, speed, 0, 0, 0], [0, 0, 0, 0, 0, 0]])
@@ -415,7 +422,7 @@ def hanging(law: Law) -> Solids:
 def test_mortar_bears_the_weight_that_hangs_on_it(share: float) -> None:
     """Below its strength a cube hangs, drawn out by weight over stiffness; above it falls freely and the ledger closes."""
     weight, stiffness = DENSITY * GRAVITY, 1e9
-    law = Law(stiffness, stiffness, 0.5, 2e-3, cohesion=weight, tension=share * weight)
+    law = Law(stiffness, stiffness, 0.5, damping=2e-3, cohesion=weight, tension=share * weight)
     run = dem3.run(hanging(law), Options(end_time=0.3, output_step=0.01), rate=np.zeros((2, 6)))
     fall = run.place[0, 0, 2] - run.place[-1, 0, 2]
     if share > 1.0:
@@ -429,7 +436,7 @@ def test_mortar_bears_the_weight_that_hangs_on_it(share: float) -> None:
 def test_settling_asks_of_mortar_the_weight_at_rest(share: float) -> None:
     """Not the overshoot of a weight that comes at once, which without dashpots is twice as much."""
     weight, stiffness = DENSITY * GRAVITY, 1e9
-    law = Law(stiffness, stiffness, 0.5, 0.0, cohesion=weight, tension=share * weight)
+    law = Law(stiffness, stiffness, 0.5, damping=0.0, cohesion=weight, tension=share * weight)
     run = dem3.run(hanging(law), Options(end_time=0.1, output_step=0.01, settlement=1e-3))
     if share > 1.0:
         assert (
@@ -447,7 +454,7 @@ def test_mortar_bears_shear_by_cohesion(share: float, gap: float) -> None:
     weight, mu, slope = DENSITY * GRAVITY, 0.2, np.radians(35.0)
     pull = GRAVITY * np.array([np.sin(slope), 0.0, -np.cos(slope)])
     needed = weight * (np.sin(slope) - mu * np.cos(slope))
-    law = Law(1e9, 1e9, mu, 2e-3, cohesion=share * needed, tension=weight)
+    law = Law(1e9, 1e9, mu, damping=2e-3, cohesion=share * needed, tension=weight)
     cubes = solids(
         [box((-0.5, -0.5, gap), (0.5, 0.5, 1 + gap))], law
     )  # of a drawing that is not exact: mortar fills it
@@ -464,7 +471,7 @@ def test_mortar_bears_shear_by_cohesion(share: float, gap: float) -> None:
 def test_mortar_that_is_sheared_off_is_gone() -> None:
     """A cube sheared off by a jolt comes to rest, and then slides under what friction alone cannot hold, and mortar could."""
     weight, mu = DENSITY * GRAVITY, 0.2
-    law = Law(1e9, 1e9, mu, 2e-3, cohesion=0.5 * weight, tension=weight)
+    law = Law(1e9, 1e9, mu, damping=2e-3, cohesion=0.5 * weight, tension=weight)
     cubes = solids([box((-0.5, -0.5, 0), (0.5, 0.5, 1))], law)
     model = replace(cubes, laws=[replace(law, cohesion=0.0, tension=0.0), law], joints={(0, 1): 1})
     t = np.arange(0.0, 1.0, 1e-3)
@@ -478,7 +485,7 @@ def test_mortar_that_is_sheared_off_is_gone() -> None:
 
 def doweled_cube(strength: float, reach: float = np.inf, stiffness: float = 1e9) -> Solids:
     """A cube on a floor, with a dowel in the middle of its base."""
-    model = solids([box((-0.5, -0.5, 0), (0.5, 0.5, 1))], Law(1e9, 1e9, 0.2, 1e-4))
+    model = solids([box((-0.5, -0.5, 0), (0.5, 0.5, 1))], Law(1e9, 1e9, 0.2, damping=1e-4))
     one = dem3.Dowels(
         np.array([[1, 0]]), np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]), np.array([stiffness]), np.array([strength]),
         np.array([reach]), 1e-4,
@@ -511,7 +518,7 @@ def test_a_cube_swings_on_its_dowel() -> None:
     """Without friction, as an oscillator on the stiffness of the dowel with beta times omega / 2 of critical damping."""
     speed, stiffness, beta, mass = 0.01, 1e6, 1e-2, DENSITY
     model = doweled_cube(np.inf, stiffness=stiffness)
-    model = replace(model, laws=[Law(1e9, 1e9, 0.0, 1e-3)], dowels=replace(model.dowels, damping=beta))
+    model = replace(model, laws=[Law(1e9, 1e9, 0.0, damping=1e-3)], dowels=replace(model.dowels, damping=beta))
     run = dem3.run(
         model, Options(end_time=0.6, output_step=0.002), rate=np.array([[speed, 0, 0, 0, 0, 0], np.zeros(6)])
     )
@@ -585,7 +592,7 @@ def test_a_dowel_reaches_so_far(reach: float, out: bool) -> None:
 
 def test_dowels_are_checked_and_threads_and_pauses_change_no_bit(monkeypatch) -> None:
     drums = [box((-0.5, -0.5, k), (0.5, 0.5, k + 1)) for k in range(3)]
-    model = solids(drums, Law(1e9, 1e9, 0.6, 1e-4, tension=1e4, cohesion=1e4))
+    model = solids(drums, Law(1e9, 1e9, 0.6, damping=1e-4, tension=1e4, cohesion=1e4))
     pairs = np.array([[3, 0], [0, 1], [1, 2]])
     places, axes, n = np.array([[0, 0, 0.0], [0, 0, 1.0], [0, 0, 2.0]]), np.tile([0.0, 0.0, 1.0], (3, 1)), np.ones(3)
     whole = replace(model, dowels=dem3.Dowels(pairs, places, axes, 1e8 * n, 200.0 * n, [1e-4, 1.0, 1.0] * n, 1e-4))

@@ -6,7 +6,6 @@ from pathlib import Path
 import motion_files as files
 import numpy as np
 import pytest
-from scipy.optimize import minimize
 from typer.testing import CliRunner
 
 import extrados
@@ -16,7 +15,7 @@ from extrados.core import motion as core
 from extrados.decks.reader import DeckError, make_deck, read_text
 from extrados.motions import processing, pulses
 from extrados.motions.from_deck import generated_set, make_motion, suite_motions
-from extrados.motions.impulse import _downhill, primary_impulses
+from extrados.motions.impulse import primary_impulses
 from extrados.motions.shake_table import Table, fit, make_drive
 from extrados.motions.wavelet_pulse import classify
 
@@ -60,23 +59,6 @@ def test_velocity_pulse_is_that_of_the_paper() -> None:
 
 
 # --- primary impulse and classification
-
-
-def test_the_simplex_is_that_of_scipy() -> None:
-    """Bit for bit, on hills with ridges and with a forbidden side, as the search for impulses meets them."""
-    rng = np.random.default_rng(1)
-    for _ in range(50):
-        turn, centre = rng.normal(size=(2, 2)), rng.normal(size=2)
-
-        def loss(x: np.ndarray, turn=turn, centre=centre) -> float:
-            y = turn @ (x - centre)
-            return float(y @ y + 0.3 * np.sin(5.0 * y[0]) * np.cos(3.0 * y[1])) if x[0] > -1.0 else 0.0
-
-        corners = rng.normal(size=(3, 2))
-        options = {"initial_simplex": corners, "xatol": 1e-5, "fatol": 1e-9}
-        peer = minimize(loss, corners[0], method="Nelder-Mead", options=options)
-        best, least = _downhill(loss, corners, 1e-5, 1e-9)
-        assert np.array_equal(best, peer.x) and least == peer.fun
 
 
 def test_impulses_of_a_known_sum_are_found() -> None:

@@ -165,7 +165,7 @@ def test_the_ledger_of_an_arch_closes(stiffness: float, off: float) -> None:
     model = Solids(
         np.concatenate([arch.centroid, middle]), np.concatenate([arch.mass, np.zeros(len(below))]),
         np.concatenate([arch.inertia, np.tile(np.eye(3), (len(below), 1, 1))]), [p.vertices for p in parts],
-        [p.faces for p in parts], [*arch.owner.tolist(), *range(n, n + len(below))], [Law(stiffness, stiffness, 0.7, 1e6 / stiffness)],
+        [p.faces for p in parts], [*arch.owner.tolist(), *range(n, n + len(below))], [Law(stiffness, stiffness, 0.7, damping=1e6 / stiffness)],
     )  # fmt: skip
     pulse = Ground(
         breaks=np.array([0.0, 0.2, 0.6]), linear=GRAVITY * np.array([[[-1.0, 0.0]], [[0.5, 0.0]]]), harmonic=np.zeros((2, 1, 0, 4))

@@ -53,7 +53,7 @@ def shaken(strength: float) -> tuple[Ground, Ground]:
 def moved(seed: int, strength: float, stiffness: float = SOFT) -> np.ndarray:
     """Displacements (time, block, 3) [m]; the energy ledger closes."""
     along, across = shaken(strength)
-    model = solids(portal(seed), Law(stiffness, stiffness, 0.7, 1e6 / stiffness))
+    model = solids(portal(seed), Law(stiffness, stiffness, 0.7, damping=1e6 / stiffness))
     run = dem3.run(model, Options(end_time=TIMES[-1]), along, across=across, times=TIMES)
     assert run.reason == "end" and run.residual < 5e-3
     return run.place[:, :6] - run.settled[:6]
@@ -79,7 +79,7 @@ def test_six_random_blocks_fall_as_in_mujoco(seed: int) -> None:
     pytest.importorskip("mujoco")
     from solid_peers import mujoco
 
-    model = solids(portal(seed), Law(STIFF, STIFF, 0.7, 1e6 / STIFF))
+    model = solids(portal(seed), Law(STIFF, STIFF, 0.7, damping=1e6 / STIFF))
     peer = mujoco(model, *shaken(1.0), end=float(TIMES[-1]), dt=1e-4, every=100)
     theirs = np.concatenate([np.zeros((1, 6, 3)), peer.moved])
     ours = moved(seed, 1.0, STIFF)
@@ -101,7 +101,7 @@ def test_after_many_impacts_histories_are_a_band(seed: int) -> None:
     pytest.importorskip("mujoco")
     from solid_peers import mujoco
 
-    model = solids(portal(seed), Law(STIFF, STIFF, 0.7, 1e6 / STIFF))
+    model = solids(portal(seed), Law(STIFF, STIFF, 0.7, damping=1e6 / STIFF))
     peer = mujoco(model, *shaken(0.6), end=float(TIMES[-1]), dt=1e-4, every=100)
     theirs = np.concatenate([np.zeros((1, 6, 3)), peer.moved])
     assert apart(moved(seed, 0.6, STIFF), theirs, float(TIMES[-1])) < 1.5 * max(stands)

@@ -1,37 +1,16 @@
 """Discrete elements of the plane in the core (fortran/dem): rigid blocks, their joints, and what a run leaves of them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from extrados import _core
 from extrados.core.calls import indices, integers, real
-from extrados.core.dem_run import STILL, BodyModel, FoundRun, RunOptions
+from extrados.core.dem_run import STILL, BodyModel, FoundRun, Law, RunOptions
 from extrados.core.errors import check
 from extrados.core.ground import Ground, as_motion_set
 from extrados.schema.constants import GRAVITY
-
-
-@dataclass(frozen=True)
-class Law:
-    """A type of joint. Stiffnesses [Pa/m], cohesion and tension of mortar, lost at the first failure [Pa],
-    damping: beta of stiffness-proportional damping [s]."""
-
-    normal_stiffness: float
-    shear_stiffness: float
-    friction: float
-    cohesion: float = 0.0
-    tension: float = 0.0
-    damping: float = 0.0
-
-    def __post_init__(self) -> None:
-        if not (self.normal_stiffness > 0.0 and self.shear_stiffness > 0.0):
-            raise ValueError(
-                f"joint stiffnesses are {self.normal_stiffness:g} and {self.shear_stiffness:g} Pa/m, expected above 0"
-            )
-        if min(self.friction, self.cohesion, self.tension, self.damping) < 0.0:
-            raise ValueError("friction, cohesion, tension and damping of a joint must not be negative")
 
 
 @dataclass(frozen=True)
@@ -152,14 +131,13 @@ class Model(BodyModel[Run]):
 
     def _put_joints(self, bodies: Bodies) -> None:
         depth = bodies.depth
-        rows = [
-            [
-                law.normal_stiffness * depth, law.shear_stiffness * depth, law.friction, law.cohesion * depth,
-                law.tension * depth, law.damping,
-            ]
+        self._put_laws([
+            replace(
+                law, normal_stiffness=law.normal_stiffness * depth, shear_stiffness=law.shear_stiffness * depth,
+                cohesion=law.cohesion * depth, tension=law.tension * depth,
+            )
             for law in bodies.laws
-        ]  # fmt: skip
-        check(_core.api_dem.laws(self.handle, real("laws", np.transpose(rows), (6, None))), "laws of the joints")
+        ])  # fmt: skip
         if bodies.joints:
             pairs = indices("joints", np.transpose(list(bodies.joints)), self.count, (2, None))
             law = indices("joints", list(bodies.joints.values()), len(bodies.laws), (None,))

@@ -1,39 +1,18 @@
 """Discrete elements in space in the core (fortran/dem3): rigid polyhedra, their joints, and what a run leaves of them."""
 
-from dataclasses import astuple, dataclass, field
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from extrados import _core
 from extrados.core.calls import indices, integers, real
-from extrados.core.dem_run import STILL, BodyModel, FoundRun, RunOptions
+from extrados.core.dem_run import STILL, BodyModel, FoundRun, Law, RunOptions
 from extrados.core.errors import check
 from extrados.core.ground import Ground, as_motion_set
 from extrados.schema.constants import GRAVITY
 
 #: Corners of a face, at most (fortran/dem3/bodies.f90)
 MOST_CORNERS = 96
-
-
-@dataclass(frozen=True)
-class Law:
-    """A type of joint. Stiffnesses [Pa/m]; damping: beta of stiffness-proportional damping [s]; cohesion, tension: of its
-    mortar [Pa]."""
-
-    normal_stiffness: float
-    shear_stiffness: float
-    friction: float
-    damping: float = 0.0
-    cohesion: float = 0.0
-    tension: float = 0.0
-
-    def __post_init__(self) -> None:
-        if not (self.normal_stiffness > 0.0 and self.shear_stiffness > 0.0):
-            raise ValueError(
-                f"joint stiffnesses are {self.normal_stiffness:g} and {self.shear_stiffness:g} Pa/m, expected above 0"
-            )
-        if min(self.friction, self.damping, self.cohesion, self.tension) < 0.0:
-            raise ValueError("friction, damping, cohesion and tension of a joint must not be negative")
 
 
 @dataclass(frozen=True)
@@ -144,15 +123,13 @@ class Model(BodyModel[Run]):
         super().__init__(handle)
         self.count, self.options, self._axes = n, options, axes
         try:
-            rows = [astuple(law) for law in solids.laws]
+            self._put_laws(solids.laws)
             pairs = sorted((*sorted(pair), law) for pair, law in solids.joints.items())
             joints = np.array(pairs, dtype=int).reshape(-1, 3).T
             if pairs:
                 indices("joints", joints[:2], n, (2, None))
-            status = _core.api_dem3.laws(
-                self.handle, real("laws", np.transpose(rows), (6, None)), np.asfortranarray(joints + 1, dtype=np.int32)
-            )
-            check(status, "laws of the joints")
+            status = _core.api_dem3.joints(self.handle, np.asfortranarray(joints + 1, dtype=np.int32))
+            check(status, "joints")
             self._put_dowels(solids.dowels)
             status = _core.api_dem3.surroundings(
                 self.handle, real("gravity", options.gravity, (3,)), real("way", options.way, (3,)), float(options.domain),

@@ -4,8 +4,8 @@ the end of a motion."""
 import hashlib
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
@@ -28,6 +28,27 @@ _DIGEST = 4  # words of a state that hold its SHA-256
 
 #: No motion of the ground
 STILL = Ground(breaks=np.array([0.0, 1.0]), linear=np.zeros((1, 1, 2)), harmonic=np.zeros((1, 1, 0, 4)))
+
+
+@dataclass(frozen=True)
+class Law:
+    """A type of joint. Stiffnesses [Pa/m]; cohesion and tension of mortar, lost at the first failure [Pa]; damping: beta of
+    stiffness-proportional damping [s]."""
+
+    normal_stiffness: float
+    shear_stiffness: float
+    friction: float
+    cohesion: float = field(default=0.0, kw_only=True)
+    tension: float = field(default=0.0, kw_only=True)
+    damping: float = field(default=0.0, kw_only=True)
+
+    def __post_init__(self) -> None:
+        if not (self.normal_stiffness > 0.0 and self.shear_stiffness > 0.0):
+            raise ValueError(
+                f"joint stiffnesses are {self.normal_stiffness:g} and {self.shear_stiffness:g} Pa/m, expected above 0"
+            )
+        if min(self.friction, self.cohesion, self.tension, self.damping) < 0.0:
+            raise ValueError("friction, cohesion, tension and damping of a joint must not be negative")
 
 
 @dataclass(frozen=True)
@@ -126,24 +147,23 @@ class BodyModel(Owner, ABC, Generic[Found]):
     count: int
     options: RunOptions
 
+    def _put_laws(self, laws: Sequence[Law]) -> None:
+        status = _core.api_dem_run.laws(
+            self.handle,
+            *(
+                real(name, [getattr(law, name) for law in laws], (len(laws),))
+                for name in ("normal_stiffness", "shear_stiffness", "friction", "cohesion", "tension", "damping")
+            ),
+        )
+        check(status, "laws of the joints")
+
     def _put_options(self, settle: bool) -> None:
         o = self.options
         if not (o.end_time > 0.0 and o.output_step > 0.0 and 0.0 < o.fraction <= 1.0):
             raise ValueError("end time, output step and the fraction of the critical step must be positive")
-        limits = [
-            o.end_time,
-            o.step,
-            o.fraction,
-            o.settle_tolerance,
-            o.settlement,
-            o.collapse,
-            o.residual_limit,
-            o.settle_damping,
-            o.collapse_turn,
-            o.collapse_drop,
-        ]
         status = _core.api_dem_run.options(
-            self.handle, real("limits", limits, (10,)), int(o.settle_steps) if settle else 0, int(o.stop_at_rest),
+            self.handle, o.end_time, o.step, o.fraction, o.settle_tolerance, o.settlement, o.collapse, o.residual_limit,
+            o.settle_damping, o.collapse_turn, o.collapse_drop, int(o.settle_steps) if settle else 0, int(o.stop_at_rest),
             thread_count(o.threads),
         )  # fmt: skip
         check(status, "options of the run")

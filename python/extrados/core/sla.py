@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from extrados import _core
+from extrados.core import lists
 from extrados.core.calls import indices, integers, long_call, real, room_for, thread_count
 from extrados.core.errors import Cancelled, check, status_code
 from extrados.core.handles import Owner
@@ -81,7 +82,7 @@ MOST_TEETH = 4096
 #: slip at which friction that sticks carries nothing [m]; how it is, 0 sticks, 1 and 2 slides up and down
 START, HELD, HELD_RATE, MARK, MODE = 0, 1, 6, 8, 10
 #: What happens after a tooth and where equilibrium is lost, see Model.run
-VARIANTS = ("load-unload", "proportional", "force-release")
+VARIANTS = tuple(lists.numbers("sla_variant"))
 #: Ratio of neighbouring bands where the band follows from the crack: the energy is right to a percent
 BAND_STEP = 1.02
 
@@ -381,7 +382,7 @@ class Model(Owner):
             real("reference", np.transpose(reference), (self.freedoms, self.nodes)),
             int(carried),
             int(events),
-            real("ledger", ledger, (3,)),
+            *(float(energy) for energy in real("ledger", ledger, (3,))),
         )
         check(status, "loads")
 
@@ -417,20 +418,15 @@ class Model(Owner):
         direction = indices(
             "direction of a monitor", np.concatenate([m.direction for m in monitors]), self.freedoms, node.shape
         )
-        limits = [
-            min(stop.load, huge),
-            min(stop.displacement, huge),
-            stop.fraction,
-            stop.compliance,
-            stop.target,
-            stop.side,
-            stop.already,
+        status = _core.api_sla.stop_at(
+            self.handle, lists.numbers("sla_variant")[variant], min(stop.load, huge), min(stop.displacement, huge),
+            stop.fraction, stop.compliance, int(stop.refuse_overload), stop.target, stop.side, stop.already,
             min(stop.far, huge),
-        ]
+        )  # fmt: skip
+        check(status, "where the events end")
         counts, reals, ints, watched, cracked, status = long_call(
-            _core.api_sla.run, self.handle, int(room), real("stop", limits, (8,)), int(stop.refuse_overload),
-            VARIANTS.index(variant), first,
-            _rows(node, direction), real("share", np.concatenate([m.share for m in monitors]), node.shape),
+            _core.api_sla.run, self.handle, int(room), first, _rows(node, direction),
+            real("share", np.concatenate([m.share for m in monitors]), node.shape),
         )  # fmt: skip
         interrupted = status == status_code("cancelled")
         if not interrupted:

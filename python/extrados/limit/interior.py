@@ -8,6 +8,9 @@ joint by joint, which leaves three equations per block, as sparse as the wall. N
 stiffer than those that move that these equations would drown in rounding: in the linear programme, a step of the forces is
 charged for its opening of the joints, and a step of the motion for its force, a little each. Both vanish with the steps
 (Friedlander and Orban 2012: a primal-dual regularisation that is exact in the end).
+
+Joints without dilatancy are no linear programme, which HiGHS and Clarabel need. Where they dilate HiGHS takes 3 to 7 times as
+long on walls of 100 to 250 stones, Clarabel, without the mechanism, 0.9 to 1.5 times (`python tests/bench solvers`).
 """
 
 from dataclasses import dataclass

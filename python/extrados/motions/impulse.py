@@ -1,6 +1,5 @@
 """The primary impulse of a motion: the single sine that fits it best (thesis 5.3.2, 5.4.2)."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -127,6 +126,7 @@ def _polish(
     rest: np.ndarray, free: np.ndarray, step: float, period: float, start: float, low: float, high: float
 ) -> tuple[float, float]:
     """Greatest gain near a grid point, over period and start between the samples."""
+    from scipy.optimize import minimize  # takes 0.2 s to load
 
     def loss(x: np.ndarray) -> float:
         p, s = x
@@ -137,42 +137,6 @@ def _polish(
 
     begin = loss(np.array([period, start]))
     corners = np.array([[period, start], [1.03 * period, start], [period, start + step]])
-    best, least = _downhill(loss, corners, 1e-5, -1e-9 * begin)
-    return (float(best[0]), float(best[1])) if least <= begin else (period, start)
-
-
-def _downhill(
-    loss: Callable[[np.ndarray], float], corners: np.ndarray, narrow: float, flat: float, most: int = 400
-) -> tuple[np.ndarray, float]:
-    """Least loss by the simplex of Nelder and Mead (1965), from its corners (n + 1, n), and where it is.
-
-    It ends where the corners lie within `narrow` and their losses within `flat`, or after `most` rounds. As
-    scipy.optimize does it, whose import would take longer than the search.
-    """
-    losses = np.array([loss(corner) for corner in corners])
-    for _ in range(most):
-        order = np.argsort(losses)
-        corners, losses = corners[order], losses[order]
-        if np.abs(corners[1:] - corners[0]).max() <= narrow and np.abs(losses[0] - losses[1:]).max() <= flat:
-            break
-        centre = corners[:-1].sum(axis=0) / (len(corners) - 1)
-        worst = corners[-1]
-        trial = 2.0 * centre - worst
-        tried = loss(trial)
-        if tried < losses[0]:  # farther still
-            farther = 3.0 * centre - 2.0 * worst
-            found = loss(farther)
-            if found < tried:
-                trial, tried = farther, found
-        elif tried >= losses[-2]:  # nearer, on the better side of the centre; else all draw in upon the best
-            outside = tried < losses[-1]
-            nearer = 1.5 * centre - 0.5 * worst if outside else 0.5 * centre + 0.5 * worst
-            found = loss(nearer)
-            if (found <= tried) if outside else (found < losses[-1]):
-                trial, tried = nearer, found
-            else:
-                corners[1:] = corners[0] + 0.5 * (corners[1:] - corners[0])
-                losses[1:] = [loss(corner) for corner in corners[1:]]
-                continue
-        corners[-1], losses[-1] = trial, tried
-    return corners[losses.argmin()], float(losses.min())
+    rules = {"initial_simplex": corners, "xatol": 1e-5, "fatol": -1e-9 * begin, "maxiter": 400, "maxfev": 10_000}
+    found = minimize(loss, corners[0], method="Nelder-Mead", options=rules)
+    return (float(found.x[0]), float(found.x[1])) if found.fun <= begin else (period, start)

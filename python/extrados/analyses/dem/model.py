@@ -77,7 +77,14 @@ class Model:
         v = values or self.values
 
         def law(k: float, shear: float, friction: float, cohesion: float = 0.0, tension: float = 0.0) -> dem.Law:
-            return dem.Law(float(k), float(shear), float(friction), float(cohesion), float(tension), v.beta)
+            return dem.Law(
+                float(k),
+                float(shear),
+                float(friction),
+                cohesion=float(cohesion),
+                tension=float(tension),
+                damping=v.beta,
+            )
 
         laws = [law(np.median(v.stiffness), np.median(v.shear_stiffness), np.median(v.friction))]
         numbers: dict[dem.Law, int] = {}

@@ -116,10 +116,10 @@ class SolidModel:
 def _law(
     values: SolidValues, stiffness: float, shear: float, friction: float, cohesion: float = 0.0, tension: float = 0.0
 ) -> dem3.Law:
-    of_joint, of_mortar = (
-        (float(f"{x:.12g}") for x in group) for group in ((stiffness, shear, friction), (cohesion, tension))
+    stiffness, shear, friction, cohesion, tension = (
+        float(f"{x:.12g}") for x in (stiffness, shear, friction, cohesion, tension)
     )
-    return dem3.Law(*of_joint, values.beta, *of_mortar)
+    return dem3.Law(stiffness, shear, friction, cohesion=cohesion, tension=tension, damping=values.beta)
 
 
 def make_solid_model(building: Building, options: SpatialDem) -> SolidModel:
