@@ -32,7 +32,7 @@ TIMES = ("seconds", "seconds_per_event", "sections_per_second")
 
 
 def decks(parts: list[str]) -> list[str]:
-    """Names of the decks that contain one of the parts, all where there is none."""
+    """Names of the decks that contain one of the parts, or of all decks if no part is given."""
     names = sorted(
         str(p.relative_to(CASES).with_suffix("")) for p in CASES.rglob("*.toml") if not p.name.endswith(".expect.toml")
     )

@@ -145,7 +145,7 @@ def decode(data: bytes) -> Any:
 
         return whole(json.loads(data[4 : 4 + length]))
     except (ValueError, struct.error, EOFError, IndexError, KeyError, TypeError, RecursionError) as error:
-        raise Unreadable(f"its reader gave no sound answer: {error}") from None
+        raise Unreadable(f"its reader gave damaged output: {error}") from None
 
 
 def limit_process(room: int, seconds: int) -> None:

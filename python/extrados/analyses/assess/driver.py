@@ -590,7 +590,9 @@ class _Work:
             head = (
                 f"# {name}: one part of an assessment of {self.context.deck.path}; run it in the folder of that deck.\n"
             )
-            result.files[f"assess/{name}.toml"] = (head + deck).encode()
+            result.files[f"assess/{name}.toml"] = (head + deck).encode(
+                errors="replace"
+            )  # names of files may be no text
         result.files |= self.faults
         self._arrays(facts, rows, result)
         result.answer = answer(statement, rows, reasons, result.results.sensitivity or [])

@@ -61,7 +61,7 @@ def parse_mesh_file(path: str) -> dict[str, Any]:
     try:
         mesh = meshio.read(path)
     except SystemExit:  # meshio ends the process on some errors
-        raise Unreadable("meshio does not know its content") from None
+        raise Unreadable("meshio does not recognise its content") from None
     except MemoryError:
         raise
     except Exception as error:
