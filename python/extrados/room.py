@@ -1,8 +1,11 @@
 """Whether memory lacked: the room that an analysis needs before it starts, and which errors are memory that lacked."""
 
+import contextlib
 import errno
 import mmap
+import os
 import sys
+from pathlib import Path
 
 #: Address space that an analysis needs to start [bytes]. Libraries take theirs as they are loaded: where a buffer of OpenBLAS
 #: finds no room, loading SciPy waits for ever. Found with 128 MB left at one thread (`extrados.__main__`), 96 to 128 MB at two.
@@ -23,6 +26,15 @@ def has(size: int) -> bool:
     except (OSError, ValueError, MemoryError):
         return False
     return True
+
+
+def total() -> int:
+    """Memory of the machine, or of the group of processes that this one belongs to, in bytes."""
+    found = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
+    for limit in ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"):
+        with contextlib.suppress(OSError, ValueError):
+            found = min(found, int(Path(limit).read_text(encoding="ascii")))
+    return found
 
 
 def lacked(error: Exception) -> bool:

@@ -1,9 +1,13 @@
 """`check` and `run` refuse alike: the same complaint, with the line of the key that is to blame."""
 
+import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+import extrados
+from extrados import room
 from extrados.analyses.context import Context
 from extrados.analyses.sequence import run_one
 from extrados.decks.reader import Deck, DeckError, read_deck
@@ -348,3 +352,30 @@ def test_every_complaint_at_once(tmp_path: Path) -> None:
 def test_what_runs_is_ok(path: Path) -> None:
     """Every deck of the cases runs (tests/cases), so that `check` must say nothing against it."""
     assert check_building(read_deck(path)).complaints == []
+
+
+@pytest.mark.parametrize(
+    ("analysis", "words"),
+    [
+        ({"kind": "dem", "end_time": 1e8}, r"analysis\.output_step: the history of 1e\+08 s .* the least output_step that fits is"),
+        ({"kind": "rocking", "end_time": 1e8}, r"analysis\.output_step: a history of 1e\+08 s .* the least output_step that fits is"),
+        (
+            {"kind": "fragility", "count": 1_000_000, "levels": [0.001 * k for k in range(1, 501)], "uncertain": {"width": 0.05}},
+            r"analysis\.count: 1000000 motions or buildings at 500 levels, 5e\+08 runs, needs? about 450 GB .*at most \d+ fit",
+        ),
+    ],
+    ids=lambda one: one["kind"] if isinstance(one, dict) else "",
+)  # fmt: skip
+def test_what_does_not_fit_into_memory_is_refused_before_it_runs(
+    analysis: dict[str, Any], words: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(room, "total", lambda: 24_000_000_000)
+    deck = {
+        "structure": {"kind": "block", "width": 1.0, "height": 4.0},
+        "motion": {"kind": "sine-pulse", "amplitude": "0.1 g", "period": 0.5},
+        "analysis": [analysis],
+    }
+    found = extrados.run(deck)
+    row = found.analyses[0]
+    assert row["status"] == "refused" and re.search(words, row["reason"]), row["reason"]
+    assert row["seconds"] < 60.0

@@ -7,7 +7,7 @@ kinds share stand here, those of a package in its `needs.py`, which the steps lo
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from extrados import kinds
+from extrados import kinds, room
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.table import Analysis
 from extrados.limit.errors import CannotStand
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from extrados.model.geometry.solids.assembly import SolidAssembly
 
 Need = Callable[[], Any]
+#: Share of the machine's memory that the numbers of one analysis may take
+SHARE = 0.8
 #: Keys that ask for solids
 SPATIAL = ("direction", "rose", "pyramids")
 
@@ -59,6 +61,15 @@ def _needs(context: Context, options: Analysis) -> Iterator[Need]:
     elif options.view == "shell":
         yield lambda: building.shell(options.mesh)
     yield from kinds.load(kinds.ANALYSES[options.kind].needs)(context, options)
+
+
+def refuse_memory(needed: float, what: str, cure: str, key: Key) -> None:
+    """Refused, before a long run, where its numbers take more memory [bytes] than the machine has; `cure` says what takes less."""
+    there = room.total()
+    if needed > SHARE * there:
+        raise Refused(
+            f"{what} needs about {needed / 1e9:.3g} GB of memory; this machine has {there / 1e9:.3g} GB; {cure}", key
+        )
 
 
 def as_shell(building: Building, options: Analysis) -> bool:

@@ -3,16 +3,20 @@
 from collections.abc import Iterator
 from functools import partial
 
+from extrados import room
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import tables
 from extrados.analyses.dem.solid_model import RIGID, refusals, refuse_mortar, refuse_stones
-from extrados.analyses.needs import Need, stones_of
+from extrados.analyses.needs import SHARE, Need, refuse_memory, stones_of
 from extrados.model.errors import BadGeometry, Key
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.model.structures.arch import ArchAssembly
 from extrados.model.structures.block import BlockAssembly
 from extrados.views.building import Building
+
+#: Numbers that a history holds of a block and of a joint at each time, its copies for tables included
+VALUES_OF_BLOCK, VALUES_OF_JOINT = 20, 12
 
 
 def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
@@ -36,10 +40,22 @@ def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
     if building.initial.movements:
         yield building.moved
     if isinstance(options, tables.Dem):
+        yield lambda: _refuse_long(options, len(stones.block_names), len(stones.a))
         if context.deck.motion is not None and options.test == "motion":
             yield context.refuse_motion
         if options.track:
             yield lambda: refuse_untracked(stones.block_names, options)
+
+
+def _refuse_long(options: tables.Dem, blocks: int, joints: int) -> None:
+    """Refused where the history of a run of a given length does not fit into memory."""
+    if options.end_time is None:
+        return
+    values = VALUES_OF_BLOCK * blocks + VALUES_OF_JOINT * joints
+    needed = 8.0 * values * options.end_time / options.output_step
+    least = options.output_step * needed / (SHARE * room.total())
+    refuse_memory(needed, f"the history of {options.end_time:g} s in steps of {options.output_step:g} s",
+                  f"the least output_step that fits is {least:.2g} s", ("analysis", "output_step"))  # fmt: skip
 
 
 def _rigid(options: tables.DemTable) -> bool:
@@ -78,6 +94,7 @@ def _needs_of_solids(context: Context, options: tables.SpatialDem, stones: Solid
     yield lambda: refuse_stones(building, stones, _rigid(options))
     if not isinstance(options, tables.Dem):
         return
+    yield lambda: _refuse_long(options, len(stones.block_names), len(stones.a))
     if context.deck.motion is not None and options.test == "motion":
         yield context.refuse_motion
     if options.track:

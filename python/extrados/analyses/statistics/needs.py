@@ -3,11 +3,15 @@ structure has."""
 
 from collections.abc import Iterator
 
+from extrados import room
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.needs import Need
+from extrados.analyses.needs import SHARE, Need, refuse_memory
 from extrados.analyses.rocking import needs as rocking
 from extrados.analyses.statistics import tables
 from extrados.views.building import Building
+
+#: Memory that a run at one level takes until its tables are written [bytes]; measured with 1e4 to 2e5 of them
+CELL = 900
 
 
 def needs(context: Context, options: rocking.tables.RockingTable) -> Iterator[Need]:
@@ -18,6 +22,8 @@ def needs(context: Context, options: rocking.tables.RockingTable) -> Iterator[Ne
     if not isinstance(options, tables.Fragility):
         return
     yield lambda: _refuse_motions(context, options)
+    if options.levels is not None:
+        yield lambda: _refuse_cells(context, options)
     hazard = options.hazard
     if hazard is not None:
         from extrados.analyses.statistics.annual import hazard_curve
@@ -39,6 +45,17 @@ def _refuse_of_spectra(building: Building) -> None:
             "spectra are those of structures on rigid ground; leave it out, or ask `rocking` of a block",
             ("supports", "stiffness"),
         )
+
+
+def _refuse_cells(context: Context, options: tables.Fragility) -> None:
+    """Refused where a run at each level for each motion, or building, does not fit into memory."""
+    from extrados.analyses.motion_source import how_many
+
+    assert options.levels is not None
+    count, levels = options.count or how_many(context) or 1000, len(options.levels)
+    most = int(SHARE * room.total() / CELL / levels)
+    refuse_memory(CELL * count * levels, f"{count} motions or buildings at {levels} levels, {count * levels:.3g} runs,",
+                  f"at most {most} fit", ("analysis", "count" if options.count else "levels"))  # fmt: skip
 
 
 def _refuse_motions(context: Context, options: tables.Fragility) -> None:
