@@ -35,6 +35,7 @@ CHAPTERS = (
     "fields",
     "geometry",
     "sums",
+    "definitions",
 )
 for chapter in CHAPTERS:
     importlib.import_module(chapter)
