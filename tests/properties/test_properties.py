@@ -36,6 +36,7 @@ CHAPTERS = (
     "geometry",
     "sums",
     "definitions",
+    "kernels",
 )
 for chapter in CHAPTERS:
     importlib.import_module(chapter)
