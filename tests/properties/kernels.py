@@ -5,13 +5,14 @@ import math
 import numpy as np
 from asking import Deck, ask, at_most, must, near
 from buildings import decks, number
-from conservation import moments
+from conservation import building, moments
 from geometry import stars
 from hypothesis import reject
 from hypothesis import strategies as st
 from relations import GRAVITY, RIGID, ok, relation
 from scipy.spatial.transform import Rotation
 
+from extrados.building.errors import NoView
 from extrados.building.geometry import convex
 from extrados.building.geometry.solids.assembly import mass_properties
 from extrados.building.geometry.solids.polyhedra import box
@@ -86,7 +87,7 @@ def blows_in_the_plane(one: np.ndarray, two: np.ndarray, angle: float, motion: t
 
 def _inertia(outline: np.ndarray) -> float:
     """Moment of inertia of 2000 kg/m^2 about the centre [kg m^2]."""
-    area, centre, _ = moments(outline)
+    _, centre, _ = moments(outline)
     p = outline - centre
     q = np.roll(p, -1, axis=0)
     cross = p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
@@ -150,9 +151,7 @@ def blows_in_space(
         near("ledger", left, np.full(len(left), left[0]), 0.03 if how["rigid"] else 0.1, kinetic[0])
         at_most("kinetic energy", kinetic[-1], kinetic[0], 0.01 if how["rigid"] else 0.1)
         heat = abs(run.energy["friction"][-1]) / kinetic[0]
-        must(
-            heat < (0.03 if how["rigid"] else 1e-3) or how["friction"] > 0.0, f"friction loses {heat} without friction"
-        )
+        must(heat < 1e-3 or how["friction"] > 0.0 or how["rigid"], f"friction loses {heat} without friction")
         found.append((place[-1][::order, :3], kinetic[-1], kinetic[0]))
     near("places in another order", found[0][0], found[1][0], 1e-2, 1.0)
     near("energy in another order", found[0][1], found[1][1], 0.05, found[0][2])
@@ -161,12 +160,10 @@ def blows_in_space(
 @relation("rocking", st.tuples(decks("frame", "arch", "vault", "brickwork", "pointed-arch"), st.lists(number(0.05, 0.95), min_size=3, max_size=3)), 1e-6, share=1.0)  # fmt: skip
 def mechanisms_by_their_kinematics(deck: Deck, shares: list, within: float) -> None:
     """Hinges stay closed, rates are slopes of places, and mass, moment, drive and potential of the table are sums over the parts."""
-    from conservation import building
-
     model = MechanismModel(building(deck).blocks())
     try:
         tables = model.tables
-    except Exception:  # noqa: BLE001 - it does not rock
+    except NoView:
         reject()
     for one, table in zip(model.linkages, tables, strict=True):
         q = np.sort(np.array(shares)) * table.critical
