@@ -37,6 +37,7 @@ CHAPTERS = (
     "sums",
     "definitions",
     "kernels",
+    "outputs",
 )
 for chapter in CHAPTERS:
     importlib.import_module(chapter)
