@@ -1162,13 +1162,14 @@ def a_survey_ranks_what_each_deck_says(deck: Deck, within: float) -> None:
 
 @relation("tilt dem rocking", st.permutations(["tilt", "dem", "rocking", "thrust", "local-mechanism"]).flatmap(
     lambda kinds_: st.tuples(st.just(kinds_), st.integers(1, 3), st.sampled_from([
-        ("joints", "cohesion", 1e5), ("joints", "worn_corners", 0.02), ("joints", "restitution", 0.7), ("material", "compressive_strength", 1e6), ("supports", "stiffness", 1e8)]))
+        ("joints", "cohesion", 1e5), ("joints", "worn_corners", 0.02), ("joints", "restitution", 0.7),
+                        ("joints", "normal_stiffness", 1e8), ("material", "compressive_strength", 1e6), ("supports", "stiffness", 1e8)]))
 ), 0.0, share=2.0)  # fmt: skip
 def what_is_not_used_is_said_with_who_can(asked: list, count: int, given: tuple, within: float) -> None:
     """A key that no analysis of the deck uses is told with others that use it, none of which the deck has; one that some use, with those that do not."""
     table, key, value = given
     rows = [
-        {"kind": k, **({"mechanism": "building"} if k == "local-mechanism" else {"end_time": 0.02} if k == "dem" else {})} for k in asked[:count]
+        {"kind": k, **({"mechanism": "building"} if k == "local-mechanism" else {"end_time": 0.02, "solver": "nonsmooth"} if k == "dem" else {})} for k in asked[:count]
     ]  # fmt: skip
     deck = changed({**DRUMS, "motion": PULSE}, **{table: {key: value}}, analysis=rows)
     name = f"{table}.{key}"

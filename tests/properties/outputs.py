@@ -191,7 +191,9 @@ def tables_of_a_moving_load(question: tuple, tied: bool, loads: list, within: fl
     must(len(a["chain_joint"]) == a["chain_start"][-1], "joints of chains")
 
 
-@relation("rocking", st.tuples(decks("block", "stack", "arch", "column", "frame"), pulses(0.2, 1.6)), 1e-6, share=2.0)
+@relation(
+    "rocking", st.tuples(decks("block", "stack", "stack", "arch", "column", "frame"), pulses(0.2, 1.6)), 1e-6, share=4.0
+)
 def histories_of_rocking_by_hand(deck: Deck, motion: Deck, within: float) -> None:
     """Outcome, half cycles, impacts, losses and energies of a run are those of its history, events and words."""
     answer = ask(changed(deck, motion=motion), "rocking", end_time=2.0, output_step=0.005)
