@@ -10,7 +10,8 @@ fails; with `--suite properties` if the build or the property suite alone fails 
 of the joins, and of Python by the relations that run through the changed function, the quickest first. Tests that fail
 without a fault are found first, and skipped. The fate of each fault is kept in the place, and an interrupted run
 continues from there; `--again` tries those anew that were not caught, after tests were written. Those that are not caught
-are printed with their place, and all are noted for the verification book.
+are printed with their place, and all are noted for the verification book. equivalent_faults.toml names faults that change
+no result, each with its reason; they are listed apart and not counted. `--list` prints the chosen faults and plants none.
 """
 
 import argparse
@@ -27,6 +28,7 @@ import subprocess
 import sys
 import time
 import tokenize
+import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
@@ -138,6 +140,11 @@ KERNELS = {
     "fortran/dem3/moreau.f90": "dem3", "fortran/nonsmooth/impulses.f90": "dem", "fortran/limit/vertex.f90": "limit",
 }  # fmt: skip
 PACKAGE = "python/extrados"
+#: Faults that change no result, by `Fault.change`, and why
+EQUIVALENT: dict[str, str] = {
+    f"{row['file']}: {row['old']}  ->  {row['new']}": row["reason"]
+    for row in tomllib.loads((Path(__file__).parent / "equivalent_faults.toml").read_text(encoding="utf-8"))["fault"]
+}
 #: Share of the whole count of the property suite that a fault is tried with
 SHARE = "0.15"
 #: The same, to find which functions a relation runs through
@@ -165,6 +172,11 @@ class Fault:
     def in_python(self) -> bool:
         """Whether it needs no build."""
         return self.file.endswith(".py")
+
+    @property
+    def change(self) -> str:
+        """What is changed, wherever in the file it stands."""
+        return f"{self.file}: {self.old.strip()}  ->  {self.new.strip()}"
 
     def __str__(self) -> str:
         return f"{self.file}:{self.line}: {self.kind}: {self.old.strip()}  ->  {self.new.strip()}"
@@ -439,14 +451,11 @@ def main() -> int:
     parser.add_argument(
         "--python", action="store_true", help="faults in Python at the joins, seen by the property suite"
     )
+    parser.add_argument("--list", action="store_true", help="print the faults, and plant none")
     options = parser.parse_args()
     properties = options.suite == "properties"
     if options.python and not properties:
         parser.error("--python needs --suite properties")
-    place = options.place.resolve()
-    place.mkdir(parents=True, exist_ok=True)
-    apart.copy(place)
-    apart.build(place, "-Dbuildtype=plain", "-Doptimization=1")
     chosen = draw(
         options.count, options.seed, [options.package] if options.package else ROOMS, options.python, properties
     )
@@ -454,6 +463,13 @@ def main() -> int:
         file, line = options.only.split(":")
         every = python_faults_of if file.endswith(".py") else faults_of
         chosen = [fault for fault in every(apart.ROOT / file) if fault.line == int(line)]
+    if options.list:
+        print(*chosen, sep="\n")
+        return 0
+    place = options.place.resolve()
+    place.mkdir(parents=True, exist_ok=True)
+    apart.copy(place)
+    apart.build(place, "-Dbuildtype=plain", "-Doptimization=1")
     name = "fates.json" if not properties else f"fates-properties-{'python' if options.python else 'kernels'}.json"
     kept = place / name
     fates: dict[str, str] = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
@@ -473,8 +489,12 @@ def main() -> int:
         seconds = time.monotonic() - begin
         print(f"{k}/{len(todo)} {f'caught by {by}' if by else 'NOT CAUGHT'} ({seconds:.0f} s) {fault}", flush=True)
         kept.write_text(json.dumps(fates, indent=1), encoding="utf-8")
-    missed = [str(fault) for fault in chosen if not fates[str(fault)]]
-    print(f"{len(chosen) - len(missed)} of {len(chosen)} caught", *missed, sep="\n")
+    equal = [fault for fault in chosen if not fates[str(fault)] and fault.change in EQUIVALENT]
+    missed = [str(fault) for fault in chosen if not fates[str(fault)] and fault not in equal]
+    tried = len(chosen) - len(equal)
+    print(f"{tried - len(missed)} of {tried} caught", *missed, sep="\n")
+    excluded = [f"changes no result, and counts neither way: {fault}: {EQUIVALENT[fault.change]}" for fault in equal]
+    print(*excluded, sep="\n")
     if not (options.only or options.package):
         notes = apart.ROOT / "build" / "trials"
         notes.mkdir(parents=True, exist_ok=True)
@@ -482,7 +502,7 @@ def main() -> int:
         if properties:
             where = f"at the joins in {'Python' if options.python else 'Fortran'} that the property suite alone does not see"
             file = f"seeded-faults-properties-{'python' if options.python else 'kernels'}.json"
-        row = {"what": f"faults planted {where}", "tried": len(chosen), "failures": len(missed), "notes": missed}
+        row = {"what": f"faults planted {where}", "tried": tried, "failures": len(missed), "notes": missed + excluded}
         (notes / file).write_text(json.dumps(row, indent=1), encoding="utf-8")
     return len(missed)
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 import extrados
+from extrados.results.codes import NoLocalMechanism
 from extrados.results.model import Result
 from extrados.results.verdict import KindResults, SelfWeight, Verdict
 
@@ -36,8 +37,8 @@ class Answer:
 
     @property
     def answers(self) -> bool:
-        """Whether it has results of its kind, not a proof of collapse under self-weight in their place."""
-        return self.status == "ok" and not isinstance(self.results, SelfWeight)
+        """Whether it has results of its kind, not a proof of collapse under self-weight, or that none applies, in their place."""
+        return self.status == "ok" and not isinstance(self.results, SelfWeight | NoLocalMechanism)
 
     @property
     def said(self) -> str:

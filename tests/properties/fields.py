@@ -425,6 +425,8 @@ def all_numbers_described_otherwise(question: tuple, how: str, rng: Any, within:
     deck, kind, table = question
     if how == "mirror":
         there, keys = mirrored_question(deck, table)
+        if kind == "moving-load" and len(deck["structure"]["ground"]) > 2:
+            reject()  # of several arches the first is crossed
         if kind in ("failure-domain", "supports") or "gamma" in table or (kind == "thrust" and "load" in table):
             reject()  # pulses begin to one side, one support moves, thrusts of a tilted arch are told of one springing
     elif how == "order":

@@ -35,6 +35,9 @@ CHAPTERS = (
     "fields",
     "geometry",
     "sums",
+    "definitions",
+    "kernels",
+    "outputs",
 )
 for chapter in CHAPTERS:
     importlib.import_module(chapter)
