@@ -153,7 +153,8 @@ contains
       logical, intent(out) :: rests
       integer(c_int), intent(out) :: status
       integer, parameter :: most = 20000
-      integer, parameter :: most_open = 100         !! steps in a row without impulses that fit
+      integer, parameter :: most_open = 100         !! steps in a row without impulses that fit, with
+      real(wp), parameter :: wedging = 2.0_wp       !! a coefficient of friction from which on blocks may wedge
       class(jointed_model), pointer :: model
       logical :: quasi_static
       real(wp) :: speed
@@ -178,7 +179,9 @@ contains
          rests = speed < run%options%settle_tolerance * model%kick * model%rigid%gravity
          if (rests) exit
          open = merge(open + 1, 0, model%rigid%open_steps > before)
-         if (open == most_open) exit
+         associate (problem => model%rigid%problem)
+            if (open >= most_open .and. maxval([0.0_wp, problem%friction(:problem%points)]) > wedging) exit
+         end associate
          call run%check_limits(run%options%settlement)
          if (run%record%reason /= stop_end) exit
          if (cancel_requested()) then

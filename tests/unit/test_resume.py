@@ -431,7 +431,7 @@ def test_an_interrupted_run_of_discrete_elements_goes_on_where_it_was(kind: str,
     context = Context(deck, out=out, resume=True, progress=lambda done, total, text: again.append(done / total))
     (resumed,) = run_analyses(context)
     (whole,) = run_analyses(Context(deck))
-    assert min(again) > told[1] and resumed.status == whole.status == "ok"
+    assert again[0] > told[1] and resumed.status == whole.status == "ok"  # a run under a nudged motion follows
     assert resumed.results == whole.results
     for name, array in whole.arrays.items():
         np.testing.assert_array_equal(resumed.arrays[name].data, array.data)
