@@ -83,10 +83,10 @@ def states_of_statics_by_hand(deck: Deck, gamma: float, within: float) -> None:
         near(f"reaction {row.name}", math.hypot(row.horizontal_N, row.vertical_N), size, 1e-6, weight)
         must(row.name == str(a["joint_name"][row.joint]) and min(a["joint_block"][row.joint]) < 0, f"{row}")
     pose, speed = a["mechanism_pose"], v
-    turned = np.abs(speed[:, 2]) > 1e-9
-    if turned.any():
+    turned = np.abs(speed[:, 2]) > 0.3 * np.abs(speed[:, 2]).max()
+    if np.abs(speed[:, 2]).max() > 1e-6:
         ratio = pose[turned, 2] / speed[turned, 2]
-        near("pose", ratio, np.full(len(ratio), ratio[0]), 0.3)
+        must(bool((ratio * ratio[0] > 0.0).all()), f"blocks turn otherwise in the pose: {ratio}")
     if deck["structure"]["kind"] not in ("arch", "pointed-arch", "elliptical-arch"):
         return
     thrust = ask(deck, "thrust", gamma=gamma)
