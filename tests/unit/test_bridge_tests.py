@@ -18,7 +18,7 @@ def ratios(bridge: str) -> dict[str, float | None]:
     rows = tomllib.loads((ROOT / f"cases/bridge/{bridge.lower()}.expect.toml").read_text(encoding="utf-8"))["expect"]
     found: dict[str, float | None] = {}
     for row in rows:
-        model = row["source"].split(":")[0]
+        model = row.get("note", row.get("source", "")).split(":")[0]
         if row["quantity"] == "moving-load.safety_factor":
             found[model] = 1.0 / row["value"] if row["value"] > 0.0 else None
     return found
