@@ -140,7 +140,7 @@ def test_relation(relation: Relation) -> None:
 def test_how_many_buildings_were_asked() -> None:
     """The count of a whole run, for the verification book; after all others of this file, in the same process."""
     asked = sum(ASKED.values())
-    awaited = sorted({item for r in RELATIONS.values() for item in r.awaits.split()})
+    awaited = sorted({r.awaits for r in RELATIONS.values() if r.awaits})
     if SHARE >= 1.0:
         NOTES.mkdir(parents=True, exist_ok=True)
         note = f"{len(RELATIONS)} relations, {len(KINDS)} kinds of structure"
