@@ -175,7 +175,7 @@ class Fault:
 
     @property
     def change(self) -> str:
-        """What is changed, wherever in the file it stands."""
+        """The change itself, without its place in the file."""
         return f"{self.file}: {self.old.strip()}  ->  {self.new.strip()}"
 
     def __str__(self) -> str:

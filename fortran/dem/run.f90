@@ -180,7 +180,7 @@ contains
          if (rests) exit
          open = merge(open + 1, 0, model%rigid%open_steps > before)
          associate (problem => model%rigid%problem)
-            if (open >= most_open .and. maxval([0.0_wp, problem%friction(:problem%points)]) > wedging) exit
+            if (open >= most_open .and. any(problem%friction(:problem%points) > wedging)) exit
          end associate
          call run%check_limits(run%options%settlement)
          if (run%record%reason /= stop_end) exit
