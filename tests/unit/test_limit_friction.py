@@ -117,6 +117,21 @@ def test_crushing_walls(strength: float) -> None:
     assert (pressed <= strength * assembly.depth * assembly.length * (1.0 + 1e-6)).all()
 
 
+def test_a_wall_of_many_bricks_that_crush() -> None:
+    """240 bricks, which neither tangent planes nor the interior-point method settle: bounds meet, order and limit hold."""
+    assembly = bond(12, 20)
+    free = LimitAnalysis(assembly, 0.65).collapse()[0].gamma
+    found = []
+    for strength in (2e5, 1e6, 1e12):
+        limit = LimitAnalysis(assembly, 0.65, strength=strength)
+        state, mechanism = limit.collapse()
+        assert state.gamma == pytest.approx(mechanism.upper_bound, abs=1e-8)
+        pressed = state.normal * (1.0 - np.abs(2.0 * state.position - 1.0))
+        assert (pressed <= strength * assembly.depth * assembly.length * (1.0 + 1e-6)).all()
+        found.append(state.gamma)
+    assert found[0] < found[1] < found[2] == pytest.approx(free, abs=1e-7)
+
+
 def test_one_interior_point_method() -> None:
     """Dilatant friction by the interior-point method equals the linear programme, with crushing too."""
     arch = make_arch(10.0, 1.5, 157.5, 16)

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from scipy import sparse
 
+from extrados.limit.conic import collapse_of_crushing
 from extrados.limit.coulomb import CoulombProblem, CoulombState
 from extrados.limit.equilibrium import hanging_stones, spanning_tree
 from extrados.limit.graphic import senses, thrust_joint
@@ -33,8 +34,6 @@ LAW = 1e-9
 ROUNDS, ROUNDS_SPARSE = 300, 40
 # Joints of a wall for which a programme would take long: a tenth of the precision is enough there, less for larger ones.
 MANY = 600
-# Of the interior-point method, for joints that crush.
-OTHER_STARTS = 24
 # Of the total load times the size: less work than this proves nothing.
 PROVES = 1e-7
 # Joints that move less than this part of the fastest block are at rest to an interior-point method.
@@ -199,6 +198,9 @@ class LimitAnalysis:
         """
         if not self.associated:
             return self._coulomb(direction)
+        if self._crush is not None:
+            # The programmes' tangent planes may not come to an end, but tell a load that nothing resists.
+            return self._conic(direction, self._crush) or self._by_programme(direction)
         inner = self._cone is not None
         wall = isinstance(self.system, Sparse) and inner
         if wall and (found := self._interior(direction)):
@@ -233,18 +235,26 @@ class LimitAnalysis:
             return self.system
         return Sparse(self.assembly, self.loads, self.system.tree)
 
+    def _conic(self, direction: int, crush: np.ndarray) -> tuple[State, Mechanism] | None:
+        """Collapse of joints that crush by cones; None where forces and motion do not prove each other."""
+        answers = self.loads.resistance
+        bounds = np.zeros((2, 0)) if answers is None else np.stack([answers.low, answers.high])
+        found = collapse_of_crushing(
+            self._equations, None if self._cone is None else self._mu, crush, bounds, direction
+        )
+        if found is None:
+            return None
+        read = self._read(found.gamma, found.corners, found.share, found.twist, found.motion, found.taken)
+        apart = abs(found.gamma - read[1].upper_bound)
+        return None if apart > closed(len(self.assembly.a), found.gamma) else read
+
     def _interior(self, direction: int) -> tuple[State, Mechanism] | None:
         """Collapse by the interior-point method; None where it does not settle."""
-        problem = CollapseProblem(self._equations, self._mu, direction, self._crush, dilates=True)
+        problem = CollapseProblem(self._equations, self._mu, direction, dilates=True)
         allowed = RESIDUAL if problem.joints < MANY else 10.0 * RESIDUAL * np.sqrt(problem.joints / MANY)
         point, misfit = problem.state()
-        # Another start is another way. A linear programme of a large wall takes ten times as long, and the tangent planes of
-        # crushing may not come to an end.
-        others = OTHER_STARTS if problem.crushes else 1 if problem.joints >= MANY else 0
-        for start in range(1, others + 1):
-            if misfit <= allowed:
-                break
-            point, misfit = problem.state(np.random.default_rng(start))
+        if misfit > allowed and problem.joints >= MANY:  # a linear programme of a large wall takes ten times as long
+            point, misfit = problem.state(np.random.default_rng(1))
         if misfit > allowed:
             return None
         motion = problem.motion(point.u)
