@@ -1,0 +1,52 @@
+"""The tool that predicts tested walls: rules for empty cells, a closed form, the statistics."""
+
+import math
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "tools"))
+import wall_tests as tool
+
+HEAD = (
+    "# a source\nn,reference,name,units,height_m,length_m,thickness_m,unit_length_mm,unit_height_mm,masonry_compressive_MPa,"
+    "masonry_tensile_diagonal_MPa,young_MPa,shear_strength_initial_MPa,friction,shear_span_over_height,vertical_stress_MPa,"
+    "failure,peak_pos_kN,peak_neg_kN\n"
+)
+
+
+def walls(tmp_path: Path, *rows: str) -> list[tool.Wall]:
+    file = tmp_path / "walls.csv"
+    file.write_text(HEAD + "\n".join(rows), encoding="utf-8")
+    return tool.read_walls(file)
+
+
+def test_empty_cells_are_taken_by_rule(tmp_path) -> None:
+    (wall,) = walls(tmp_path, "7,someone,A,brick,2.5,1.25,0.2,250,125,10,,,0.3,,0.5,1.0,H-FS,80,90")
+    assert (wall.friction, wall.tensile, wall.young) == pytest.approx((0.4, 0.3e6, 600 * 10e6))
+    assert wall.peak == 85e3 and wall.axial == pytest.approx(250e3) and wall.mode == "H"
+
+
+@pytest.mark.parametrize("span", [0.5, 1.0])
+def test_limit_analysis_of_a_slender_wall_is_its_flexure(tmp_path, span: float) -> None:
+    """V H_0 = N (L - N/(0.85 f t))/2 of one or two bricks a course, with ample friction."""
+    (wall,) = walls(tmp_path, f"1,x,A,brick,3,1,0.25,1000,250,5,,,0.3,0.9,{span},0.6,F,40,40")
+    found = tool.by_limit_analysis(wall)["limit"]
+    pressed = wall.axial / (0.85 * 5e6 * 0.25)
+    flexure = wall.axial * (1.0 - pressed) / (2.0 * span * 3.0)
+    assert 0.96 * flexure < found.strength <= flexure * (1.0 + 1e-4)  # the bricks weigh 1 kg/m^3
+    assert found.failure == "F"
+
+
+def test_statistics() -> None:
+    def pair(failure: str, ratio: float, said: str) -> tuple[tool.Wall, tool.Predicted]:
+        wall = tool.Wall("w", 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, failure, 100.0)
+        return wall, tool.Predicted(100.0 * ratio, said)
+
+    pairs = [pair("S", 2.0, "S"), pair("S", 0.5, "F"), pair("F", 1.0, "F"), pair("H-FS", 1.0, "S")]
+    bias, scatter, count = tool.statistics(pairs)
+    assert (bias, count) == (pytest.approx(1.0), 4)
+    assert scatter == pytest.approx(math.log(2.0) * math.sqrt(2.0 / 3.0))
+    assert tool.told_right(pairs) == (2, 3)
+    assert tool.statistics([*pairs, pair("S", math.nan, "")])[2] == 4

@@ -1,0 +1,307 @@
+"""Predicted and measured strength of tested walls: every wall of a table by one fixed rule, no parameter set from a result.
+
+    tools/wall_tests.py FILE [--method NAME ...] [--wall N ...] [--out FOLDER] [--processes 2]
+
+FILE is a table like the one of docs/walls.md: one wall a row, with sizes, strengths, axial stress, ratio of shear span,
+failure mode, peaks and drifts. Each wall becomes a deck per method, as a user would write it:
+
+    limit     bricks in running bond, joints without cohesion that crush; the load acts at the shear span
+    codes     `code-checks` of a panel, by each code; the least applicable strength of each
+
+What the table leaves empty is taken by these rules: friction 0.4; cohesion of the joints as tested; tensile strength of the
+diagonal test, else the cohesion; modulus 600 times the compressive strength. Crushing in limit analysis at 0.85 of the strength.
+Written: predictions.csv, one row per wall and method; printed: bias (geometric mean of predicted over measured) and scatter
+(standard deviation of its logarithm) in all and by failure mode, the share of failure modes told right, and walls without an
+answer.
+"""
+
+import argparse
+import csv
+import itertools
+import math
+import sys
+from collections.abc import Callable, Iterable
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import extrados
+
+FRICTION = 0.4
+CRUSHES_AT = 0.85  # of the compressive strength: the rectangular stress block of codes
+MODULUS = 600.0  # of the compressive strength
+MASONRY = 1800.0  # kg/m^3
+BEAM = 20000.0  # kg/m^3, at most, of the loading beam, whose weight is the axial load
+GRAVITY = 9.80665
+
+
+@dataclass(frozen=True)
+class Wall:
+    """A tested wall; lengths in m, stresses in Pa, peaks in N (mean of both senses)."""
+
+    name: str
+    height: float
+    length: float
+    thickness: float
+    unit_length: float
+    unit_height: float
+    compressive: float
+    tensile: float
+    young: float
+    cohesion: float
+    friction: float
+    span: float
+    pressure: float
+    failure: str
+    peak: float
+
+    @property
+    def axial(self) -> float:
+        """The axial load [N]."""
+        return self.pressure * self.length * self.thickness
+
+    @property
+    def mode(self) -> str:
+        """The measured failure: "F" flexure, "S" shear, "SL" sliding, "H" hybrid."""
+        return "H" if self.failure.startswith("H") else self.failure
+
+
+@dataclass(frozen=True)
+class Predicted:
+    """Strength [N] by a method and the failure that goes with it, "F", "S" or ""; or why there is none."""
+
+    strength: float = math.nan
+    failure: str = ""
+    why_not: str = ""
+
+
+def read_walls(file: Path) -> list[Wall]:
+    """The walls of a table, with the rules for what it leaves empty."""
+    lines = [line for line in file.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
+    walls = []
+    for row in csv.DictReader(lines):
+        number = {key: float(value) for key, value in row.items() if value and key not in _TEXTS}
+        peaks = [number[key] for key in ("peak_pos_kN", "peak_neg_kN") if key in number]
+        compressive, cohesion = 1e6 * number["masonry_compressive_MPa"], 1e6 * number["shear_strength_initial_MPa"]
+        walls.append(
+            Wall(
+                name=f"{row['n']} {row['name']}", height=number["height_m"], length=number["length_m"],
+                thickness=number["thickness_m"], unit_length=1e-3 * number["unit_length_mm"],
+                unit_height=1e-3 * number["unit_height_mm"], compressive=compressive,
+                tensile=1e6 * number["masonry_tensile_diagonal_MPa"] if "masonry_tensile_diagonal_MPa" in number else cohesion,
+                young=1e6 * number.get("young_MPa", 1e-6 * MODULUS * compressive), cohesion=cohesion,
+                friction=number.get("friction", FRICTION), span=number["shear_span_over_height"],
+                pressure=1e6 * number["vertical_stress_MPa"], failure=row["failure"], peak=1e3 * sum(peaks) / len(peaks),
+            )
+        )  # fmt: skip
+    return walls
+
+
+_TEXTS = {"reference", "name", "units", "failure"}
+
+
+def by_limit_analysis(wall: Wall) -> dict[str, Predicted]:
+    """Bricks in running bond under a rigid beam whose weight is the axial load and whose centre lies at the shear span."""
+    deck = {
+        "structure": {
+            "kind": "blocks",
+            "depth": wall.thickness,
+            "ground": [[0.0, 0.0, wall.length, 0.0]],
+            "block": [*_bricks(wall), _beam(wall)],
+        },
+        "material": {"density": 1.0, "compressive_strength": CRUSHES_AT * wall.compressive},
+        "joints": {"friction": wall.friction},
+        "analysis": [{"kind": "tilt"}],
+    }
+    answer = _answer(deck)
+    if isinstance(answer, Predicted):
+        return {"limit": answer}
+    return {
+        "limit": Predicted(
+            answer["collapse_acceleration_g"] * wall.axial, "S" if answer.get("dilating_joints") else "F"
+        )
+    }
+
+
+def _bricks(wall: Wall) -> list[dict[str, Any]]:
+    """Whole and half bricks, course by course; sizes are rounded so that they fill the wall."""
+    courses, count = round(wall.height / wall.unit_height), max(1, round(wall.length / wall.unit_length))
+    high, long = wall.height / courses, wall.length / count
+    bricks = []
+    for k in range(courses):
+        shift = 0.0 if k % 2 == 0 else 0.5
+        inner = [long * (j + shift) for j in range(count + 1) if 0.0 < j + shift < count]
+        cuts = [0.0, *inner, wall.length]
+        for left, right in itertools.pairwise(cuts):
+            corners = [[left, k * high], [right, k * high], [right, (k + 1) * high], [left, (k + 1) * high]]
+            bricks.append({"name": f"brick {len(bricks) + 1}", "points": corners})
+    return bricks
+
+
+def _beam(wall: Wall) -> dict[str, Any]:
+    """A portal over the wall whose legs hang beside it, so long that its centre lies at the shear span above the foot."""
+    gap, width = 0.1, 1.0
+    outer = wall.length + 2.0 * (gap + width)
+    weight = wall.axial / (GRAVITY * wall.thickness)  # kg per m of thickness
+    area = max(weight / BEAM, 3.0 * wall.length * wall.height)
+
+    def centre(leg: float) -> float:
+        deep = (area - 2.0 * width * leg) / outer
+        return (outer * deep * (wall.height + 0.5 * deep) + 2.0 * width * leg * (wall.height - 0.5 * leg)) / area
+
+    low, high = 0.0, 0.49 * area / width
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if centre(middle) > wall.span * wall.height else (low, middle)
+    leg, top = low, wall.height + (area - 2.0 * width * low) / outer
+    if abs(centre(leg) - wall.span * wall.height) > 1e-6:
+        raise ValueError(f"wall {wall.name}: no portal has its centre at the shear span")
+    left, right, foot = -gap, wall.length + gap, wall.height - leg
+    points = [[left - width, foot], [left, foot], [left, wall.height], [right, wall.height], [right, foot],
+              [right + width, foot], [right + width, top], [left - width, top]]  # fmt: skip
+    return {"name": "beam", "points": points, "density": weight / area}
+
+
+def by_codes(wall: Wall) -> dict[str, Predicted]:
+    """The least strength that each code gives the wall as a pier, all partial and confidence factors at 1."""
+    deck = {
+        "structure": {"kind": "panel", "width": wall.length, "height": wall.height, "thickness": wall.thickness},
+        "material": {"density": MASONRY, "compressive_strength": wall.compressive},
+        "joints": {"cohesion": wall.cohesion},
+        "analysis": [
+            {
+                "kind": "code-checks",
+                "axial_load": wall.axial,
+                "fixity": "double" if wall.span < 0.75 else "cantilever",
+                "diagonal_strength": wall.tensile / 1.5,  # f_t = 1.5 tau_0
+                "sliding_friction": wall.friction,
+                "confidence_factor": 1.0,
+            }
+        ],
+    }
+    answer = _answer(deck)
+    if isinstance(answer, Predicted):
+        return {"codes": answer}
+    found: dict[str, Predicted] = {}
+    for rule, check in answer["checks"].items():
+        code = next((name for name in CODES if rule.startswith(name)), None)
+        if code is None or check["capacity"] is None or check["unit"] != "N" or "once cracked" in rule:
+            continue
+        flexure = any(word in rule for word in ("rocking", "flexure", "toe crushing"))
+        if not check["capacity"] >= found.get(code, Predicted(math.inf)).strength:
+            found[code] = Predicted(check["capacity"], "F" if flexure else "S")
+    return found
+
+
+#: Beginnings of the names of rules
+CODES = ("ASCE 41", "EN 1998-3", "Magenes-Calvi", "NTC")
+
+
+def by_membrane(wall: Wall) -> dict[str, Predicted]:
+    """The wall as a membrane that cracks and crushes, its foot held, its top moved sideways under the constant axial load."""
+    panel: dict[str, Any] = {"kind": "panel", "width": wall.length, "height": wall.height, "thickness": wall.thickness}
+    if wall.span < 0.75:
+        panel["ties"] = [{"edge": "top", "direction": "y"}]  # the top moves without turning
+    deck = {
+        "structure": panel,
+        "material": {
+            "density": MASONRY,
+            "young": wall.young,
+            "poisson": 0.2,
+            "tensile_strength": wall.tensile,
+            "fracture_energy": CRACK_DUCTILITY * wall.tensile,
+            "compressive_strength": wall.compressive,
+            "crushing_energy": CRUSHING_DUCTILITY * wall.compressive,
+        },
+        "supports": {"held": [{"edge": "bottom"}]},
+        "analysis": [
+            {
+                "kind": "sla",
+                "directions": ["+"],
+                "constant": [{"kind": "gravity"}, {"kind": "pressure", "edge": "top", "value": wall.pressure}],
+                "reference": [{"kind": "displacement", "direction": "x", "parts": [{"edge": "top"}]}],
+                "target_displacement": 0.01 * wall.height,
+                "events": 30000,
+                "mesh": {"size": wall.length / 15.0},
+            }
+        ],
+    }
+    answer = _answer(deck)
+    return {"membrane": answer if isinstance(answer, Predicted) else Predicted(answer["greatest_load_N"])}
+
+
+#: G_f over f_t and G_c over f_c [m], assumed for all walls
+CRACK_DUCTILITY, CRUSHING_DUCTILITY = 50e-6, 1.6e-3
+
+METHODS: dict[str, Callable[[Wall], dict[str, Predicted]]] = {
+    "limit": by_limit_analysis,
+    "codes": by_codes,
+    "membrane": by_membrane,
+}
+
+
+def _answer(deck: dict[str, Any]) -> dict[str, Any] | Predicted:
+    """The results of the deck's one analysis, or why there are none."""
+    try:
+        analysis = extrados.run(deck, threads=1).analyses[0]
+    except Exception as error:  # one wall does not end the others
+        return Predicted(why_not=f"{type(error).__name__}: {error}")
+    return analysis["results"] if analysis["status"] == "ok" else Predicted(why_not=analysis["reason"])
+
+
+def predict(wall: Wall, methods: Iterable[str]) -> dict[str, Predicted]:
+    """What the methods say of a wall, by their names."""
+    return {name: found for method in methods for name, found in METHODS[method](wall).items()}
+
+
+def statistics(pairs: list[tuple[Wall, Predicted]]) -> tuple[float, float, int]:
+    """Bias (geometric mean of predicted over measured), scatter (standard deviation of its logarithm), and how many."""
+    logarithms = [math.log(found.strength / wall.peak) for wall, found in pairs if found.strength > 0.0]
+    count = len(logarithms)
+    if count < 2:
+        return math.nan, math.nan, count
+    mean = sum(logarithms) / count
+    return math.exp(mean), math.sqrt(sum((x - mean) ** 2 for x in logarithms) / (count - 1)), count
+
+
+def told_right(pairs: list[tuple[Wall, Predicted]]) -> tuple[int, int]:
+    """Of the walls that failed in flexure, shear or sliding alone, those whose failure is told right, and all."""
+    pure = [(wall.mode, found.failure) for wall, found in pairs if wall.mode != "H" and found.failure]
+    return sum(mode[0] == failure for mode, failure in pure), len(pure)
+
+
+def main() -> None:
+    """Reads the table, predicts, writes predictions.csv and prints the table of methods."""
+    ask = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    ask.add_argument("file", type=Path)
+    ask.add_argument("--method", nargs="+", choices=METHODS, default=list(METHODS))
+    ask.add_argument("--wall", nargs="+", help="numbers of rows; default all")
+    ask.add_argument("--out", type=Path, default=Path("results/wall-tests"))
+    ask.add_argument("--processes", type=int, default=2)
+    asked = ask.parse_args()
+    walls = [wall for wall in read_walls(asked.file) if not asked.wall or wall.name.split()[0] in asked.wall]
+    asked.out.mkdir(parents=True, exist_ok=True)
+    with ProcessPoolExecutor(asked.processes) as pool:
+        found = list(pool.map(predict, walls, [asked.method] * len(walls)))
+    with (asked.out / "predictions.csv").open("w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file)
+        table.writerow(["wall", "failure", "measured_kN", "method", "predicted_kN", "predicted_failure", "why_not"])
+        for wall, by in zip(walls, found, strict=True):
+            for method, one in by.items():
+                table.writerow([wall.name, wall.failure, f"{wall.peak / 1e3:.2f}", method, f"{one.strength / 1e3:.2f}",
+                                one.failure, one.why_not])  # fmt: skip
+    print(f"{'method':16}{'all':>18}{'shear':>18}{'hybrid':>18}{'flexure':>18}{'right mode':>12}{'none':>6}")
+    for method in sorted({name for by in found for name in by}):
+        pairs = [(wall, by.get(method, Predicted(why_not="no answer"))) for wall, by in zip(walls, found, strict=True)]
+        cells = []
+        for mode in ("", "S", "H", "F"):
+            bias, scatter, count = statistics([(w, p) for w, p in pairs if mode in ("", w.mode)])
+            cells.append(f"{bias:.2f} / {scatter:.2f} ({count})")
+        right, pure = told_right(pairs)
+        missing = sum(not p.strength > 0.0 for _, p in pairs)
+        print(f"{method:16}" + "".join(f"{cell:>18}" for cell in cells) + f"{f'{right} of {pure}':>12}{missing:>6}")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
