@@ -11,7 +11,7 @@ failure mode, peaks and drifts. Each wall becomes a deck per method, as a user w
 What the table leaves empty is taken by these rules: friction 0.4; cohesion of the joints as tested; tensile strength of the
 diagonal test, else the cohesion; modulus 600 times the compressive strength. Crushing in limit analysis at 0.85 of the strength.
 Written: predictions.csv, one row per wall and method; printed: bias (geometric mean of predicted over measured) and scatter
-(standard deviation of its logarithm) in all and by failure mode, the share of failure modes told right, and walls without an
+(standard deviation of its logarithm) in all and by failure mode, how many failure modes are right, and walls without an
 answer.
 """
 
@@ -265,8 +265,8 @@ def statistics(pairs: list[tuple[Wall, Predicted]]) -> tuple[float, float, int]:
     return math.exp(mean), math.sqrt(sum((x - mean) ** 2 for x in logarithms) / (count - 1)), count
 
 
-def told_right(pairs: list[tuple[Wall, Predicted]]) -> tuple[int, int]:
-    """Of the walls that failed in flexure, shear or sliding alone, those whose failure is told right, and all."""
+def count_right_modes(pairs: list[tuple[Wall, Predicted]]) -> tuple[int, int]:
+    """Of the walls that failed in flexure, shear or sliding alone, how many failures are predicted, and all."""
     pure = [(wall.mode, found.failure) for wall, found in pairs if wall.mode != "H" and found.failure]
     return sum(mode[0] == failure for mode, failure in pure), len(pure)
 
@@ -298,7 +298,7 @@ def main() -> None:
         for mode in ("", "S", "H", "F"):
             bias, scatter, count = statistics([(w, p) for w, p in pairs if mode in ("", w.mode)])
             cells.append(f"{bias:.2f} / {scatter:.2f} ({count})")
-        right, pure = told_right(pairs)
+        right, pure = count_right_modes(pairs)
         missing = sum(not p.strength > 0.0 for _, p in pairs)
         print(f"{method:16}" + "".join(f"{cell:>18}" for cell in cells) + f"{f'{right} of {pure}':>12}{missing:>6}")
 

@@ -48,5 +48,5 @@ def test_statistics() -> None:
     bias, scatter, count = tool.statistics(pairs)
     assert (bias, count) == (pytest.approx(1.0), 4)
     assert scatter == pytest.approx(math.log(2.0) * math.sqrt(2.0 / 3.0))
-    assert tool.told_right(pairs) == (2, 3)
+    assert tool.count_right_modes(pairs) == (2, 3)
     assert tool.statistics([*pairs, pair("S", math.nan, "")])[2] == 4
