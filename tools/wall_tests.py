@@ -2,17 +2,17 @@
 
     tools/wall_tests.py FILE [--method NAME ...] [--wall N ...] [--out FOLDER] [--processes 2]
 
-FILE is a table like the one of docs/walls.md: one wall a row, with sizes, strengths, axial stress, ratio of shear span,
-failure mode, peaks and drifts. Each wall becomes a deck per method, as a user would write it:
+FILE is a table with one wall a row: sizes, strengths, axial stress, ratio of shear span, failure mode, peaks; its columns
+are those of `read_walls`. Each wall becomes one deck per method, as a user would write it:
 
     limit     bricks in running bond, joints without cohesion that crush; the load acts at the shear span
     codes     `code-checks` of a panel, by each code; the least applicable strength of each
+    membrane  `sla` of a panel without bricks, pushed sideways under its axial load
 
-What the table leaves empty is taken by these rules: friction 0.4; cohesion of the joints as tested; tensile strength of the
-diagonal test, else the cohesion; modulus 600 times the compressive strength. Crushing in limit analysis at 0.85 of the strength.
-Written: predictions.csv, one row per wall and method; printed: bias (geometric mean of predicted over measured) and scatter
-(standard deviation of its logarithm) in all and by failure mode, how many failure modes are right, and walls without an
-answer.
+Empty cells are filled by these rules: friction 0.4; cohesion of the joints as tested; tensile strength of the diagonal
+test, else the cohesion; modulus 600 times the compressive strength. Crushing in limit analysis at 0.85 of the strength.
+Written: predictions.csv, one row per wall and method. Printed: bias (geometric mean of predicted over measured) and scatter
+(standard deviation of its logarithm), in all and by failure mode, the count of right failure modes and of missing results.
 """
 
 import argparse
@@ -77,7 +77,7 @@ class Predicted:
 
 
 def read_walls(file: Path) -> list[Wall]:
-    """The walls of a table, with the rules for what it leaves empty."""
+    """The walls of a table, empty cells filled by the rules above."""
     lines = [line for line in file.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
     walls = []
     for row in csv.DictReader(lines):
@@ -251,7 +251,7 @@ def _answer(deck: dict[str, Any]) -> dict[str, Any] | Predicted:
 
 
 def predict(wall: Wall, methods: Iterable[str]) -> dict[str, Predicted]:
-    """What the methods say of a wall, by their names."""
+    """The predictions of the methods for a wall, by name."""
     return {name: found for method in methods for name, found in METHODS[method](wall).items()}
 
 
@@ -293,7 +293,9 @@ def main() -> None:
                                 one.failure, one.why_not])  # fmt: skip
     print(f"{'method':16}{'all':>18}{'shear':>18}{'hybrid':>18}{'flexure':>18}{'right mode':>12}{'none':>6}")
     for method in sorted({name for by in found for name in by}):
-        pairs = [(wall, by.get(method, Predicted(why_not="no answer"))) for wall, by in zip(walls, found, strict=True)]
+        pairs = [
+            (wall, by.get(method, Predicted(why_not="not predicted"))) for wall, by in zip(walls, found, strict=True)
+        ]
         cells = []
         for mode in ("", "S", "H", "F"):
             bias, scatter, count = statistics([(w, p) for w, p in pairs if mode in ("", w.mode)])
