@@ -139,7 +139,11 @@ def _checked(deck: Any) -> Any:
 
 
 def __getattr__(name: str) -> Any:
-    """The objects of all tables, and the errors that users catch."""
+    """The objects of all tables, the errors that users catch, and the version."""
+    if name == "__version__":
+        from extrados._build_info import VERSION
+
+        return VERSION
     if name in ERRORS:
         from extrados.analyses.context import Refused
         from extrados.decks.reader import DeckError
@@ -164,4 +168,4 @@ def __getattr__(name: str) -> Any:
 def __dir__() -> list[str]:
     from extrados import objects
 
-    return [*globals(), *objects.names(), *ERRORS]
+    return [*globals(), "__version__", *objects.names(), *ERRORS]

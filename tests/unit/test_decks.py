@@ -172,7 +172,9 @@ def test_quantity_grammar(text: str) -> None:
 @pytest.mark.parametrize(
     ("text", "si", "value"),
     [("20 cm", "m", 0.2), ("0.5 g", "m/s^2", 4.903325), ("55.6 kN", "N", 55600.0), ("3 N/mm^2", "Pa", 3e6),
-     ("2.7 rad", "deg", 154.69860468), ("1.92e-5 N/mm^3", "N/m^3", 19200.0), ("300 cm/s**2", "m/s^2", 3.0)],
+     ("2.7 rad", "deg", 154.69860468), ("1.92e-5 N/mm^3", "N/m^3", 19200.0), ("300 cm/s**2", "m/s^2", 3.0),
+     ("1800 kg/m3", "kg/m^3", 1800.0), ("1800 kg/m³", "kg/m^3", 1800.0), ("18 kN/m3", "kg/m^3", 18e3 / 9.80665),
+     ("18 kN/m³", "kg/m^3", 18e3 / 9.80665), ("40 cm²", "m^2", 4e-3), ("5 mm2", "m^2", 5e-6)],
 )  # fmt: skip
 def test_quantities(text: str, si: str, value: float) -> None:
     assert parse(text, si) == pytest.approx(value, rel=1e-10)

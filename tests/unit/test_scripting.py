@@ -226,3 +226,10 @@ def test_what_may_be_raised_can_be_caught() -> None:
             {"structure": arch, "analysis": {"kind": "tilt"}}, over={"structure.thickness": [1.5]}, workers="nowhere"
         )
     assert {"DeckError", "Refused", "StoreError"} <= set(dir(extrados))
+
+
+def test_the_version_is_that_of_the_command() -> None:
+    command = subprocess.run(
+        [sys.executable, "-m", "extrados", "version"], capture_output=True, text=True, timeout=120, check=True
+    )
+    assert command.stdout.split()[1] == extrados.__version__

@@ -8,6 +8,7 @@ from extrados import kinds
 from extrados.analyses.table import OVERRIDES
 from extrados.decks.manual import KeyFacts, TableFacts
 from extrados.decks.plural import PLURAL
+from extrados.decks.words import WORDS
 from extrados.model.properties import Initial, Joints, Material, Supports
 from extrados.schema import quantities
 from extrados.schema.table import Table
@@ -44,9 +45,7 @@ def json_schema() -> dict[str, Any]:
         "additionalProperties": False,
         "required": ["analysis"],
         "properties": {
-            "title": {"type": "string"},
-            **{word: {"type": "string"} for word in ("project", "author", "date")},
-            "note": {"type": "string"},
+            **{word: {"type": "string", "description": about} for word, about in WORDS.items()},
             **one,
             **{name: {"type": "array", "items": one[name]} for name in PLURAL},
             "materials": {"type": "object", "additionalProperties": one["material"]},
@@ -154,7 +153,10 @@ def _length(about: dict[str, Any]) -> str:
 
 def facts() -> list[TableFacts]:
     """All that the tables say of themselves, in the order of the manual."""
-    return [table_facts(section, kind, model) for section, there in sections().items() for kind, model in there.items()]
+    top = TableFacts("deck", "The top of a deck", "", "Texts that stand before the first table.",
+                     {word: KeyFacts(about, "", "text", "") for word, about in WORDS.items()})  # fmt: skip
+    tables = ((section, kind, model) for section, there in sections().items() for kind, model in there.items())
+    return [top, *(table_facts(*table) for table in tables)]
 
 
 def table_facts(section: str, kind: str, model: type[Table]) -> TableFacts:

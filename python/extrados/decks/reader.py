@@ -21,6 +21,7 @@ from extrados.decks.plural import MOST, PLURAL
 from extrados.decks.positions import Path as Key
 from extrados.decks.positions import Positions, key_lines
 from extrados.decks.toml import loads
+from extrados.decks.words import WORDS
 from extrados.model.properties import Initial, Joints, Material, Supports
 from extrados.model.structure import Structure
 from extrados.schema import files
@@ -34,8 +35,6 @@ MOST_COMPLAINTS = 50
 PIPE = re.compile(r"-|/dev/stdin|/dev/fd/\d+")
 #: Tables that say what the building is besides its geometry
 PROPERTIES: dict[str, type[Table]] = {"material": Material, "joints": Joints, "supports": Supports, "initial": Initial}
-#: What the report says of a deck in words
-WORDS = ("title", "note", "project", "author", "date")
 #: What one kind of structure calls by one word and another kind by another
 ALIKE = {"thickness": {"depth"}, "depth": {"thickness"}, "length": {"width", "span"}, "span": {"width", "radius"}}
 TOP_LEVEL = {*WORDS, "structure", *PROPERTIES, "materials", *PLURAL, "motion", "analysis"}

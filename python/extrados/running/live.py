@@ -11,7 +11,8 @@ from extrados.analyses.conclude import concluded
 from extrados.analyses.context import Context, default_threads
 from extrados.analyses.sequence import run_one
 from extrados.analyses.table import Analysis
-from extrados.decks.reader import WORDS, Deck, DeckError, make_deck
+from extrados.decks.reader import Deck, DeckError, make_deck
+from extrados.decks.words import WORDS
 from extrados.motions.motion import Motion
 from extrados.results import store
 from extrados.results.model import Result

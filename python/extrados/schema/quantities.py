@@ -4,6 +4,7 @@ pint sees the unit alone: given a whole string it reads "1,5 m" as 15 m, evaluat
 powers of powers. In decks `g` is gravity, not gram.
 """
 
+import contextlib
 import math
 import re
 from dataclasses import dataclass
@@ -13,7 +14,7 @@ from typing import Annotated, Any, get_args
 from pydantic import BaseModel, BeforeValidator
 
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
-FACTOR = r"[A-Za-z_%°]\w*(?:(?:\*\*|\^)-?\d)?"
+FACTOR = r"[A-Za-z_%°]\w*(?:(?:\*\*|\^)-?\d|[²³])?"
 QUANTITY = re.compile(rf"({NUMBER}) +({FACTOR}(?: ?[*/] ?{FACTOR})*)", re.ASCII)
 LONGEST = 60
 
@@ -67,8 +68,18 @@ def _registry() -> Any:
 
 @lru_cache(maxsize=4096)
 def factor(unit: str, si: str) -> float:
-    """How many `si` one `unit` is; ValueError says what is wrong with the unit."""
-    return COMMON.get(si, {}).get(unit) or _by_pint(unit, si)
+    """How many `si` one `unit` is; a specific weight stands for its density. ValueError says what is wrong with the unit."""
+    unit = unit.replace("²", "^2").replace("³", "^3")
+    unit = re.sub(r"(?<=[A-Za-z])([23])(?=$| ?[*/])", r"^\1", unit)  # "m3" is "m^3"
+    if known := COMMON.get(si, {}).get(unit):
+        return known
+    try:
+        return _by_pint(unit, si)
+    except ValueError as error:
+        if si == "kg/m^3" and unit.endswith("^3"):  # not stiffness, Pa/m, which is the same to pint
+            with contextlib.suppress(ValueError):
+                return _by_pint(unit, "N/m^3") / COMMON["m/s^2"]["g"]
+        raise error
 
 
 def _by_pint(unit: str, si: str) -> float:
