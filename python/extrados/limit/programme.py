@@ -126,10 +126,6 @@ class LimitAnalysis:
         self._cuts: Constraints | None = None
         self._programme: Programme | None = None
 
-    def crush_as(self, other: "LimitAnalysis") -> None:
-        """Begin with the tangent planes of crushing that another found: the same stones, strength and dead weight."""
-        self._cuts = other._cuts
-
     @staticmethod
     def _rows(joint: np.ndarray, coefficient: tuple[float, float, float]) -> Constraints:
         k = len(joint)
@@ -404,12 +400,8 @@ class LimitAnalysis:
         return True
 
     def _greatest(self, direction: int) -> float:
-        """Greatest gamma to +x (1) or -x (-1) that forces bear under crushing, however joints slide.
-
-        Walls go by the interior-point method, which takes the curve of strength itself: with many tangent planes a linear
-        programme of theirs may not come to an end.
-        """
-        if isinstance(self.system, Sparse) and self._cone is not None and (found := self._interior(direction)):
+        """Greatest gamma to +x (1) or -x (-1) that forces bear under crushing, however joints slide."""
+        if self._crush is not None and (found := self._conic(direction, self._crush)):
             return found[0].gamma
         return -direction * self.optimise(self._gamma_cost(-float(direction)), (-BOUND, BOUND))[0].value
 

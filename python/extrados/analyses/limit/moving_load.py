@@ -93,11 +93,11 @@ class Places:
         if self.adverse and len(force):
             half = x <= 0.5 * (x.min() + x.max())
             starts += [~every] if axles.any() else [half, ~half]
-        best, limit = None, None
+        best = None
         for standing in starts:
             for _ in range(PATTERNS):
                 live = axles + pressed(np.where(standing, force, 0.0), x, block, len(axles))
-                found, limit = self.under(live, standing, limit)
+                found = self.under(live, standing)
                 if found is None or (best is not None and found.factor >= best.factor * (1.0 - 1e-9)):
                     break
                 best = found
@@ -110,25 +110,21 @@ class Places:
                 standing = downward
         return best
 
-    def under(
-        self, live: np.ndarray, standing: np.ndarray, before: LimitAnalysis | None = None
-    ) -> tuple[Collapse | None, LimitAnalysis | None]:
-        """Collapse under given loads on the blocks, None where they bring nothing down; crushing goes on from `before`."""
+    def under(self, live: np.ndarray, standing: np.ndarray) -> Collapse | None:
+        """Collapse under given loads on the blocks, None where they bring nothing down."""
         total = -float(live[:, 1].sum())
         if total <= 0.0:
-            return None, before
+            return None
         scale = self.dead.scale / total
         loads = Loads(self.dead.dead, live * scale, self.dead.resistance)
         limit = LimitAnalysis(
             self.assembly, self.friction, strength=self.strength, associated=self.associated, loads=loads
         )
-        if before is not None:
-            limit.crush_as(before)
         try:
             state, mechanism = limit.collapse(1)
         except Immovable:
-            return None, limit
-        return Collapse(state, loads, mechanism, state.gamma * scale, state.gamma * self.dead.scale, standing), limit
+            return None
+        return Collapse(state, loads, mechanism, state.gamma * scale, state.gamma * self.dead.scale, standing)
 
     def at(self, k: int) -> np.ndarray:
         """Where the axles stand [m]."""
