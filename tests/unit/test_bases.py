@@ -57,7 +57,7 @@ def test_a_block_on_a_slope_turns_about_its_toes() -> None:
 
 
 def test_a_slope_on_which_it_falls_by_itself_is_refused() -> None:
-    with pytest.raises(BadGeometry, match="falls over by itself"):
+    with pytest.raises(BadGeometry, match="overturns under its own weight"):
         make_block(1.0, 4.0, slope=0.25)
 
 

@@ -70,7 +70,7 @@ WRONG = {
     "mesh that is not there": ("none.msh", '[structure]\nkind = "mesh"\nfile = "none.msh" # here\nthickness = 0.1\n' + SLA),
     "outline that is not there": ("none.dxf", '[structure]\nkind = "panel"\noutline = "none.dxf" # here\nthickness = 0.1\n' + SLA + 'mesh.element = "T3"\nmesh.size = 0.2\n'),
     "linear form of an arch": ("is known of blocks", ARCH + PULSE + ROCKING + 'form = "linear" # here\n'),
-    "block that slides off its slope": ("falls", BLOCK.replace("[structure]\n", "[structure]\nbase_slope = 30 # here\n") + TILT),
+    "block that slides off its slope": ("overturns", BLOCK.replace("[structure]\n", "[structure]\nbase_slope = 30 # here\n") + TILT),
     "typo in a variant": (
         "unknown key", BLOCK + '[[analysis]]\nkind = "failure-curves"\nvariants = [{ widht = 2.0 }] # here\n',
     ),
@@ -231,7 +231,7 @@ WRONG = {
     "spectra on a soft base": (
         "rigid ground", PULSE + '[supports]\nstiffness = "10 MPa/m" # here\n[[analysis]]\nkind = "rocking-spectrum"\n',
     ),
-    "base too soft": ("falls over by itself", BLOCK + PULSE + "[supports]\nstiffness = 1e3 # here\n" + ROCKING),
+    "base too soft": ("overturns under its own weight", BLOCK + PULSE + "[supports]\nstiffness = 1e3 # here\n" + ROCKING),
     "durations of one pulse": ("'generated'", BLOCK + PULSE + '[[analysis]]\nkind = "fragility"\ncount = 1\ndurations = [1, 2] # here\n'),
     "more motions than there are": (
         "expected at most 1", BLOCK + PULSE + '[[analysis]]\nkind = "fragility"\ncount = 4 # here\n',
@@ -275,9 +275,9 @@ WRONG = {
         "leave side_walls out", FACADE.replace('"facade"', '"corner"') + "crack_angle = 30\nside_walls = { thickness = 0.5, crack_angle = 20 } # here\n",
     ),
     "facade without weight": ("has weight", "[material]\ndensity = 0.0 # here\n" + FACADE),
-    "block without weight": ("weighs nothing", BLOCK + "[material]\ndensity = 0.0 # here\n" + TILT),
-    "arch without weight that rocks": ("weighs nothing", ARCH + PULSE + "[material]\ndensity = 0.0 # here\n" + ROCKING),
-    "arch without weight, discrete elements": ("weighs nothing", ARCH + PULSE + "[material]\ndensity = 0.0 # here\n" + DEM),
+    "block without weight": ("has no weight", BLOCK + "[material]\ndensity = 0.0 # here\n" + TILT),
+    "arch without weight that rocks": ("has no weight", ARCH + PULSE + "[material]\ndensity = 0.0 # here\n" + ROCKING),
+    "arch without weight, discrete elements": ("has no weight", ARCH + PULSE + "[material]\ndensity = 0.0 # here\n" + DEM),
 }  # fmt: skip
 
 

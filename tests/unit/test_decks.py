@@ -234,7 +234,7 @@ def test_a_key_at_the_wrong_place_is_told_its_own(tables: dict, words: str) -> N
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("piers = { width = 1.0, height = 2.0 }", "expected a list of tables, [{ ... }], also where it is one"),
+        ("piers = { width = 1.0, height = 2.0 }", "expected a list of tables, [{ ... }], even for one"),
         ("piers = 2", "piers: 2: expected a list, [ ... ]"),
         ("piers = [{ width = 1.0, height = 2.0 }]", "1 span needs no piers; there is 1"),
         ('title = "x"', "unknown key"),

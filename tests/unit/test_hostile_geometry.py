@@ -188,7 +188,7 @@ def test_bodies_of_many_corners_take_little_memory() -> None:
 def test_a_body_of_too_many_corners_is_told(monkeypatch) -> None:
     monkeypatch.setattr("extrados.model.geometry.solids.meshes.MOST_CORNERS", 100)
     few, many = (read_solids({"graph": {"node": {"0": {"block": prism(k)}}}}, "a.json") for k in (60, 400))
-    with pytest.raises(BadGeometry, match="block 0 is of more than 100 corners, the most that are looked at"):
+    with pytest.raises(BadGeometry, match="block 0 is of more than 100 corners, the greatest number considered"):
         stones_of(few, 2000.0, None, "a.json")
     # told before their faces are compared with each other, and before Qhull, which is as slow and hears no signal
     with pytest.raises(ManyFaces):
@@ -196,7 +196,7 @@ def test_a_body_of_too_many_corners_is_told(monkeypatch) -> None:
     with pytest.raises(BadGeometry, match="block 0 is of more than 100 corners"):
         stones_of(many, 2000.0, None, "a.json")
     monkeypatch.setattr("extrados.model.geometry.solids.meshes.MOST_POINTS", 500)
-    with pytest.raises(BadGeometry, match="block 0 is a mesh of 800 points, at most 500 are looked at"):
+    with pytest.raises(BadGeometry, match="block 0 is a mesh of 800 points, at most 500 are considered"):
         stones_of(many, 2000.0, None, "a.json")
 
 
@@ -204,5 +204,5 @@ def test_bodies_over_each_other_are_told_before_all_pairs_are_looked_at(monkeypa
     monkeypatch.setattr("extrados.model.geometry.solids.contacts.MOST_PAIRS", 100)
     monkeypatch.setattr("extrados.model.geometry.solids.contacts.MOST_NEIGHBOURS", 1)
     stones = [Stone(f"block {k}", [box((0, 0, 0), (1, 1, 1))], 2000.0) for k in range(30)]
-    with pytest.raises(BadGeometry, match="more than 100 pairs, the most that are looked at"):
+    with pytest.raises(BadGeometry, match="more than 100 pairs, the greatest number considered"):
         assemble(stones, 1e-4)

@@ -107,7 +107,7 @@ def test_sweep_finds_changes_and_optimum() -> None:
 def test_sweep_through_impossible_geometry() -> None:
     result = run(CHURCH, kind="sweep", vary="buttress_width", values=[1.5, 5.0, 6.0, 7.0])
     reasons = {g["value"]: g["reason"] for g in result["gaps"]}
-    assert "no room is left for its span" in reasons[7.0]
+    assert "no width is left for its span" in reasons[7.0]
     assert result["collapse_accelerations_g"][0] > 0.06
     thick = run(ARCH, kind="sweep", vary="thickness", values=[0.5, 1.5, 11.0, -1.0])
     reasons = {g["value"]: g["reason"] for g in thick["gaps"]}

@@ -121,7 +121,7 @@ def test_wrong_number_of_points(tmp_path, name, change) -> None:
     path = put(tmp_path, name, text)
     if change == -7:
         record = read_record(path)
-        assert len(record.values) == len(A) - 7 and "the rest is left out" in record.notes[0]
+        assert len(record.values) == len(A) - 7 and "the rest is ignored" in record.notes[0]
         text = FILES[name][0].replace(f" {len(A)}", f" {len(A) - 50}")
         with pytest.raises(RecordError, match="follow"):
             read_record(put(tmp_path, name, text))

@@ -319,7 +319,7 @@ def test_a_stiff_bed_loses_less_than_housners_impact() -> None:
 
 
 def test_a_weak_base_cannot_carry_it() -> None:
-    with pytest.raises(BadGeometry, match="falls over by itself"):
+    with pytest.raises(BadGeometry, match="overturns under its own weight"):
         _ = soft_base_model(Building(Block(kind="block", width=1.0, height=4.0), supports=Supports(stiffness=1e6))).rest
 
 

@@ -20,10 +20,10 @@ def run(
     decks: Annotated[list[Path], typer.Argument(help="decks to run")],
     out: Annotated[Path | None, typer.Option(help="results folder; default results/<deck name>")] = None,
     threads: Annotated[int | None, typer.Option(min=1, help="threads of the core; default all")] = None,
-    resume: Annotated[bool, typer.Option(help="go on from the checkpoint of an interrupted run")] = False,
+    resume: Annotated[bool, typer.Option(help="continue from the checkpoint of an interrupted run")] = False,
     scheduler: Annotated[str, typer.Option(help="address of a dask scheduler that runs the sweeps")] = "",
     figures: Annotated[bool, typer.Option(help="draw figures and the report")] = True,
-    quiet: Annotated[bool, typer.Option("--quiet", help="no progress, no answer")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="no progress, no result")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="print summary.json instead of words")] = False,
 ) -> None:
     """Run decks: print the answer, write results, figures and report."""
@@ -112,10 +112,10 @@ def motion(
 
 
 def assess(
-    folder: Annotated[Path, typer.Argument(help="a folder of decks; common.toml gives them what they lack")],
+    folder: Annotated[Path, typer.Argument(help="a folder of decks; common.toml holds their defaults")],
     out: Annotated[Path | None, typer.Option(help="results folder; default results/<folder name>")] = None,
     threads: Annotated[int | None, typer.Option(min=1, help="threads of the core; default all")] = None,
-    resume: Annotated[bool, typer.Option(help="go on from the checkpoint of an interrupted run")] = False,
+    resume: Annotated[bool, typer.Option(help="continue from the checkpoint of an interrupted run")] = False,
     scheduler: Annotated[str, typer.Option(help="address of a dask scheduler that runs the buildings")] = "",
     figures: Annotated[bool, typer.Option(help="draw figures and reports")] = True,
     quiet: Annotated[bool, typer.Option("--quiet", help="no progress, no ranking")] = False,

@@ -384,7 +384,7 @@ class _Checker:
                 and not (analysis.solid and "solids" not in lacks)
                 and shape not in analysis.shells
             ):
-                self.complain(path, f"{kind} cannot look at a structure of kind '{shape}': {lacks[analysis.view]}")
+                self.complain(path, f"{kind} cannot analyse a structure of kind '{shape}': {lacks[analysis.view]}")
         if analysis.needs_motion and data.get("motion") is None:
             self.complain(path, f"{kind} needs a [motion]: expected one of {_words(kinds.MOTIONS)}")
 
@@ -466,7 +466,7 @@ def _expected(problem: ErrorDetails) -> str:
     if problem["type"] == "string_type":
         return "expected text in quotes"
     if problem["type"] == "list_type" and isinstance(problem.get("input"), dict):
-        return "expected a list of tables, [{ ... }], also where it is one"
+        return "expected a list of tables, [{ ... }], even for one"
     if problem["type"] == "list_type":
         return "expected a list, [ ... ]"
     return problem["msg"][0].lower() + problem["msg"][1:]

@@ -14,12 +14,16 @@ class Damper(Table):
     force in both senses.
     """
 
-    name: str | None = key(None, "what answers call it; default damper 1, damper 2 and so on", max_length=80)
-    start: Point = key(about="[x, y] where it is anchored in a stone")
-    end: Point | None = key(None, "[x, y] where it is anchored in another stone; or give `ground`")
-    ground: Point | None = key(None, "[x, y] where it is anchored in the ground, which moves with the supports")
-    start_stone: str | None = key(None, "name of the stone at `start`, where that lies between two", max_length=80)
-    end_stone: str | None = key(None, "name of the stone at `end`, where that lies between two", max_length=80)
+    name: str | None = key(None, "name in results; default damper 1, damper 2 and so on", max_length=80)
+    start: Point = key(about="[x, y] of the anchorage in a stone")
+    end: Point | None = key(None, "[x, y] of the anchorage in another stone; or give `ground`")
+    ground: Point | None = key(None, "[x, y] of the anchorage in the ground, which moves with the supports")
+    start_stone: str | None = key(
+        None, "name of the stone at `start`; needed if that point lies between two stones", max_length=80
+    )
+    end_stone: str | None = key(
+        None, "name of the stone at `end`; needed if that point lies between two stones", max_length=80
+    )
     damping: Damping | None = key(
         None, "c of a viscous damper: force per rate, of a power n of the rate in N (s/m)^n", gt=0
     )
@@ -48,15 +52,15 @@ class Damper(Table):
 class AddedHinge(Table):
     """Damping and stiffness added at joints, against the turn of the stones on both sides: [[hinges]]."""
 
-    name: str | None = key(None, "what answers call it; default hinge 1, hinge 2 and so on", max_length=80)
+    name: str | None = key(None, "name in results; default hinge 1, hinge 2 and so on", max_length=80)
     joints: list[str] = key(
         about='names of joints; "ground" means all joints to the ground, "all" every joint',
         min_length=1,
         max_length=10000,
     )
-    stiffness: Moment | None = key(None, "moment per radian of turn", gt=0)
+    stiffness: Moment | None = key(None, "moment per radian of rotation", gt=0)
     yield_moment: Moment | None = key(None, "moment at which it yields, in both senses; needs stiffness", gt=0)
-    damping: TurningDamping | None = key(None, "moment per radian per second of turn", gt=0)
+    damping: TurningDamping | None = key(None, "moment per radian per second of rotation", gt=0)
 
     @model_validator(mode="after")
     def _whole(self) -> "AddedHinge":

@@ -38,7 +38,7 @@ class Material(Table):
     )  # fmt: skip
     bed_angle: Angle = key(0.0, "angle of the bed joints to the x axis, counter-clockwise", ge=-180, le=180)
     softening: Literal["linear", "exponential", "hordijk"] = key(
-        "linear", "how the stress falls after the strength", source="thesis Fig. 4-1"
+        "linear", "softening law: decrease of stress after the strength", source="thesis Fig. 4-1"
     )
     compressive_strength: Stress | None = key(None, "compressive strength; without it nothing crushes", gt=0)
     compressive_strength_parallel: Stress | None = key(
@@ -46,7 +46,7 @@ class Material(Table):
         source="Lourenco, de Borst and Rots (1997)", gt=0,
     )  # fmt: skip
     compressive_coupling: float = key(
-        -1.0, "what pressure along and across the bed joints do for each other: b of (sx/fx)^2 + b sx sy / (fx fy) + (sy/fy)^2 "
+        -1.0, "coupling of the pressures along and across the bed joints: b of (sx/fx)^2 + b sx sy / (fx fy) + (sy/fy)^2 "
         "+ c t^2 / (fx fy) = 1", source="-1.05 of Page's panels, Lourenco (1996), from memory", gt=-2, lt=2,
     )  # fmt: skip
     compressive_shear: float = key(
@@ -60,7 +60,7 @@ class Material(Table):
         False, "reduce ft under lateral compression, s1/ft - s2/fc <= 1; needs compressive_strength"
     )
     confinement: float = key(
-        0.0, "what a lateral pressure adds to the compressive strength, over that pressure; 4.1 for concrete",
+        0.0, "increase of the compressive strength per lateral pressure; 4.1 for concrete",
         source="Richart and others (1928)", ge=0, le=10,
     )  # fmt: skip
 
@@ -78,7 +78,7 @@ class Material(Table):
             if self.crushing_energy is None:
                 raise ValueError("compressive_strength_parallel needs compressive_strength and crushing_energy")
             if self.confinement:
-                raise ValueError("confinement is for one compressive strength: leave out compressive_strength_parallel")
+                raise ValueError("confinement is for one compressive strength: remove compressive_strength_parallel")
         self._check_bedding()
         return self
 
@@ -94,7 +94,7 @@ class Material(Table):
         if self.tensile_strength is None:
             raise ValueError("tensile_strength_parallel needs tensile_strength, that across the bed joints")
         if self.lateral_reduction:
-            raise ValueError("lateral_reduction is for one tensile strength: leave out tensile_strength_parallel")
+            raise ValueError("lateral_reduction is for one tensile strength: remove tensile_strength_parallel")
         most = (self.tensile_strength * self.tensile_strength_parallel) ** 0.5
         if self.shear_strength is not None and self.shear_strength > most * (1.0 + 1e-9):
             raise ValueError(
@@ -145,11 +145,11 @@ class Joints(Table):
     crushing_energy: Energy | None = key(None, "energy of crushing per area of the joints; goes with it", gt=0)
     softening: Literal["linear", "exponential"] = key(
         "exponential",
-        "how cohesion and tension of mortar fall, in sequentially linear analysis",
+        "softening law of the cohesion and tension of mortar, in sequentially linear analysis",
         source="Lourenco 1996",
     )
     normal_stiffness: Stiffness | None = key(
-        None, "normal stiffness per area; default E over the length of stone that a joint stands for",
+        None, "normal stiffness per area; default E over the length of stone that a joint represents",
         source="thesis Eq. 7.10", gt=0,
     )  # fmt: skip
     shear_stiffness: Stiffness | None = key(
@@ -169,7 +169,7 @@ class Joints(Table):
     )
     restitution: Literal["thesis", "energy-safe", "inelastic"] | Annotated[float, Field(ge=0, le=1)] = key(
         "inelastic",
-        "impact of rocking, of blocks always Housner's: all energy that a blow without rebound leaves, with impulses at all "
+        "impact of rocking, of blocks always Housner's: all energy that remains after a plastic impact, with impulses at all "
         "joints; the thesis' momentum balance of arches (of other sections the energy-safe projection); the energy-safe "
         "projection on the next mechanism alone; or the ratio c_v of the rates after and before an impact (0 to 1)",
         source="Moreau 1988; thesis Eqs 5.3, 6.2, 6.3, B.3",
@@ -180,7 +180,7 @@ class Joints(Table):
     )  # fmt: skip
     worn_corners: Length = key(0.0, "radius to which the corners of the stones are worn", ge=0)
     types: list[JointType] = key(
-        [], "joints that differ, [[joints.types]]; what one leaves out is as in [joints]", max_length=1000
+        [], "joints that differ, [[joints.types]]; missing keys are as in [joints]", max_length=1000
     )
 
     @model_validator(mode="after")
@@ -213,8 +213,8 @@ class Supports(Table):
         source="Psycharis and Jennings 1983",
     )  # fmt: skip
     damping_ratio: Annotated[float, Field(ge=0, le=10)] | None = key(
-        None, "for `rocking`: dashpots beside these springs, by their fraction of critical damping of what stands on the whole "
-        "base and moves up and down; default none",
+        None, "for `rocking`: dashpots beside these springs, by their fraction of critical damping of the vertical motion of the "
+        "whole structure on its base; default none",
     )  # fmt: skip
     abutting_wall: Literal["left", "right"] | None = key(
         None, "a wall that stands against it on this side: it rocks away from it only, and is thrown back by it"

@@ -17,7 +17,7 @@ Crossed = Literal["arch", "top"]
 class Structure(Table):
     """Base of the structure kinds; the makers of their views, or why there is none, stand in `kinds.STRUCTURES`.
 
-    word: what answers call it, after "the".
+    word: name in results, after "the".
     rocks_as: its stones by the mechanism that limit analysis finds, all of it as one block, its piers, as a frame, or as two stacked blocks.
     crossed: where a moving load goes unless a deck names a chain, over the first arch or along the whole top.
     starter_analysis: the analysis of the deck that `new` writes.

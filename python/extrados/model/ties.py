@@ -13,17 +13,15 @@ Point = Annotated[list[Length], Field(min_length=2, max_length=2)]
 class Tie(Table):
     """A straight tie, strut or spring between two stones, or from a stone to the ground: [[ties]]."""
 
-    name: str | None = key(None, "what answers call it; default tie 1, tie 2 and so on", max_length=80)
-    start: Point = key(about="[x, y] where it is anchored in a stone")
-    end: Point | None = key(None, "[x, y] where it is anchored in another stone; or give `ground`")
-    ground: Point | None = key(
-        None, "[x, y] where it is anchored in the ground, which stays where it is though supports may move"
-    )
+    name: str | None = key(None, "name in results; default tie 1, tie 2 and so on", max_length=80)
+    start: Point = key(about="[x, y] of the anchorage in a stone")
+    end: Point | None = key(None, "[x, y] of the anchorage in another stone; or give `ground`")
+    ground: Point | None = key(None, "[x, y] of the anchorage in the ground, which does not move with the supports")
     start_stone: str | None = key(
-        None, "name of the stone at `start`, where that lies between two or in none", max_length=80
+        None, "name of the stone at `start`; needed if that point lies between two stones or in none", max_length=80
     )
     end_stone: str | None = key(
-        None, "name of the stone at `end`, where that lies between two or in none", max_length=80
+        None, "name of the stone at `end`; needed if that point lies between two stones or in none", max_length=80
     )
     works_in: Literal["tension", "compression", "both"] = key(
         "tension", "a tie is slack in compression, a strut in tension; a spring works in both"
@@ -36,9 +34,7 @@ class Tie(Table):
         None, "force per change of length, EA/L; without it it is rigid until it yields, as limit analysis takes every tie",
         gt=0,
     )  # fmt: skip
-    prestress: Force = key(
-        0.0, "force in it before any load, tension positive; it bears on no load of plastic collapse"
-    )
+    prestress: Force = key(0.0, "force in it before any load, tension positive; it changes no load of plastic collapse")
 
     @model_validator(mode="after")
     def _whole(self) -> "Tie":

@@ -76,7 +76,7 @@ def tabulated(period: np.ndarray, acceleration: np.ndarray) -> Spectrum:
 
     def at(t: np.ndarray) -> np.ndarray:
         if np.max(t) > period[-1] * (1.0 + 1e-9):
-            raise ValueError(f"the table ends at {period[-1]:g} s, {np.max(t):g} s is asked for")
+            raise ValueError(f"the table ends at {period[-1]:g} s, {np.max(t):g} s is requested")
         return np.interp(t, period, acceleration)
 
     return at

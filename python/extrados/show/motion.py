@@ -232,7 +232,7 @@ def draw_shake_table(run: Stored, name: str, folder: Path) -> list[tuple[str, st
                 run.array(name, "motion_acceleration") / GRAVITY,
                 color=style.EDGE,
                 linewidth=0.6,
-                label="asked for",
+                label="target",
             )
             acc.plot(
                 t, run.array(name, "drive_acceleration") / GRAVITY, color=style.THRUST, linewidth=0.6, label="played"

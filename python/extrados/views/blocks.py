@@ -82,8 +82,8 @@ class Masonry(Description):
             more = sorted(self.materials[name].model_fields_set - {"density"})
             if more:
                 raise BadGeometry(
-                    f"[materials.{name}] gives stones another {more[0]}; discrete and finite elements know one elastic "
-                    "material for all stones, that of [material]: leave it out, or give the joints their stiffness",
+                    f"[materials.{name}] gives stones another {more[0]}; discrete and finite elements have one elastic "
+                    "material for all stones, that of [material]: remove it, or give the joints their stiffness",
                     ("materials", name, more[0]),
                 )
 
@@ -100,8 +100,8 @@ class Masonry(Description):
         stones = self.blocks() if assembly is None else assembly
         if not (stones.mass > 0.0).all():
             raise NoView(
-                f"'{stones.block_names[int(stones.mass.argmin())]}' weighs nothing, and stones stand, rock and fall by their "
-                "weight: give a density above zero",
+                f"'{stones.block_names[int(stones.mass.argmin())]}' has no weight, by which blocks stand, rock and "
+                "overturn: give a density above zero",
                 ("material", "density"),
             )
 

@@ -179,7 +179,7 @@ def blocks(desk: Desk, _: Message) -> Iterator[Reply]:
     ground = [[round(float(v), 6) for v in (*assembly.p[j], *assembly.q[j])] for j in grounded]
     left = [name for name in ("ties", "dampers", "hinges", "supports", "initial", "motion") if deck.data.get(name)]
     left += ["joints.types"] * bool(deck.data.get("joints", {}).get("types"))
-    note = f"note = {json.dumps('Left out when its stones were set free: ' + ', '.join(left))}\n" if left else ""
+    note = f"note = {json.dumps('Ignored when its stones were set free: ' + ', '.join(left))}\n" if left else ""
     title = deck.title or deck.building.require_structure().word
     text = (
         f'title = {json.dumps(f"{title}, its stones free")}\n{note}\n[structure]\nkind = "blocks"\n'

@@ -181,8 +181,8 @@ class _Near:
         self._compared += int(count.sum())
         if self._compared > MOST_COMPARED:
             raise BadGeometry(
-                f"the edges of {len(self.size)} outlines are near each other in more than {MOST_COMPARED:,} pairs, the most "
-                "that are looked at: give them fewer points, and the ground fewer segments"
+                f"the edges of {len(self.size)} outlines are near each other in more than {MOST_COMPARED:,} pairs, the greatest "
+                "number considered: give them fewer points, and the ground fewer segments"
             )
         return _spread(numbers, count)
 
@@ -256,8 +256,8 @@ def box_pairs(low: np.ndarray, high: np.ndarray, most: int) -> tuple[np.ndarray,
         total += int(meet.sum())
         if total > most:
             raise BadGeometry(
-                f"the boxes around {len(order)} outlines or lines meet in more than {most:,} pairs, the most that are "
-                f"looked at: much of it lies over itself"
+                f"the boxes around {len(order)} outlines or lines meet in more than {most:,} pairs, the greatest number "
+                f"considered: much of it lies over itself"
             )
     return tuple(np.concatenate(found, axis=1))
 

@@ -395,10 +395,10 @@ def _drawing(found: _Read, known: Mapping[str, Layer], name: str, scale: float, 
         raise BadGeometry(f"{name}: more than {MOST_BLOCKS} blocks")
     if found.left_out:
         told = ", ".join(f"{n} of {what}" for what, n in sorted(found.left_out.items()))
-        notes.append(f"left out, since they are no lines: {told}")
+        notes.append(f"ignored, since they are no lines: {told}")
     if found.other_layers:
         notes.append(
-            f"left out layers: {', '.join(f'{layer} ({n})' for layer, n in sorted(found.other_layers.items()))}"
+            f"ignored layers: {', '.join(f'{layer} ({n})' for layer, n in sorted(found.other_layers.items()))}"
         )
     polygons, numbers = [], itertools.count(1)
     taken: Counter[str] = Counter()

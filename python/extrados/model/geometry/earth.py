@@ -116,7 +116,9 @@ def passive_left_out(earth: Earth | None) -> list[str]:
     """The warning of strategies that know the weight of fill, but not what it resists."""
     if earth is None or earth.passive <= 0.0:
         return []
-    return ["the fill weighs and sways with the stones; its passive pressure, which limit analysis counts, is left out"]
+    return [
+        "the fill weighs and sways with the stones; its passive pressure, which limit analysis includes, is neglected"
+    ]
 
 
 def _columns(

@@ -108,7 +108,7 @@ class Inspection:
         if gaps:
             found.append(
                 f"{_count(gaps, 'gap')} wider than contact_tolerance ({1e3 * self.tolerance:g} mm) "
-                f"{'is' if len(gaps) == 1 else 'are'} taken as open, which changes what the stones bear: {self._told(gaps)}; "
+                f"{'is' if len(gaps) == 1 else 'are'} taken as open, which changes the forces on the stones: {self._told(gaps)}; "
                 f"{self._cure(gaps)}"
             )
         if self.drawing.loose:
@@ -123,7 +123,7 @@ class Inspection:
             heights = sorted({round(y, 4) for _, y in self.levels})
             named = ", ".join(f"'{self.names[i]}'" for i, _ in self.levels[:SHOWN])
             found.append(
-                f"nothing bears the level soles of {named}{' and others' if len(self.levels) > SHOWN else ''} at "
+                f"nothing supports the level soles of {named}{' and others' if len(self.levels) > SHOWN else ''} at "
                 f"y = {', '.join(f'{y:.4g}' for y in heights)} m: foundation_levels makes supports of them"
             )
         return found

@@ -142,7 +142,7 @@ def _aisle(
 ) -> tuple[dict[str, list[int]], np.ndarray, int]:
     """Aisle vault, buttress and flyer: their chains, the outer face of the pier, and the buttress."""
     if aisle.span <= 0.0:
-        raise BadGeometry(f"{word} aisle: no room is left for its span ({aisle.span:.4g} m)")
+        raise BadGeometry(f"{word} aisle: no width is left for its span ({aisle.span:.4g} m)")
     inner = 0.5 * aisle.span
     outer, half = inner + aisle.thickness, 0.5 * np.radians(aisle.embrace)
     centre = np.array([back + side * inner, aisle.springing])
@@ -312,7 +312,7 @@ class AisledVault(PresetStructure):
     aisle_springing: Length | None = key(None, "height of the aisle vaults' centres above the ground", gt=0)
     aisle_span: Length | None = key(None, "clear span of the aisles; or give half_width", gt=0)
     half_width: Length | None = key(
-        None, "from the axis to the outer face of the buttresses; the aisles take what is left", gt=0
+        None, "from the axis to the outer face of the buttresses; the aisles take the rest", gt=0
     )
     buttress_width: Length | None = key(None, "width of the outer buttresses", gt=0)
     buttress_top: Length | None = key(
@@ -320,7 +320,7 @@ class AisledVault(PresetStructure):
     )
     flyer: FlyerTable | None = key(None, "flying buttresses over the aisles")
     added: AddedTable | None = key(None, "buttresses added on both sides", source="thesis Fig. 3-8")
-    right: RightSide | None = key(None, "what differs on the right-hand side")
+    right: RightSide | None = key(None, "values that differ on the right-hand side")
     fill_level: Length | None = key(None, "top of the fill over the nave vault, above the ground", gt=0)
     aisle_fill_level: Length | None = key(None, "top of the fill over the aisle vaults, above the ground", gt=0)
     fill_density: Density = key(1600.0, "density of the fill", gt=0, le=30000)

@@ -117,7 +117,7 @@ class Arch(Structure):
 
     def assembly(self, density: float, folder: Path) -> ArchAssembly:
         if self.skew:
-            raise NoView("a skew arch is no plane section; `tilt` and `dem` look at its solids", ("structure", "skew"))
+            raise NoView("a skew arch is no plane section; `tilt` and `dem` analyse its solids", ("structure", "skew"))
         return self.section(density)
 
     def section(self, density: float) -> ArchAssembly:

@@ -92,7 +92,7 @@ def make_block(
         mass = density * width * height * depth
         if not mass > 0.0:
             raise NoView(
-                "the block weighs nothing, and stones stand, rock and fall by their weight: give a density above zero",
+                "the block has no weight, by which blocks stand, rock and overturn: give a density above zero",
                 ("material", "density"),
             )
         inertia = mass * (width**2 + height**2) / 12.0
@@ -110,7 +110,7 @@ def make_block(
     turn = np.array([[c, s], [-s, c]])
     if not min(np.arctan2([toe_right, toe_left], centre_height) + slope * np.array([1.0, -1.0])) > 0.0:
         raise BadGeometry(
-            f"on a base that slopes by {np.degrees(slope):.4g} degrees the block falls over by itself",
+            f"on a base that slopes by {np.degrees(slope):.4g} degrees the block overturns under its own weight",
             ("structure", "base_slope"),
         )
     return BlockAssembly(
@@ -150,10 +150,10 @@ class Block(Structure):
     toe_left: Length | None = key(None, "the same of the left toe; default as the right one", gt=0)
     head_mass: Mass = key(
         0.0,
-        "of a pier with a free head: mass that moves with the middle of its head and turns freely on it; of a rectangle",
+        "of a pier with a free head: mass that moves with the middle of its head and rotates freely on it; of a rectangle",
         ge=0,
     )
-    base_slope: Angle = key(0.0, "slope of the ground that it stands on, up to the right", gt=-60, lt=60)
+    base_slope: Angle = key(0.0, "slope of the ground below the block, up to the right", gt=-60, lt=60)
 
     @model_validator(mode="after")
     def _complete(self) -> "Block":

@@ -112,7 +112,7 @@ class BlockTable(Table):
 
     name: str | None = key(None, "name of the block in results and complaints", max_length=80)
     points: list[list[Length]] = key(about="vertices [x, y], either way round", min_length=3, max_length=2000)
-    density: Density | None = key(None, "density, where it differs from the others", gt=0, le=30000)
+    density: Density | None = key(None, "density, if it differs from the others", gt=0, le=30000)
 
 
 class LayerTable(Table):
@@ -157,14 +157,14 @@ class Blocks(Structure):
     origin: Annotated[list[Length], Field(min_length=2, max_length=2)] | Literal["lower-left"] | None = key(
         None, '[x, y] of the file that becomes 0, 0, or "lower-left" of all blocks: for georeferenced surveys'
     )
-    block: list[BlockTable] | None = key(None, "the blocks, where no file is given", max_length=20000)
+    block: list[BlockTable] | None = key(None, "the blocks, if no file is given", max_length=20000)
     ground: list[list[Length]] | None = key(
-        None, "segments [x1, y1, x2, y2] the structure stands on, in the coordinates of the blocks; default the ground of the "
+        None, "segments [x1, y1, x2, y2] that support the structure, in the coordinates of the blocks; default the ground of the "
         "file, or else the lowest level", max_length=2000,
     )  # fmt: skip
     foundation_levels: list[Length] | None = key(
-        None, "heights, in the coordinates of the blocks, at which every level sole that no stone bears is a support: "
-        "foundations at unlike levels", min_length=1, max_length=100,
+        None, "heights, in the coordinates of the blocks, at which every level sole without a stone below is a support: "
+        "foundations at different levels", min_length=1, max_length=100,
     )  # fmt: skip
     contact_tolerance: Length = key(
         1e-4, "faces nearer than this touch, overlaps less deep are let pass, contacts of solids that are narrower carry no force; "
@@ -205,7 +205,7 @@ class Blocks(Structure):
             return drawing, None
         if sort in SOLID:
             raise NoView(
-                f"{self.file} holds solids, which are no plane section; `tilt` and `dem` look at them in space",
+                f"{self.file} holds solids, which are no plane section; `tilt` and `dem` analyse them in space",
                 ("structure", "file"),
             )
         if sort != ".json":

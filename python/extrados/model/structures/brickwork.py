@@ -81,7 +81,7 @@ def make_brickwork(
         raise BadGeometry("the openings leave nothing of the wall")
     joints = _joints(wall, small)
     if all(b != GROUND for *_, b in joints):
-        raise BadGeometry("the openings leave nothing that stands on the ground")
+        raise BadGeometry("the openings leave no masonry on the ground")
     return stones_and_joints([outline(box) for box in wall.boxes], wall.names, joints, density, depth)
 
 
@@ -190,10 +190,12 @@ class Laid(Table):
     """Keys of walls that are laid in running bond."""
 
     openings: list[Opening] = key([], "rectangles cut out", max_length=1000)
-    begins: Literal["whole", "half"] = key("whole", "what the lowest course begins with; every other one does not")
-    lintels: bool = key(True, "a stone over each opening; without it the units above rest on what they find")
+    begins: Literal["whole", "half"] = key("whole", "first unit of the lowest course; courses alternate")
+    lintels: bool = key(
+        True, "a stone over each opening; without it the units above rest on the units beside the opening"
+    )
     lintel_height: Length | None = key(None, "height of the lintels; default a course", gt=0)
-    lintel_bearing: Length | None = key(None, "what a lintel bears on at each side; default half a unit", gt=0)
+    lintel_bearing: Length | None = key(None, "bearing length of a lintel at each side; default half a unit", gt=0)
     least_unit: float = key(
         0.25, "share of a unit's length and height: a smaller cut piece joins its neighbour", ge=0, le=0.5
     )

@@ -85,7 +85,7 @@ class Fill(Table):
     cohesion: Stress = key(0.0, "cohesion of the soil; it adds to the passive pressure", ge=0)
     passive: float = key(
         0.0,
-        "share of Rankine's passive pressure that resists what moves into the fill; programs for arch bridges take 0.5",
+        "share of Rankine's passive pressure that resists stones moving into the fill; programs for arch bridges take 0.5",
         source="Gilbert and Melbourne 1994",
         ge=0,
         le=1,
@@ -405,7 +405,7 @@ class Bridge(Structure):
     crossed: ClassVar[Crossed] = "top"
     starter_analysis: ClassVar = "moving-load"
     spans: list[Span] = key(about="the arches from left to right", min_length=1, max_length=50)
-    piers: list[Pier] = key([], "the piers from left to right; one alone stands for all", max_length=49)
+    piers: list[Pier] = key([], "the piers from left to right; one alone applies to all", max_length=49)
     abutments: Abutment | None = key(None, "abutments as bodies on the ground; default springings that do not move")
     backing: Backing | None = key(None, "masonry over the haunches")
     fill: Fill | None = key(None, "soil over the arches")
@@ -416,11 +416,11 @@ class Bridge(Structure):
     def _piers(self) -> "Bridge":
         need = len(self.spans) - 1
         if len(self.piers) != need and not (need > 1 and len(self.piers) == 1):
-            wanted = "1 pier" if need == 1 else f"{need} piers, or one that stands for all"
+            wanted = "1 pier" if need == 1 else f"{need} piers, or one for all"
             spans = "1 span needs no piers" if need == 0 else f"{need + 1} spans need {wanted}"
             raise ValueError(f"piers: {spans}; there {'is 1' if len(self.piers) == 1 else f'are {len(self.piers)}'}")
         if self.surfacing is not None and self.fill is None:
-            raise ValueError("surfacing lies on fill: give fill, with a cover of 0 where there is none over the crown")
+            raise ValueError("surfacing lies on fill: give fill, with a cover of 0 if there is none over the crown")
         return self
 
     @property

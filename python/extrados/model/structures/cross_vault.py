@@ -107,7 +107,7 @@ class CrossVault(Spatial):
         None, "length of a stone along the barrel; default whole courses, mitred along the groins", gt=0
     )
     springers: int = key(
-        1, "courses from the springing that are one stone in each corner; with 0 the webs stand on feet of their own", ge=0, le=100
+        1, "courses from the springing that are one stone in each corner; with 0 each web has its own support", ge=0, le=100
     )  # fmt: skip
     oblong: float = key(1.0, "length over width of the bay; the barrel across it is an ellipse then", gt=0.2, lt=5)
     thickness_factor: float = key(1.0, "effective over real thickness; 0.8 for worn corners", gt=0, le=1)

@@ -87,9 +87,7 @@ class Frame(Structure):
     spacing: Length = key(about="from the middle of a column to that of the next", gt=0)
     lintel_height: Length = key(about="height of the lintel", gt=0)
     overhang: Length = key(0.0, "how far the lintel reaches beyond the outer columns", ge=0)
-    lintel_mass: Mass | None = key(
-        None, "mass of the lintel with what rests on it; default by its size and the density", gt=0
-    )
+    lintel_mass: Mass | None = key(None, "mass of the lintel and its loads; default by its size and the density", gt=0)
     depth: Length = key(1.0, "depth out of plane", gt=0)
 
     @model_validator(mode="after")

@@ -71,7 +71,7 @@ class Column(Structure):
     sides: int = key(24, "round: flat facets, or flutes, around", ge=3, le=96)
     flute_depth: Length = key(0.0, "round: how deep the flutes are cut at the base, each by two flat facets", ge=0)
     dowels: Annotated[Force, Field(gt=0)] | Literal["unbroken"] | None = key(
-        None, 'dowels in the axis between the drums: the shear each bears, or "unbroken"'
+        None, 'dowels in the axis between the drums: the shear strength of each, or "unbroken"'
     )
     dowel_reach: Length | None = key(
         None,
@@ -84,7 +84,7 @@ class Column(Structure):
         if (self.height is None) == (not self.heights):
             raise ValueError("give height (and drums), or heights, one of the two")
         if self.heights and self.drums != 1:
-            raise ValueError("heights already tells the number of drums")
+            raise ValueError("heights already states the number of drums")
         if any(h <= 0.0 for h in self.heights):
             raise ValueError("every one of heights must be above zero")
         given = self.model_fields_set
@@ -93,7 +93,7 @@ class Column(Structure):
         if self.section == "round" and "depth" in given:
             raise ValueError("depth is of rectangular drums; round ones have their width as a diameter")
         if self.dowel_reach is not None and self.dowels is None:
-            raise ValueError("dowel_reach is of dowels: say what shear they bear")
+            raise ValueError("dowel_reach needs dowels: give their shear strength")
         if self.flute_depth >= 0.25 * self.width:
             raise ValueError(f"flute_depth {self.flute_depth:g} m is not below a quarter of the width {self.width:g} m")
         return self
@@ -106,12 +106,12 @@ class Column(Structure):
     def assembly(self, density: float, folder: Path) -> Assembly:
         if self.section == "round":
             raise NoView(
-                "a column of round drums is no plane section; `tilt` and `dem` look at its solids",
+                "a column of round drums is no plane section; `tilt` and `dem` analyse its solids",
                 ("structure", "section"),
             )
         if self.dowels is not None:
             raise NoView(
-                "dowels are known in space alone: ask `tilt` with a direction, or leave them out",
+                "dowels exist in space alone: give `tilt` a direction, or remove the dowels",
                 ("structure", "dowels"),
             )
         return make_column(self.width, self.drum_heights, self.top_width, density, self.depth)

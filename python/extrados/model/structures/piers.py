@@ -43,5 +43,5 @@ def make_piers(length: float, height: float, openings: Sequence[Box], density: f
         for i, k, p, q in contacts(bodies, length)
     ]
     if all(b != GROUND for *_, b in joints):
-        raise BadGeometry("the openings leave nothing that stands on the ground")
+        raise BadGeometry("the openings leave no masonry on the ground")
     return stones_and_joints([outline(body) for body in bodies], names, joints, density, depth)

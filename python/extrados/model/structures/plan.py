@@ -51,9 +51,9 @@ class WallOpening(Table):
 class PlanWall(Table):
     """A plane wall: a line on the plan, of one thickness or one for each storey."""
 
-    name: str = key(about="what answers call it", min_length=1, max_length=40)
+    name: str = key(about="name in results", min_length=1, max_length=40)
     start: PlanPoint = key(about="[x, y] on the plan where its middle plane starts")
-    end: PlanPoint = key(about="[x, y] where it ends")
+    end: PlanPoint = key(about="[x, y] of its end")
     thickness: Length | None = key(None, "thickness; or give thicknesses", gt=0)
     thicknesses: list[Length] = key([], "one for each of its storeys, from the lowest", max_length=50)
     storeys: list[int] | None = key(None, "[first, last] storey; default all", min_length=2, max_length=2)
@@ -87,8 +87,8 @@ class Corner(Table):
     walls: list[str] = key(about="names of the two walls; the second abuts on the first", min_length=2, max_length=2)
     bond: Literal["bonded", "weak", "joint", "open"] = key(
         about="bonded: one masonry; weak: the column of elements of the second wall beside the first has less strength; "
-        "joint: one of [joints] between them, which opens, slides up and down, and crushes; open: nothing but floors holds "
-        "them together"
+        "joint: one of [joints] between them, which opens, slides up and down, and crushes; open: connected by floors "
+        "alone"
     )
     strength: float = key(0.5, "of a weak corner: its tensile strength over that of the wall", gt=0, le=1)
 
@@ -102,7 +102,7 @@ class Corner(Table):
 class Bed(Table):
     """A bed joint of [joints] all along a height of some walls: it opens, slides along the wall, and crushes."""
 
-    name: str | None = key(None, 'what answers and [[joints.types]] call it; default "bed 1" and so on', max_length=40)
+    name: str | None = key(None, 'name in results and [[joints.types]]; default "bed 1" and so on', max_length=40)
     storey: int = key(1, "the storey it is in, from 1 at the ground", ge=1)
     z: Length = key(0.0, "height above the floor of the storey; 0 in the first is the sole", ge=0)
     walls: list[str] = key([], "names of the walls that it runs through; default all of the storey", max_length=200)
@@ -119,7 +119,7 @@ class StoreyFloor(Table):
     )
     walls: list[str] | None = key(
         None,
-        "names of the walls around it, in order; default, where they make one ring, all of the storey",
+        "names of the walls around it, in order; default all of the storey, if they make one ring",
         min_length=3,
     )
     young: Stress | None = key(None, "of a flexible floor: its modulus; of joists: that of their wood", gt=0)
@@ -127,7 +127,7 @@ class StoreyFloor(Table):
     poisson: float = key(0.25, "of a flexible floor", ge=0, lt=0.5)
     joist_area: Annotated[float, Field(gt=0)] | None = key(None, "of joists: cross-section of one in m^2")
     joist_spacing: Length | None = key(None, "of joists: their distance", gt=0)
-    load: Stress = key(0.0, "weight of the floor with what lies on it, per area", ge=0)
+    load: Stress = key(0.0, "weight of the floor and its loads, per area", ge=0)
     bears_on: list[str] = key([], "walls that carry the load, by their length; default all around it", max_length=100)
 
     @model_validator(mode="after")
@@ -195,7 +195,7 @@ class Plan(Structure):
     props: list[Prop] = key([], "[[structure.props]]", max_length=200)
     prestress: list[Prestress] = key([], "[[structure.prestress]]", max_length=200)
     assumed: list[str] = key(
-        [], "what the sources of the deck do not say and it assumes: every answer repeats it", max_length=100
+        [], "assumptions of the deck beyond its sources; every result repeats them", max_length=100
     )
     foundation_stiffness: Stiffness | None = key(
         None, "vertical stiffness of the ground per area of the walls' soles; default rigid", gt=0

@@ -112,8 +112,8 @@ def _close(ways: list[np.ndarray], starts: list[np.ndarray], legs: list[tuple[fl
     end = starts[-1] + legs[-1][0] * ways[-1]
     if len(legs) % 2 or np.abs(LEFT @ ways[-1] - ways[0]).max() > 1e-9 or np.abs(end - starts[0]).max() > 1e-6:
         raise BadGeometry(
-            f"wall: the legs do not close: the last one ends at x = {end[0]:.4g}, y = {end[1]:.4g} m; expected 0, 0 and a left turn "
-            "to the first"
+            f"wall: the legs do not close: the last one ends at x = {end[0]:.4g}, y = {end[1]:.4g} m; expected 0, 0 and a corner to the left "
+            "at the first"
         )
 
 
@@ -146,11 +146,13 @@ class Wall(Spatial):
         min_length=1,
         max_length=200,
     )
-    closed: bool = key(False, "whether the last leg meets the first, as around a room; all turn left then")
-    begins: Literal["whole", "half"] = key("whole", "what the lowest course begins with at a free end")
+    closed: bool = key(
+        False, "whether the last leg meets the first, as around a courtyard; then all corners are to the left"
+    )
+    begins: Literal["whole", "half"] = key("whole", "first unit of the lowest course at a free end")
     lintels: bool = key(True, "a stone over each opening")
     lintel_height: Length | None = key(None, "height of the lintels; default a course", gt=0)
-    lintel_bearing: Length | None = key(None, "what a lintel bears on at each side; default half a unit", gt=0)
+    lintel_bearing: Length | None = key(None, "bearing length of a lintel at each side; default half a unit", gt=0)
     least_unit: float = key(
         0.25, "share of a unit's length and height: a smaller cut piece joins its neighbour", ge=0, le=0.5
     )

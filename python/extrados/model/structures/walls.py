@@ -87,12 +87,12 @@ class Panel(Laid, MeshedWall):
     }
     width: Length | None = key(None, "length along x; needed unless an outline is given", gt=0)
     height: Length | None = key(None, "length along y; needed unless an outline is given", gt=0)
-    unit_length: Length | None = key(None, "length of a unit of its masonry, where stones are looked at", gt=0)
+    unit_length: Length | None = key(None, "length of a unit of its masonry, for analyses of stones", gt=0)
     unit_height: Length | None = key(None, "height of a unit of its masonry", gt=0)
     outline: str | None = key(
         None, "DXF file of closed polylines: the outer one and the openings; replaces width, height, openings"
     )
-    outline_unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(None, "unit of the drawing where it names none")
+    outline_unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(None, "unit of the drawing, if it names none")
 
     @model_validator(mode="after")
     def _sensible(self) -> "Panel":
@@ -168,7 +168,7 @@ Force3 = Annotated[list[Force], Field(min_length=3, max_length=3)]
 class MeshGroup(Table):
     """What a named group of a mesh file is in space: its elements, or the nodes that its lines, points or elements have."""
 
-    name: str = key(about="of the group in the file, or its number where it has none", min_length=1, max_length=200)
+    name: str = key(about="of the group in the file, or its number if it has none", min_length=1, max_length=200)
     thickness: Length | None = key(None, "thickness of its elements", gt=0)
     material: str | None = key(None, "of its elements: a name of [materials]")
     linear: bool = key(False, "its elements do not crack")
@@ -194,7 +194,7 @@ class MeshFile(MeshedWall):
         max_length=1000,
     )
     groups: list[MeshGroup] = key(
-        [], "of shells in space: what the groups of the file are, [[structure.groups]]; a later one overrides an earlier",
+        [], "of shells in space: properties of the groups of the file, [[structure.groups]]; a later one overrides an earlier",
         max_length=1000,
     )  # fmt: skip
     scale: float = key(1.0, "metres per unit of the file", gt=0, le=1e6)

@@ -182,7 +182,7 @@ def _refuse_factor(text: Lines, said: str) -> None:
 
 def _refuse_header_numbers(text: Lines, rows: list[tuple[int, list[str]]], data: np.ndarray) -> None:
     """Numbers of a header that stand before the samples as if they were some: counts, dates, codes."""
-    hint = "put # before the lines of the header, or write the values with decimals where they are samples"
+    hint = "put # before the lines of the header, or write the values with decimals if they are samples"
     whole = [all(re.fullmatch(r"[+-]?\d+", token) for token in row) for _, row in rows]
     first = whole.index(False) if False in whole else len(whole)
     digits = [any(token.strip("+-0") for token in row) for _, row in rows[:first]]

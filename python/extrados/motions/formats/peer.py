@@ -40,7 +40,7 @@ def read(text: Lines) -> list[Record]:
         quantity = said[0]
     if (other := SUFFIXES.get(text.path.suffix.lower(), quantity)) != quantity:
         raise text.error(
-            0, f"the header names {quantity}, the suffix {text.path.suffix} stands for {other}; rename the file"
+            0, f"the header names {quantity}, the suffix {text.path.suffix} is that of {other}; rename the file"
         )
     rows: list[tuple[int, list[str]]] = []
     have = 0

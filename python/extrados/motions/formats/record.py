@@ -173,7 +173,7 @@ class Lines:
         if len(values) - count > max(8, count // 100):
             raise self.error(at, f"the header says {count} values but {len(values)} follow")
         return values[:count], [
-            f"{self.path.name}: {len(values)} values where the header says {count}; the rest is left out"
+            f"{self.path.name}: {len(values)} values where the header says {count}; the rest is ignored"
         ]
 
 

@@ -81,12 +81,12 @@ def _draw_settled(run: Stored, name: str, folder: Path, blocks, centroid) -> tup
                 va="center", fontsize=7, color=style.HINGE,
                 arrowprops={"arrowstyle": "-", "linewidth": 0.6, "color": style.HINGE},
             )  # fmt: skip
-        ax.set_title(f"Supports that give way: movements and openings {factor:g} times as large")
+        ax.set_title(f"Settlement of supports: movements and openings {factor:g} times as large")
         style.section_axes(ax)
         ax.margins(0.12)  # room for the openings beside the outermost stones
         return (
             style.save(fig, folder, f"{name}-openings"),
-            f"Where supports give way joints open; movements and openings are drawn {factor:g} times as large, dotted: before.",
+            f"Joints open as supports settle; movements and openings are drawn {factor:g} times as large, dotted: before.",
         )
 
 

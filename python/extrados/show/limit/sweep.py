@@ -72,7 +72,7 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             (
                 style.save(fig, folder, f"{name}-curve"),
                 "Tilt at collapse; dotted: changes of mechanism; crosses: values at which the structure cannot stand; "
-                "points on the axis: values without an answer or without a limit.",
+                "points on the axis: values without a result or without a limit.",
             )
         ]
     if len(run.array(name, "example")):

@@ -184,7 +184,7 @@ def film_tilt(run: Stored, name: str, folder: Path) -> None:
             cursor.set_xdata([np.degrees(angle)] * 2)
             title.set_text(
                 f"ground tilted by {np.degrees(angle):.2f} degrees, as {np.tan(angle):.4f} g to the side"
-                + (": it comes down" if share else "")
+                + (": it collapses" if share else "")
             )
 
         count = len(tilt) + moves

@@ -51,7 +51,7 @@ def read_mesh(wall: MeshFile, building: Description, options: MeshOptions) -> Me
     """The plane elements of a file, of one kind; other cells (lines, points) are passed over."""
     if wall.groups:
         raise BadGeometry(
-            "groups are of shells in space, which `pushover` looks at; a plane wall takes regions",
+            "groups are of shells in space, which `pushover` analyses; a plane wall takes regions",
             ("structure", "groups"),
         )
     name, mesh = open_mesh(wall, building)

@@ -215,9 +215,7 @@ def _small_stress(assembly: Assembly) -> float:
 
 def _refuse(options: MeshOptions) -> None:
     if options.element not in ("Q4", "T3"):
-        raise BadGeometry(
-            f'stones are meshed by "Q4" (triangles where that does not fit) or "T3", not {options.element}'
-        )
+        raise BadGeometry(f'stones are meshed by "Q4" (triangles if that does not fit) or "T3", not {options.element}')
     if options.pattern == "random":
         raise BadGeometry("stones have no random pattern: their joints lead the cracks")
     if options.refine or options.lines_x or options.lines_y:

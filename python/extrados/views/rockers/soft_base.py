@@ -102,7 +102,7 @@ class SoftBaseModel:
         )
         return (
             f"{self.core.stiffness / self.block.depth:.4g} N/m^3: on a base below about "
-            f"{least / self.block.depth:.3g} N/m^3 the block falls over by itself"
+            f"{least / self.block.depth:.3g} N/m^3 the block overturns under its own weight"
         )
 
     @property

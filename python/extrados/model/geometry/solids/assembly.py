@@ -284,7 +284,7 @@ def _refuse(
     if len(lonely) > MOST_TOLD:
         wrong.append(f"and {len(lonely) - MOST_TOLD} more stones touch nothing")
     if not lonely and not (b == GROUND).any():
-        wrong.append("no stone stands on the ground")
+        wrong.append("no stone is supported by the ground")
     if wrong:
         raise BadGeometry(f"{what}: " + "; ".join(wrong))
 

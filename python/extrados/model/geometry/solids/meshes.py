@@ -187,7 +187,7 @@ def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]], within: floa
     """The convex body around a closed mesh that lies within a distance [m] of it, faces with corners so far off a plane made
     one; ValueError says in words why there is none."""
     if len(points) > MOST_POINTS:
-        raise ValueError(f"is a mesh of {len(points)} points, at most {MOST_POINTS} are looked at: draw it coarser")
+        raise ValueError(f"is a mesh of {len(points)} points, at most {MOST_POINTS} are considered: draw it coarser")
     around_edge: dict[tuple[int, int], list[int]] = {}
     for k, face in enumerate(faces):
         for i, j in _edges(face):
@@ -200,7 +200,7 @@ def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]], within: floa
     if not np.ptp(points, axis=0).all():
         raise ValueError("is flat: it has no volume")
     volume = abs(moments(points, triangles)[0])
-    fine = f"is of more than {MOST_CORNERS} corners, the most that are looked at: draw it coarser"
+    fine = f"is of more than {MOST_CORNERS} corners, the greatest number considered: draw it coarser"
     try:
         # more faces have more corners, by Euler; faces are made one by the fit of all of their corners where that is known
         whole = hull(points, SAME_PLANE if within > 0.0 else PLANE, 2 * MOST_CORNERS)

@@ -21,7 +21,7 @@ def drawn_out(assembly: Assembly) -> SolidAssembly:
     in the plane and in space ask for the same forces. NoView where earth pushes back, which is known in the plane alone."""
     if assembly.earth is not None:
         raise NoView(
-            "the fill of a bridge spreads loads and pushes back in its section alone: ask without a direction",
+            "the fill of a bridge spreads loads and resists in its section alone: remove `direction`",
             ("analysis", "direction"),
         )
     half = 0.5 * assembly.depth
