@@ -68,7 +68,7 @@ def read_dxf(
     name = file.path.name
     try:
         found = read_contained(
-            "extrados.model.geometry.dxf:parse_dxf", file.content, name=name, unit=unit, layers=layers,
+            "extrados.model.geometry.dxf:parse_dxf", file.content, ["ezdxf"], name=name, unit=unit, layers=layers,
             meaning={layer: asdict(one) for layer, one in (meaning or {}).items()}, join_tolerance=join_tolerance, sagitta=sagitta,
         )  # fmt: skip
     except Unreadable as error:
