@@ -22,6 +22,7 @@ import struct
 import subprocess
 import tempfile
 import threading
+import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -89,10 +90,13 @@ def read_contained(
     return decoded["value"]
 
 
-def _pieces(stream: socket.socket, most: int) -> Iterator[bytes]:
-    """What comes from a socket until its end, up to `most` bytes and a piece."""
+def _pieces(stream: socket.socket, most: int, until: float) -> Iterator[bytes]:
+    """What comes from a socket until its end, up to `most` bytes and a piece; TimeoutError at a time of the monotonic clock."""
     size = 0
-    while size <= most + _CODE.size and (piece := stream.recv(1 << 20)):
+    while size <= most + _CODE.size:
+        stream.settimeout(max(until - time.monotonic(), 0.01))
+        if not (piece := stream.recv(1 << 20)):
+            return
         size += len(piece)
         yield piece
 
@@ -120,15 +124,11 @@ class _Server:
             self.running = self.running or self._begun()
             with contextlib.suppress(OSError):  # it was killed: nothing will come
                 socket.send_fds(self.running[1], [b"?"], [file, theirs.fileno()])
-        late = threading.Timer(patience, ours.shutdown, [socket.SHUT_RDWR])
-        late.daemon = True
-        late.start()
         with ours:  # a reader whose answer nobody reads any more is ended by its watcher
             try:
-                found = b"".join(_pieces(ours, most))
-                return found, not late.finished.is_set()
-            finally:
-                late.cancel()
+                return b"".join(_pieces(ours, most, time.monotonic() + patience)), True
+            except TimeoutError:
+                return b"", False
 
     @staticmethod
     def _begun() -> tuple["subprocess.Popen[bytes]", socket.socket]:
