@@ -221,14 +221,15 @@ def limit_process(room: int, seconds: int) -> None:
     time and writes none."""
     with open("/proc/self/statm", encoding="ascii") as file:
         now = int(file.read().split()[0]) * resource.getpagesize()
-    lowest = os.dup(0)
-    os.close(lowest)
+    numbers = [os.dup(0) for _ in range(FILES)]
+    for number in numbers:
+        os.close(number)
     for what, most in (
         (resource.RLIMIT_AS, now + room),
         (resource.RLIMIT_CPU, seconds + 1),
         (resource.RLIMIT_FSIZE, 0),
         (resource.RLIMIT_CORE, 0),
-        (resource.RLIMIT_NOFILE, lowest + FILES),
+        (resource.RLIMIT_NOFILE, max(numbers) + 1),
         (resource.RLIMIT_NPROC, 0),
     ):
         hard = resource.getrlimit(what)[1]
