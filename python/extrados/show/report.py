@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 
-from extrados import kinds, room
+from extrados import kinds
 from extrados.results import written
 from extrados.results.store import REPORT, SUMMARY, Stored, StoreError, read, reason
 from extrados.show import html, typeset
@@ -49,11 +49,9 @@ def _stored(folder: Path | None, what: str) -> Iterator[None]:
     """StoreError where what is made of stored results fails: they may have been changed, which no checksum shows."""
     try:
         yield
-    except (StoreError, Lost, OSError, MemoryError):
+    except (StoreError, Lost, OSError, ImportError, MemoryError, SystemError):  # the file system, or memory that lacks
         raise
     except Exception as error:
-        if room.lacked(error):
-            raise
         raise StoreError(
             f"{folder}: {what} cannot be made, the results are damaged: {type(error).__name__}: {error.args[0] if error.args else error}; if nobody changed them "
             "since extrados wrote them, this is a fault of extrados"

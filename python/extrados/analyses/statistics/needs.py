@@ -61,7 +61,9 @@ def _foretell(context: Context, options: tables.Fragility) -> None:
         return
     on_disk = context.out is not None and not options.cloud and options.durations is None and runs > IN_MEMORY
     cell = CELL_BESIDE_DISK if on_disk else CELL
-    of = f"{count:,} motions or buildings" + (f" at {levels} levels" if options.levels else "")
+    of = f"{count:,} motions or buildings" + (
+        f" at {levels} level{'s' if levels > 1 else ''}" if options.levels else ""
+    )
     key = "count" if options.count or not options.levels else "levels"
     refuse_memory(cell * runs, f"{of}, {runs:.3g} runs,", f"at most {int(SHARE * room.total() / cell * count / runs)} fit",
                   ("analysis", key))  # fmt: skip
