@@ -299,6 +299,8 @@ def _read(given: dict[str, Any], file: int, answer: int) -> None:
             out.write(encode({"refused": str(error), "at": list(error.at)}))
         except MemoryError:
             out.write(encode({"refused": f"takes more than {given['room'] / 1e6:.0f} MB to be read", "at": []}))
+        except Exception as error:  # of a library, at a file that it does not foresee
+            out.write(encode({"refused": f"cannot be read: {type(error).__name__}: {error}", "at": []}))
 
 
 if __name__ == "__main__":

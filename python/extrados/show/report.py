@@ -52,9 +52,10 @@ def _stored(folder: Path | None, what: str) -> Iterator[None]:
     except (StoreError, Lost, OSError, ImportError, MemoryError, SystemError):  # the file system, or memory that lacks
         raise
     except Exception as error:
+        said = error.args[0] if error.args else error
         raise StoreError(
-            f"{folder}: {what} cannot be made, the results are damaged: {type(error).__name__}: {error.args[0] if error.args else error}; if nobody changed them "
-            "since extrados wrote them, this is a fault of extrados"
+            f"{folder}: {what} cannot be made, the results are damaged: {type(error).__name__}: {said}; "
+            "if they are unchanged since extrados wrote them, this is a fault of extrados"
         ) from error
 
 
