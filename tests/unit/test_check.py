@@ -9,6 +9,7 @@ import pytest
 import extrados
 from extrados import room
 from extrados.analyses.context import Context
+from extrados.analyses.needs import complaints
 from extrados.analyses.sequence import run_one
 from extrados.decks.reader import Deck, DeckError, read_deck
 from extrados.running.check import check_building
@@ -354,14 +355,17 @@ def test_what_runs_is_ok(path: Path) -> None:
     assert check_building(read_deck(path)).complaints == []
 
 
+TOO_LONG = r"analysis\.output_step: a history of 1e\+08 s in steps of \S+ s is too long to store; the least output_step that fits is \S+ s$"
+
+
 @pytest.mark.parametrize(
     ("analysis", "words"),
     [
-        ({"kind": "dem", "end_time": 1e8}, r"analysis\.output_step: the history of 1e\+08 s .* the least output_step that fits is"),
-        ({"kind": "rocking", "end_time": 1e8}, r"analysis\.output_step: a history of 1e\+08 s .* the least output_step that fits is"),
+        ({"kind": "dem", "end_time": 1e8}, TOO_LONG),
+        ({"kind": "rocking", "end_time": 1e8}, TOO_LONG),
         (
             {"kind": "fragility", "count": 1_000_000, "levels": [0.001 * k for k in range(1, 501)], "uncertain": {"width": 0.05}},
-            r"analysis\.count: 1000000 motions or buildings at 500 levels, 5e\+08 runs, needs? about 450 GB .*at most \d+ fit",
+            r"analysis\.count: 1,000,000 motions or buildings at 500 levels, 5e\+08 runs, needs? about 450 GB .*at most \d+ fit",
         ),
     ],
     ids=lambda one: one["kind"] if isinstance(one, dict) else "",
@@ -379,3 +383,32 @@ def test_what_does_not_fit_into_memory_is_refused_before_it_runs(
     row = found.analyses[0]
     assert row["status"] == "refused" and re.search(words, row["reason"]), row["reason"]
     assert row["seconds"] < 60.0
+
+
+def test_long_analyses_are_foretold(tmp_path: Path) -> None:
+    """Runs, memory, disk and time: by `check`, and by `run` before anything else."""
+    levels = ", ".join(f"{0.01 * k:.2f}" for k in range(1, 51))
+    path = tmp_path / "deck.toml"
+    path.write_text(
+        '[structure]\nkind = "block"\nwidth = 0.1\nheight = 0.4\n[motion]\nkind = "generated"\nmmi = 8\nduration = 1.0\n'
+        f'[analysis]\nkind = "fragility"\ncount = 10000\nlevels = [{levels}]\n'
+    )
+    words = r"fragility: 10,000 motions or buildings at 50 levels, 5e\+05 runs: about 0\.0\d+ GB of memory, 0\.\d+ GB of disk and \S+ (s|min|h)$"
+    (said,) = check_building(read_deck(path)).foretold
+    assert re.match(words, said), said
+
+    class Begun(Exception):
+        pass
+
+    def tell(text: str) -> None:
+        raise Begun(text)
+
+    with pytest.raises(Begun) as told:
+        complaints(
+            context := Context(read_deck(path), out=tmp_path / "out", tell=tell),
+            context.deck.analyses[0],
+            context.building,
+        )
+    assert re.match(words, str(told.value))
+    path.write_text(path.read_text().replace("10000", "100"))
+    assert check_building(read_deck(path)).foretold == []

@@ -3,8 +3,12 @@
 import base64
 import os
 import signal
+import subprocess
+import sys
 import time
 import zlib
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import h5py
@@ -21,10 +25,13 @@ HERE = "test_contained"
 
 
 @pytest.fixture(autouse=True)
-def _found_by_the_reader(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The functions of this file are readers, too."""
+def _found_by_the_reader(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """The functions of this file are readers, too: of a server that finds them."""
     monkeypatch.setenv("PYTHONPATH", str(Path(__file__).parent))
     monkeypatch.setattr(contained, "ROOM", 300_000_000)
+    contained.end_server()
+    yield
+    contained.end_server()
 
 
 def give(content: bytes, **options: object) -> dict[str, object]:
@@ -69,6 +76,12 @@ def open_many(content: bytes) -> int:
 
 def die(content: bytes) -> None:
     os.kill(os.getpid(), signal.SIGSEGV)
+
+
+def parents(content: bytes) -> tuple[int, int]:
+    """The watcher of this reader, and the server."""
+    stat = Path(f"/proc/{os.getppid()}/stat").read_text()
+    return os.getppid(), int(stat.rpartition(")")[2].split()[1])
 
 
 def refuse(content: bytes) -> None:
@@ -132,6 +145,67 @@ def test_a_signal_ends_the_reader_too() -> None:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
     assert time.monotonic() - began < 300.0
+
+
+def test_files_are_read_at_the_same_time() -> None:
+    with ThreadPoolExecutor(4) as pool:
+        found = list(pool.map(lambda k: read_contained(f"{HERE}:give", bytes(k))["content"], range(40)))
+    assert found == list(range(40))
+
+
+def test_a_server_that_was_killed_is_replaced() -> None:
+    first = read_contained(f"{HERE}:parents", b"")
+    os.kill(first[1], signal.SIGKILL)
+    second = read_contained(f"{HERE}:parents", b"")
+    assert second[1] != first[1]
+
+
+def test_the_server_loads_libraries_once() -> None:
+    (one, server), (other, same) = (read_contained(f"{HERE}:parents", b"") for _ in range(2))
+    assert server == same
+    assert one != other
+
+
+def test_a_fork_has_a_server_of_its_own() -> None:
+    _, server = read_contained(f"{HERE}:parents", b"")
+    child = os.fork()
+    if child == 0:
+        try:
+            os._exit(0 if read_contained(f"{HERE}:parents", b"")[1] != server else 1)
+        finally:
+            contained.end_server()
+            os._exit(2)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+    assert read_contained(f"{HERE}:parents", b"")[1] == server
+
+
+def test_server_and_reader_end_with_a_process_that_is_killed() -> None:
+    script = f"from extrados.schema.contained import read_contained\nread_contained('{HERE}:sleep', b'')"
+    process = subprocess.Popen([sys.executable, "-c", script])
+    until = time.monotonic() + 300.0
+    while len(numbers := _descendants(process.pid)) < 3:  # the server, a watcher, a reader
+        assert process.poll() is None and time.monotonic() < until
+        time.sleep(0.01)
+    process.kill()
+    process.wait()
+    while any(_runs(number) for number in numbers):
+        assert time.monotonic() < until, f"{numbers} still run"
+        time.sleep(0.01)
+
+
+def _descendants(number: int) -> list[int]:
+    try:
+        children = [int(n) for n in Path(f"/proc/{number}/task/{number}/children").read_text().split()]
+    except OSError:
+        return []
+    return [n for child in children for n in (child, *_descendants(child))]
+
+
+def _runs(number: int) -> bool:
+    try:
+        return Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 @pytest.mark.parametrize("data", [b"", b"\x05\0\0\0", encode([1])[:-1], encode(np.arange(3))[:-1], b"\x02\0\0\0{}x", b"\x10\0\0\0" + b'{"\\u0000array":7}'])  # fmt: skip

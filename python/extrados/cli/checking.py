@@ -38,6 +38,8 @@ def check(
         complaints += checked.complaints
         for remark in checked.ignored:
             out_console.say(f"warning: {remark}")
+        for line in checked.foretold:
+            out_console.say(line)
         folder = out or deck.default_out.with_name(f"{deck.default_out.name}-check")
         _tell_survey(checked, folder, asked=out is not None)
         _tell_solids(checked, folder, asked=out is not None or getattr(deck.structure, "file", None) is not None)

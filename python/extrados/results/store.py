@@ -26,7 +26,7 @@ from extrados.results.model import Array, Result, Streamed, TableData
 from extrados.results.typed import typed
 from extrados.results.verdict import KindResults
 from extrados.schema import files
-from extrados.schema.hdf5 import lies_elsewhere
+from extrados.schema.contained import Unreadable, read_contained
 from extrados.schema.text import printable
 
 SUMMARY = "summary.json"
@@ -39,6 +39,8 @@ LARGEST_SUMMARY = 200_000_000  # bytes: a hundred times those of the longest tha
 REPORT = "report.html"
 #: Axes along which x, y and z stand
 AXES = ("axis", "axis3")
+#: Reads results.h5, in so much time of the processor [s] where the file is small
+READER, SECONDS = "extrados.schema.hdf5", 5
 #: What an array says of itself, in the order of Array's fields
 MARKS = ("unit", "about", "series")
 
@@ -499,53 +501,63 @@ def _check_shape(summary: Any) -> None:
         ) from None
 
 
-def _on_disk(path: Path, name: str, length: int, dtype: np.dtype) -> Streamed:
+def _on_disk(path: Path, group: str, title: str, length: int, dtype: np.dtype) -> Streamed:
     """An array of results.h5 that is read when it is asked for."""
 
     def pieces() -> Iterator[np.ndarray]:
-        import h5py
-
-        with h5py.File(path, "r") as file:
-            for first in range(0, length, LARGE):
-                yield file[name][first : first + LARGE]
+        for first in range(0, length, LARGE):
+            end = min(first + LARGE, length)
+            try:
+                rows = read_contained(
+                    f"{READER}:parse_rows", path, ["h5py"], group=group, title=title, first=first, end=end
+                )
+            except Unreadable as error:
+                raise StoreError(f"{path}: cannot be read: {error}") from None
+            if rows.shape != (end - first,) or rows.dtype != dtype:
+                raise StoreError(f"{path}: '{title}' was changed since the folder was read")
+            yield rows
 
     return Streamed(length, dtype, pieces)
 
 
-def read(folder: str | Path) -> Stored:
-    """Read a run's folder; StoreError where it is damaged."""
-    import h5py
+def _array(path: Path, group: str, title: str, found: dict[str, Any]) -> Array:
+    """An array as `parse_arrays` found it."""
+    data = found.get("data")
+    if data is None:
+        data = _on_disk(path, group, title, int(found["length"]), np.dtype(str(found["dtype"])))
+    elif isinstance(data, list):
+        data = np.array([str(text) for text in data], dtype=object).reshape(found["shape"])
+    dims, marks = (tuple(str(text) for text in found[key]) for key in ("dims", "marks"))
+    if len(dims) != data.ndim:
+        raise ValueError(f"'{title}' has {data.ndim} axes, and names of {len(dims)}")
+    return Array(data, dims, *marks)
 
+
+def read(folder: str | Path) -> Stored:
+    """Read a run's folder; StoreError where it is damaged. A process of its own reads results.h5, which may be another's."""
     folder = Path(folder)
+    place = folder / STORE
     try:
         summary = json.loads(files.read(SUMMARY, LARGEST_SUMMARY, folder).text())
         _check_shape(summary)
         if files.sum_of(STORE, folder) != summary["files"].get(STORE):
-            raise StoreError(f"{folder / STORE}: does not match its checksum in {SUMMARY}; the file is damaged")
-        small = (folder / STORE).stat().st_size <= SMALL
-        content = io.BytesIO(files.read(STORE, None, folder).content) if small else folder / STORE
-        arrays: dict[str, dict[str, Array]] = {}
-        with h5py.File(content, "r") as file:
-            for name, group in file.items():
-                arrays[name] = {}
-                for title, store in group.items():
-                    if store is None or lies_elsewhere(store, file):
-                        raise StoreError(
-                            f"{folder / STORE}: '{title}' does not lie in the file whole; extrados wrote no such one"
-                        )
-                    if "unit" not in store.attrs:
-                        continue
-                    if not small and store.ndim == 1 and len(store) > LARGE and store.dtype.kind in "iuf":
-                        data = _on_disk(folder / STORE, store.name, len(store), store.dtype)
-                    else:
-                        data = store.asstr()[()] if h5py.check_string_dtype(store.dtype) else store[()]
-                    dims = tuple(title if not len(d) else d[0].name.rsplit("/", 1)[1] for d in store.dims)
-                    arrays[name][title] = Array(data, dims, *(store.attrs.get(mark, "") for mark in MARKS))
+            raise StoreError(f"{place}: does not match its checksum in {SUMMARY}; the file is damaged")
+        small = place.stat().st_size <= SMALL
+        found = read_contained(
+            f"{READER}:parse_arrays", files.read(STORE, None, folder).content if small else place.absolute(), ["h5py"],
+            SECONDS, marks=MARKS, long=None if small else LARGE,
+        )  # fmt: skip
+        arrays = {
+            name: {title: _array(place.absolute(), name, title, one) for title, one in group.items()}
+            for name, group in found.items()
+        }
         if untold := set(arrays) - {row["name"] for row in summary["analyses"]}:
-            raise StoreError(f"{folder / STORE}: holds '{min(untold)}', of which {SUMMARY} says nothing")
+            raise StoreError(f"{place}: holds '{min(untold)}', of which {SUMMARY} says nothing")
         head = {key: value for key, value in summary.items() if key != "analyses"}
         return Stored(folder, partial(dict, head), summary["analyses"], arrays)
     except files.BadFile as error:
         raise StoreError(f"{error}; {folder} holds no results of extrados") from None
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+    except Unreadable as error:
+        raise StoreError(f"{place}: {error}") from None
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
         raise StoreError(f"{folder}: results cannot be read: {error}") from None

@@ -4,13 +4,13 @@ import csv
 import io
 import os
 import tempfile
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from extrados.analyses.context import Context
+from extrados.analyses.context import Context, default_threads
 from extrados.analyses.left_out import left_out
 from extrados.analyses.needs import as_shell, complaints, stones_of
 from extrados.decks.reader import Deck
@@ -40,7 +40,8 @@ class Checked:
     """complaints: why the deck would be refused; ignored: what it says that no analysis uses, or not all; remarks and
     notes on its geometry; the list of places, the refused
     first, then the open, then those that the tolerance closes; inspection: None where it is no survey; solids: what has
-    no plane section, or is asked for in a direction; plan: the mesh of a building on a plan."""
+    no plane section, or is asked for in a direction; plan: the mesh of a building on a plan;
+    foretold: runs, memory and time of long analyses."""
 
     complaints: list[str] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
@@ -50,12 +51,14 @@ class Checked:
     solids: "SolidAssembly | None" = None
     plan: "ShellMesh | None" = None
     ignored: list[str] = field(default_factory=list)
+    foretold: list[str] = field(default_factory=list)
 
 
 def check_building(deck: Deck) -> Checked:
     """Make the building as the analyses will, and whatever else they need, without computing anything."""
     inspection, found = None, []
-    context = Context(deck)
+    foretold: list[str] = []
+    context = Context(deck, default_threads(), tell=foretold.append, out=deck.default_out)
     try:
         if deck.structure is not None:
             inspection = deck.structure.inspection(deck.folder)
@@ -68,12 +71,12 @@ def check_building(deck: Deck) -> Checked:
             found += complaints(context, options, building)
     found = list(dict.fromkeys(found))
     solids, plan = (None, None) if found else _in_space(deck)
-    ignored = [remark.text for remark in left_out(deck)]
+    checked = Checked(found, plan.warnings if plan else [], plan=plan)
     if solids is not None:
-        return Checked(remarks=list(solids.remarks), notes=list(solids.notes), solids=solids, ignored=ignored)
-    if inspection is None:
-        return Checked(found, plan.warnings if plan else [], plan=plan, ignored=ignored)
-    return Checked(found, inspection.remarks(), inspection.notes(), _places(inspection), inspection, ignored=ignored)
+        checked = Checked(remarks=list(solids.remarks), notes=list(solids.notes), solids=solids)
+    elif inspection is not None:
+        checked = Checked(found, inspection.remarks(), inspection.notes(), _places(inspection), inspection)
+    return replace(checked, ignored=[remark.text for remark in left_out(deck)], foretold=foretold)
 
 
 def _in_space(deck: Deck) -> "tuple[SolidAssembly | None, ShellMesh | None]":

@@ -2,22 +2,30 @@
 
 The process gets the content and gives back values and arrays, which are checked for their size; it opens few files, writes none,
 and has limits of memory and of the processor's time. What it raises as Unreadable is raised here.
+
+Python and the libraries take 0.1 s to load. One process, the server, loads them once and forks itself for each file. Per file:
+
+    this process  --  a socket  --  the watcher, which ends the reader  --  the reader, which has the limits
 """
 
+import atexit
+import contextlib
 import importlib
 import io
 import json
 import os
 import resource
+import select
 import signal
+import socket
 import struct
 import subprocess
-import sys
 import tempfile
 import threading
-from collections.abc import Callable, Iterator
+import time
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import IO, Any, BinaryIO
+from typing import Any
 
 import numpy as np
 
@@ -28,10 +36,14 @@ ROOM, ROOM_PER_BYTE = 1_000_000_000, 12
 SECONDS, SECONDS_PER_BYTE = 30, 1e-6
 #: A reader that has not ended after so many times its time of the processor waits for something
 PATIENCE = 20
-LARGEST = 2_000_000_000  # bytes that a reader may give
+LARGEST = 2_000_000_000  # bytes that a reader may give of a small file
 FILES = 4  # that are open at a time: numpy and HDF5 open one twice
 ARRAY = "\0array"  # the key under which an array's number stands; no text of a file begins so
 TUPLE = "\0tuple"
+_LENGTH, _CODE = (
+    struct.Struct("<Q"),
+    struct.Struct("<i"),
+)  # of the request before it; of the reader's end after its answer
 
 
 class Unreadable(Exception):
@@ -42,50 +54,49 @@ class Unreadable(Exception):
         self.at = at
 
 
-def read_contained(reader: str, source: bytes | Path, **options: Any) -> Any:
+def read_contained(
+    reader: str, source: bytes | Path, libraries: Sequence[str] = (), most_seconds: int | None = None, **options: Any
+) -> Any:
     """What a function of this package, "module:function", finds in the content of a file; Unreadable says why it finds nothing.
 
     The function is given the content, or the path where that is given, and the options; it returns numbers, texts, arrays, and
-    lists, tuples and dictionaries of them.
+    lists, tuples and dictionaries of them. libraries: what it imports, loaded once for all files. most_seconds: time of the
+    processor for a small file, default SECONDS.
     """
     content = source if isinstance(source, bytes) else b""
     size = len(content) if isinstance(source, bytes) else source.stat().st_size
-    room, seconds = ROOM + ROOM_PER_BYTE * size, SECONDS + int(SECONDS_PER_BYTE * size)
+    room, most = ROOM + ROOM_PER_BYTE * size, LARGEST + size
+    seconds = (most_seconds or SECONDS) + int(SECONDS_PER_BYTE * size)
     path = None if isinstance(source, bytes) else str(source)
-    given = json.dumps({"reader": reader, "path": path, "options": options, "room": room, "seconds": seconds})
+    given = {
+        "reader": reader, "path": path, "options": options, "room": room, "seconds": seconds, "libraries": list(libraries)
+    }  # fmt: skip
+    words = json.dumps(given).encode()
     with tempfile.TemporaryFile() as file:  # a pipe of an unread content would block
-        file.write(content)
-        file.seek(0)
-        child = subprocess.Popen(
-            python_command("extrados.schema.contained", given), stdin=file, stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL, env=environment(OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1"),
-        )  # fmt: skip
-    assert child.stdout is not None
-    late = threading.Timer(PATIENCE * seconds, child.kill)
-    late.daemon = True
-    late.start()
-    try:
-        answer = b"".join(_pieces(child.stdout))
-    finally:
-        late.cancel()
-        child.stdout.close()  # a reader that would give more ends by that
-        if sys.exc_info()[0] is not None:
-            child.kill()
-        code = child.wait()
-    if len(answer) > LARGEST:
-        raise Unreadable(f"gives more than {LARGEST / 1e6:.0f} MB of numbers")
+        file.writelines((_LENGTH.pack(len(words)), words, content))
+        file.flush()
+        found, in_time = _server.answer(file.fileno(), most, PATIENCE * seconds)
+        if not found and in_time:  # the server was killed
+            _server.end()
+            found, _ = _server.answer(file.fileno(), most, PATIENCE * seconds)
+    if len(found) > most + _CODE.size:
+        raise Unreadable(f"gives more than {most / 1e6:.0f} MB of numbers")
+    answer, end = found[: -_CODE.size], found[-_CODE.size :]
     if not answer:
-        raise Unreadable(_reason(code, room, seconds))
-    found = decode(answer)
-    if "refused" in found:
-        raise Unreadable(found["refused"], tuple(found["at"]))
-    return found["value"]
+        raise Unreadable(_reason(_CODE.unpack(end)[0] if end else -signal.SIGKILL, room, seconds))
+    decoded = decode(answer)
+    if "refused" in decoded:
+        raise Unreadable(decoded["refused"], tuple(decoded["at"]))
+    return decoded["value"]
 
 
-def _pieces(stream: IO[bytes]) -> Iterator[bytes]:
-    """What comes from a stream, up to LARGEST bytes and a piece."""
+def _pieces(stream: socket.socket, most: int, until: float) -> Iterator[bytes]:
+    """What comes from a socket until its end, up to `most` bytes and a piece; TimeoutError at a time of the monotonic clock."""
     size = 0
-    while size <= LARGEST and (piece := stream.read(1 << 20)):
+    while size <= most + _CODE.size:
+        stream.settimeout(max(until - time.monotonic(), 0.01))
+        if not (piece := stream.recv(1 << 20)):
+            return
         size += len(piece)
         yield piece
 
@@ -96,6 +107,63 @@ def _reason(code: int, room: int, seconds: int) -> str:
     if code == -signal.SIGKILL:
         return f"cannot be read with {room / 1e6:.0f} MB of memory in the time that is left to it"
     return f"cannot be read: its reader ended with code {code}"
+
+
+class _Server:
+    """The server of this process: begun when the first file is read, ended with this process, however that ends."""
+
+    def __init__(self) -> None:
+        self.lock = threading.Lock()
+        self.running: tuple[subprocess.Popen[bytes], socket.socket] | None = None
+
+    def answer(self, file: int, most: int, patience: float) -> tuple[bytes, bool]:
+        """The answer to the request in a file, up to `most` bytes and a piece, and whether it came within `patience` [s];
+        empty where the server was killed."""
+        ours, theirs = socket.socketpair()
+        with theirs, self.lock:
+            self.running = self.running or self._begun()
+            with contextlib.suppress(OSError):  # it was killed: nothing will come
+                socket.send_fds(self.running[1], [b"?"], [file, theirs.fileno()])
+        with ours:  # a reader whose answer nobody reads any more is ended by its watcher
+            try:
+                return b"".join(_pieces(ours, most, time.monotonic() + patience)), True
+            except TimeoutError:
+                return b"", False
+
+    @staticmethod
+    def _begun() -> tuple["subprocess.Popen[bytes]", socket.socket]:
+        ours, theirs = socket.socketpair()
+        with theirs:
+            process = subprocess.Popen(
+                python_command("extrados.schema.contained"), stdin=theirs.fileno(), stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL, env=environment(OPENBLAS_NUM_THREADS="1", OMP_NUM_THREADS="1"),
+                start_new_session=True,  # Ctrl-C is for this process, whose sockets end the others
+            )  # fmt: skip
+        return process, ours
+
+    def end(self) -> None:
+        """End the server; the next file begins another."""
+        with self.lock:
+            running, self.running = self.running, None
+        if running is not None:
+            process, asks = running
+            asks.close()
+            process.wait()
+
+    def forget(self) -> None:
+        """In a fork of this process: its server is that of the parent."""
+        self.lock = threading.Lock()
+        if self.running is not None:
+            process, asks = self.running
+            self.running = None
+            asks.close()
+            process.returncode = 0  # whose end is none of ours
+
+
+_server = _Server()
+end_server = _server.end
+atexit.register(end_server)
+os.register_at_fork(after_in_child=_server.forget)
 
 
 def encode(value: Any) -> bytes:
@@ -144,7 +212,7 @@ def decode(data: bytes) -> Any:
             return one
 
         return whole(json.loads(data[4 : 4 + length]))
-    except (ValueError, struct.error, EOFError, IndexError, KeyError, TypeError, RecursionError) as error:
+    except (ValueError, struct.error, EOFError, IndexError, KeyError, TypeError, RecursionError, MemoryError) as error:
         raise Unreadable(f"its reader gave damaged output: {error}") from None
 
 
@@ -153,14 +221,15 @@ def limit_process(room: int, seconds: int) -> None:
     time and writes none."""
     with open("/proc/self/statm", encoding="ascii") as file:
         now = int(file.read().split()[0]) * resource.getpagesize()
-    lowest = os.dup(0)
-    os.close(lowest)
+    numbers = [os.dup(0) for _ in range(FILES)]
+    for number in numbers:
+        os.close(number)
     for what, most in (
         (resource.RLIMIT_AS, now + room),
         (resource.RLIMIT_CPU, seconds + 1),
         (resource.RLIMIT_FSIZE, 0),
         (resource.RLIMIT_CORE, 0),
-        (resource.RLIMIT_NOFILE, lowest + FILES),
+        (resource.RLIMIT_NOFILE, max(numbers) + 1),
         (resource.RLIMIT_NPROC, 0),
     ):
         hard = resource.getrlimit(what)[1]
@@ -169,26 +238,72 @@ def limit_process(room: int, seconds: int) -> None:
         resource.setrlimit(what, (max(most - 1, 1) if what == resource.RLIMIT_CPU else most, most))
 
 
-def main() -> None:
-    """The process that reads: the content from its standard input, what it finds to its standard output."""
-    answer: BinaryIO = os.fdopen(os.dup(1), "wb")
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # libraries print
-    given = json.loads(sys.argv[1])
+def serve() -> None:
+    """The server: it forks a watcher for every file whose number comes with a socket for the answer."""
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for watchers
+    asks = socket.socket(fileno=os.dup(0))
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    while True:
+        question, numbers, _, _ = socket.recv_fds(asks, 1, 2)
+        if not question:
+            os._exit(0)
+        file, answer = numbers
+        (length,) = _LENGTH.unpack(os.pread(file, _LENGTH.size, 0))
+        given = json.loads(os.pread(file, length, _LENGTH.size))
+        os.lseek(file, _LENGTH.size + length, os.SEEK_SET)
+        for name in (given["reader"].partition(":")[0], *given["libraries"]):
+            with contextlib.suppress(Exception):  # the reader will find the same, and say so
+                importlib.import_module(name)
+        with contextlib.suppress(OSError):  # no memory for another process: the answer ends without a word
+            if os.fork() == 0:
+                asks.close()
+                _watch(given, file, answer)
+        os.close(file)
+        os.close(answer)
+
+
+def _watch(given: dict[str, Any], file: int, answer: int) -> None:
+    """The watcher: it tells how the reader ended, and ends it where nobody waits for its answer."""
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    life, held = os.pipe()
+    reader = os.fork()
+    if reader == 0:
+        code = 1
+        try:
+            os.close(life)
+            _read(given, file, answer)
+            code = 0
+        finally:
+            os._exit(code)
+    os.close(held)
+    ready, _, _ = select.select([life, answer], [], [])
+    if life not in ready:
+        os.kill(reader, signal.SIGKILL)
+    code = os.waitstatus_to_exitcode(os.waitpid(reader, 0)[1])
+    with contextlib.suppress(OSError):
+        os.write(answer, _CODE.pack(code))
+    os._exit(0)
+
+
+def _read(given: dict[str, Any], file: int, answer: int) -> None:
+    """The reader: the content from a file, what it finds to a socket."""
     module, _, name = given["reader"].partition(":")
     reader: Callable[..., Any] = getattr(importlib.import_module(module), name)
-    content = sys.stdin.buffer.read() if given["path"] is None else given["path"]
-    limit_process(given["room"], given["seconds"])
-    try:
-        found: dict[str, Any] = {"value": reader(content, **given["options"])}
-        answer.write(encode(found))
-    except Unreadable as error:
-        answer.write(encode({"refused": str(error), "at": list(error.at)}))
-    except MemoryError:
-        answer.write(encode({"refused": f"takes more than {given['room'] / 1e6:.0f} MB to be read", "at": []}))
-    answer.close()
+    with os.fdopen(file, "rb") as stream, os.fdopen(answer, "wb") as out:
+        content = stream.read() if given["path"] is None else given["path"]
+        limit_process(given["room"], given["seconds"])
+        try:
+            found: dict[str, Any] = {"value": reader(content, **given["options"])}
+            out.write(encode(found))
+        except Unreadable as error:
+            out.write(encode({"refused": str(error), "at": list(error.at)}))
+        except MemoryError:
+            out.write(encode({"refused": f"takes more than {given['room'] / 1e6:.0f} MB to be read", "at": []}))
+        except Exception as error:  # of a library, at a file that it does not foresee
+            out.write(encode({"refused": f"cannot be read: {type(error).__name__}: {error}", "at": []}))
 
 
 if __name__ == "__main__":
     from extrados.schema import contained  # whose Unreadable is that of the readers
 
-    contained.main()
+    contained.serve()

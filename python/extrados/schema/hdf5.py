@@ -1,4 +1,7 @@
-"""HDF5 files of others: what of them lies in other files."""
+"""HDF5 files of others: what of them lies in other files, and the arrays of a results file.
+
+What is called `parse_...` is run by the process that reads (`contained`).
+"""
 
 from typing import Any
 
@@ -45,3 +48,71 @@ def refuse_elsewhere(path: str) -> None:
             look(file)
     except (OSError, RuntimeError, KeyError, ValueError) as error:
         raise Unreadable(f"is a damaged HDF5 file: {error}") from None
+
+
+def parse_arrays(source: bytes | str, marks: list[str], long: int | None) -> dict[str, dict[str, dict[str, Any]]]:
+    """The arrays of the groups of a results file by their names: those with the first of the attributes `marks`.
+
+    Each is its numbers as `data`, or its texts with their `shape`; the names of its axes, `dims`; its attributes. Of an array
+    of numbers along one axis longer than `long`, `dtype` and `length` stand for the numbers, see `parse_rows`.
+    """
+    with _opened(source) as file:
+        return {
+            name: {
+                title: _array(store, file, title, marks, long)
+                for title, store in group.items()
+                if _whole(store, file, title) and marks[0] in store.attrs
+            }
+            for name, group in file.items()
+        }
+
+
+def parse_rows(path: str, group: str, title: str, first: int, end: int) -> Any:
+    """Rows first .. end - 1 of an array of a group."""
+    with _opened(path) as file:
+        store = file[group][title]
+        _whole(store, file, title)
+        return store[first:end]
+
+
+class _opened:
+    """An HDF5 file; whatever its library raises within the block is that the file cannot be read."""
+
+    def __init__(self, source: bytes | str):
+        self.source = source
+
+    def __enter__(self) -> Any:
+        import h5py
+
+        try:
+            inside = isinstance(self.source, bytes)
+            self.file = h5py.File.in_memory(self.source) if inside else h5py.File(self.source, "r")
+        except Exception as error:
+            self.__exit__(None, error, None)
+        return self.file
+
+    def __exit__(self, kind: Any, error: BaseException | None, trace: Any) -> None:
+        if isinstance(error, Exception) and not isinstance(error, Unreadable | MemoryError):
+            raise Unreadable(f"{type(error).__name__ if isinstance(error, KeyError) else ''} {error}".strip()) from None
+
+
+def _whole(store: Any, file: Any, title: str) -> bool:
+    """Unreadable where a dataset, or what should be one, does not lie in the file whole."""
+    if store is None or lies_elsewhere(store, file):
+        raise Unreadable(f"'{title}' does not lie in the file whole; extrados wrote no such one")
+    return True
+
+
+def _array(store: Any, file: Any, title: str, marks: list[str], long: int | None) -> dict[str, Any]:
+    import h5py
+
+    dims = [title if not len(d) else d[0].name.rsplit("/", 1)[1] for d in store.dims]
+    said = {"dims": dims, "marks": [str(store.attrs.get(mark, "")) for mark in marks]}
+    if h5py.check_string_dtype(store.dtype):
+        data = store.asstr()[()]
+        return {**said, "data": [str(text) for text in data.ravel()], "shape": list(data.shape)}
+    if store.dtype.kind not in "iufbc":
+        raise Unreadable(f"'{title}' holds {store.dtype}; expected numbers or text")
+    if long is not None and store.ndim == 1 and len(store) > long and store.dtype.kind in "iuf":
+        return {**said, "length": len(store), "dtype": store.dtype.str}
+    return {**said, "data": store[()]}

@@ -1,10 +1,11 @@
 """Figures and the report of a stored run: one self-contained HTML page, and on A4 paper as PDF."""
 
+import contextlib
 import os
 import sys
 import tempfile
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
@@ -37,11 +38,25 @@ def draw(run: Stored, folder: Path) -> dict[str, Figures]:
 def _draw_one(run: Stored, name: str, figures: Callable[..., Figures], folder: Path) -> Figures:
     """The figures of one analysis."""
     try:
-        return figures(run, name, folder)
+        with _stored(run.folder, f"the figures of '{name}'"):
+            return figures(run, name, folder)
     except OSError as error:
         raise StoreError(f"{run.folder}: figures could not be written: {reason(error)}") from None
-    except KeyError as error:
-        raise StoreError(f"{run.folder}: the results are damaged: {name}: {error.args[0]}") from None
+
+
+@contextlib.contextmanager
+def _stored(folder: Path | None, what: str) -> Iterator[None]:
+    """StoreError where what is made of stored results fails: they may have been changed, which no checksum shows."""
+    try:
+        yield
+    except (StoreError, Lost, OSError, ImportError, MemoryError, SystemError):  # the file system, or memory that lacks
+        raise
+    except Exception as error:
+        said = error.args[0] if error.args else error
+        raise StoreError(
+            f"{folder}: {what} cannot be made, the results are damaged: {type(error).__name__}: {said}; "
+            "if they are unchanged since extrados wrote them, this is a fault of extrados"
+        ) from error
 
 
 def _drawn(tasks: list[tuple]) -> list[Figures]:
@@ -74,11 +89,14 @@ def write_report(folder: Path, printed: bool | None = None) -> tuple[Path, dict[
         with tempfile.TemporaryDirectory(prefix=f".{folder.name}.drawing-", dir=within) as place:
             scratch = Path(place)
             drawn = draw(run, scratch)
-            building = draw_building(run, scratch)
-            document = told(run, drawn, building, _written_on(folder))
-            (scratch / REPORT).write_text(html.page(document, scratch), encoding="utf-8", errors="backslashreplace")
+            with _stored(folder, "the report"):
+                building = draw_building(run, scratch)
+                document = told(run, drawn, building, _written_on(folder))
+                page = html.page(document, scratch)
+                paper = typeset.pdf(document, scratch) if printed else b""
+            (scratch / REPORT).write_text(page, encoding="utf-8", errors="backslashreplace")
             if printed:
-                (scratch / PRINTED).write_bytes(typeset.pdf(document, scratch))
+                (scratch / PRINTED).write_bytes(paper)
             with written.alone(within):
                 ours = (REPORT, PRINTED) if printed else (REPORT,)
                 names = written.put(scratch, folder, lambda name: name in ours or name.startswith("figures/"))

@@ -7,7 +7,7 @@ from extrados import room
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import tables
 from extrados.analyses.dem.solid_model import RIGID, refusals, refuse_mortar, refuse_stones
-from extrados.analyses.needs import SHARE, Need, refuse_memory, stones_of
+from extrados.analyses.needs import SHARE, Need, stones_of
 from extrados.model.errors import BadGeometry, Key
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.solids.assembly import SolidAssembly
@@ -52,10 +52,13 @@ def _refuse_long(options: tables.Dem, blocks: int, joints: int) -> None:
     if options.end_time is None:
         return
     values = VALUES_OF_BLOCK * blocks + VALUES_OF_JOINT * joints
-    needed = 8.0 * values * options.end_time / options.output_step
-    least = options.output_step * needed / (SHARE * room.total())
-    refuse_memory(needed, f"the history of {options.end_time:g} s in steps of {options.output_step:g} s",
-                  f"the least output_step that fits is {least:.2g} s", ("analysis", "output_step"))  # fmt: skip
+    most = SHARE * room.total() / (8.0 * values)
+    if options.end_time / options.output_step > most:
+        raise Refused(
+            f"a history of {options.end_time:g} s in steps of {options.output_step:g} s is too long to store; "
+            f"the least output_step that fits is {options.end_time / most:.2g} s",
+            ("analysis", "output_step"),
+        )
 
 
 def _rigid(options: tables.DemTable) -> bool:

@@ -13,7 +13,7 @@ from extrados.analyses.rocking.conditions import ROWS, Counted, astray_of, of_ma
 from extrados.analyses.rocking.doubts import DIFFER
 from extrados.analyses.statistics import cloud
 from extrados.analyses.statistics.annual import hazard_curve
-from extrados.analyses.statistics.levels import INTENSITIES, arranged, describe
+from extrados.analyses.statistics.levels import INTENSITIES, arranged, describe, shares_at
 from extrados.analyses.statistics.sensitivity import sensitivity, spoken
 from extrados.analyses.statistics.summaries import median, shares, shares_of
 from extrados.analyses.statistics.tables import Fragility
@@ -136,14 +136,13 @@ def run(context: Context, options: Fragility) -> Result:
     base = rocker_of(context, options)
     result = Result("fragility")
     if options.durations is None:
-        job, count, motions = _job(context, options, base, None)
-        large = options.levels is None and not options.cloud
-        swept = sweep(context, "fragility", job, count, "fragility", large=large)
+        job, count, motions = job_of(context, options, base, None)
+        swept = sweep(context, "fragility", job, count, "fragility", large=not options.cloud)
         _describe(context, options, base, job, swept, motions, result)
     else:
         parts = []
         for duration in options.durations:
-            job, count, motions = _job(context, options, base, duration)
+            job, count, motions = job_of(context, options, base, duration)
             swept = sweep(context, "fragility", job, count, f"fragility, {duration:g} s")
             parts.append((duration, swept))
             if not swept.complete:
@@ -152,7 +151,8 @@ def run(context: Context, options: Fragility) -> Result:
     return result
 
 
-def _job(context: Context, options: Fragility, base: Rocker, duration: float | None) -> tuple[EnsembleJob, int, int]:
+def job_of(context: Context, options: Fragility, base: Rocker, duration: float | None) -> tuple[EnsembleJob, int, int]:
+    """The ensemble of a fragility, the number of its runs, the number of its motions or buildings."""
     source, available = source_of(context, options.seed, duration)
     motions = options.count or available or 1000
     made = (
@@ -201,6 +201,9 @@ def _describe(
     if not swept.finished:
         result.answer = "No member is finished."
         return
+    if swept.interrupted and swept.on_disk and job.levels is not None:
+        result.answer = f"{swept.finished} of {swept.count} runs are finished and kept. No result is made of so many before the end."
+        return
     initial = base.initial_ratio
     per_motion = 1 if job.levels is None else len(job.levels)
     failed = sum(int((rows["outcome"] == FAILED).sum()) for _, rows in swept.pieces("outcome"))
@@ -219,14 +222,9 @@ def _describe(
     _tables(job, swept, per_motion, options, result)
     hazard = None if options.hazard is None else (hazard_curve(options.hazard, context.deck.folder), options.hazard)
     if job.levels is not None:
-        seen = arranged(job.levels, swept.members, swept.arrays)
-        with np.errstate(invalid="ignore"):
-            for name, key in (("slips", "sliding_share"), ("strays", "hinges_elsewhere_share")):
-                where = swept.members % len(job.levels)
-                good = swept["outcome"] != FAILED
-                order = np.argsort(job.levels, kind="stable")
-                hits, runs = (np.bincount(where[good], weight, len(job.levels)) for weight in (swept[name][good], None))
-                r[key] = (hits / runs)[order]
+        seen = arranged(job.levels, swept)
+        found = shares_at(job.levels, swept, "slips", "strays")
+        r |= {"sliding_share": found["slips"], "hinges_elsewhere_share": found["strays"]}
         r |= describe(
             seen,
             options.intensity,
@@ -234,7 +232,7 @@ def _describe(
             initial,
             hazard,
             options.confidence,
-            options.bootstrap,
+            0 if swept.interrupted else options.bootstrap,
             options.seed or 0,
             result,
         )

@@ -1,10 +1,12 @@
 """Runs of motions scaled to levels of an intensity: counts and quantiles at each level, and the curves over them."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from extrados.analyses.batches import Swept
 from extrados.analyses.statistics import likelihood
 from extrados.analyses.statistics.annual import annual_collapse, spoken
 from extrados.analyses.statistics.likelihood import Lognormal, NoFit
@@ -39,12 +41,12 @@ class Stripes:
     ratio: np.ndarray
     pga: np.ndarray
 
-    @property
+    @cached_property
     def valid(self) -> np.ndarray:
         """Which runs came to an end (motions, levels)."""
         return self.outcome != FAILED
 
-    @property
+    @cached_property
     def over(self) -> np.ndarray:
         """Which runs collapsed (motions, levels)."""
         return self.outcome == COLLAPSE
@@ -59,22 +61,35 @@ class Stripes:
         return found
 
 
-def arranged(levels: np.ndarray, members: np.ndarray, rows: dict[str, np.ndarray]) -> Stripes:
+def arranged(levels: np.ndarray, swept: Swept) -> Stripes:
     """Stripes of the members of an ensemble, motion by motion with all their levels; missing ones of a motion count as failed.
 
     Motions without any finished member take no room: of an interrupted run of many motions few are there.
     """
     order, n = np.argsort(levels, kind="stable"), len(levels)
-    motions, of_member = np.unique(members // n, return_inverse=True)
+    column = np.argsort(order)  # of a level among the ascending ones
+    motions = np.unique(np.concatenate([np.zeros(0, int), *(np.unique(m // n) for m, _ in swept.pieces("outcome"))]))
+    shape = (len(motions), n)
+    seen = Stripes(levels[order], np.full(shape, FAILED, np.int8), np.full(shape, np.nan), np.full(shape, np.nan))
+    for members, rows in swept.pieces("outcome", "peak_ratio", "pga"):
+        place = np.searchsorted(motions, members // n), column[members % n]
+        seen.outcome[place], seen.ratio[place], seen.pga[place] = rows["outcome"], rows["peak_ratio"], rows["pga"]
+    return seen
 
-    def grid(values: np.ndarray, missing: float) -> np.ndarray:
-        full = np.full((len(motions), n), missing, dtype=values.dtype)
-        full[of_member, members % n] = values
-        return full[:, order]
 
-    return Stripes(
-        levels[order], grid(rows["outcome"], FAILED), grid(rows["peak_ratio"], np.nan), grid(rows["pga"], np.nan)
-    )
+def shares_at(levels: np.ndarray, swept: Swept, *names: str) -> dict[str, np.ndarray]:
+    """Sum of rows of 0 and 1 over the number of runs with a result, at each level in ascending order."""
+    n = len(levels)
+    runs, hits = np.zeros(n), {name: np.zeros(n) for name in names}
+    for members, rows in swept.pieces("outcome", *names):
+        good = rows["outcome"] != FAILED
+        where = members[good] % n
+        runs += np.bincount(where, minlength=n)
+        for name in names:
+            hits[name] += np.bincount(where, rows[name][good], n)
+    order = np.argsort(levels, kind="stable")
+    with np.errstate(invalid="ignore"):
+        return {name: (found / runs)[order] for name, found in hits.items()}
 
 
 def describe(

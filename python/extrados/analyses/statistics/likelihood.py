@@ -228,9 +228,10 @@ def bootstrap(x: np.ndarray, over: np.ndarray, valid: np.ndarray, repeats: int, 
     random = np.random.default_rng(seed)
     n = len(over)
     hits, count = np.zeros((repeats, len(x))), np.zeros((repeats, len(x)))
-    over, valid = (over & valid).astype(float), valid.astype(float)
+    # single precision holds the counts of up to 2^24 motions exactly
+    over, valid = (over & valid).astype(np.float32), valid.astype(np.float32)
     for k in range(repeats):
-        weight = np.bincount(random.integers(0, n, n), minlength=n).astype(float)
+        weight = np.bincount(random.integers(0, n, n), minlength=n).astype(np.float32)
         hits[k], count[k] = weight @ over, weight @ valid
     seen = stripes(x, hits, count)
     used = seen.weight > 0.0

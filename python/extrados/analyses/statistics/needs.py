@@ -1,17 +1,22 @@
 """What statistics of rocking need of a deck: as many motions as are asked for, a hazard curve, uncertain values that its
 structure has."""
 
+import time
 from collections.abc import Iterator
 
 from extrados import room
+from extrados.analyses.batches import IN_MEMORY
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.needs import SHARE, Need, refuse_memory
 from extrados.analyses.rocking import needs as rocking
 from extrados.analyses.statistics import tables
 from extrados.views.building import Building
 
-#: Memory that a run at one level takes until its tables are written [bytes]; measured with 1e4 to 2e5 of them
-CELL = 900
+#: Memory that a run takes until its tables are written [bytes]: where all is kept in memory, and where rows lie on disk;
+#: bytes on disk of its rows in tables and results. Measured with 1e4 to 1e6 runs at 500 levels
+CELL, CELL_BESIDE_DISK, CELL_ON_DISK = 900, 60, 250
+#: So many runs are foretold; their time is that of so many motions before
+LONG, TRIED = 100_000, 4
 
 
 def needs(context: Context, options: rocking.tables.RockingTable) -> Iterator[Need]:
@@ -22,8 +27,7 @@ def needs(context: Context, options: rocking.tables.RockingTable) -> Iterator[Ne
     if not isinstance(options, tables.Fragility):
         return
     yield lambda: _refuse_motions(context, options)
-    if options.levels is not None:
-        yield lambda: _refuse_cells(context, options)
+    yield lambda: _foretell(context, options)
     hazard = options.hazard
     if hazard is not None:
         from extrados.analyses.statistics.annual import hazard_curve
@@ -47,15 +51,44 @@ def _refuse_of_spectra(building: Building) -> None:
         )
 
 
-def _refuse_cells(context: Context, options: tables.Fragility) -> None:
-    """Refused where a run at each level for each motion, or building, does not fit into memory."""
+def _foretell(context: Context, options: tables.Fragility) -> None:
+    """Say how many runs, how much memory and time a long analysis needs; Refused where they do not fit into memory."""
     from extrados.analyses.motion_source import how_many
 
-    assert options.levels is not None
-    count, levels = options.count or how_many(context) or 1000, len(options.levels)
-    most = int(SHARE * room.total() / CELL / levels)
-    refuse_memory(CELL * count * levels, f"{count} motions or buildings at {levels} levels, {count * levels:.3g} runs,",
-                  f"at most {most} fit", ("analysis", "count" if options.count else "levels"))  # fmt: skip
+    count, levels = options.count or how_many(context) or 1000, len(options.levels or [0])
+    runs = count * levels * len(options.durations or [0])
+    if runs < LONG:
+        return
+    on_disk = context.out is not None and not options.cloud and options.durations is None and runs > IN_MEMORY
+    cell = CELL_BESIDE_DISK if on_disk else CELL
+    of = f"{count:,} motions or buildings" + (
+        f" at {levels} level{'s' if levels > 1 else ''}" if options.levels else ""
+    )
+    key = "count" if options.count or not options.levels else "levels"
+    refuse_memory(cell * runs, f"{of}, {runs:.3g} runs,", f"at most {int(SHARE * room.total() / cell * count / runs)} fit",
+                  ("analysis", key))  # fmt: skip
+    disk = f", {CELL_ON_DISK * runs / 1e9:.2g} GB of disk" if on_disk else ""
+    context.tell(
+        f"fragility: {of}, {runs:.3g} runs: about {cell * runs / 1e9:.2g} GB of memory{disk} and {_time_of(context, options, runs)}"
+    )
+
+
+def _time_of(context: Context, options: tables.Fragility, runs: int) -> str:
+    """The time of so many runs on this machine in words, by that of a few motions."""
+    from extrados.analyses.rocking.common import rocker_of
+    from extrados.analyses.statistics.fragility import job_of
+
+    few = options.model_copy(update={"count": TRIED})
+    base = rocker_of(context, options)
+    for _ in range(2):  # the first one loads what it needs
+        begin = time.perf_counter()
+        job, count, _ = job_of(context, few, base, None)
+        job.run(0, count, context.threads)
+        seconds = runs / count * (time.perf_counter() - begin)
+    for unit, size in (("days", 86400.0), ("h", 3600.0), ("min", 60.0)):
+        if seconds > 2.0 * size:
+            return f"{seconds / size:.2g} {unit}"
+    return f"{seconds:.2g} s"
 
 
 def _refuse_motions(context: Context, options: tables.Fragility) -> None:

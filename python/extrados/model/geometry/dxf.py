@@ -32,6 +32,7 @@ MOST_ENTITIES = 200_000
 MOST_LINES = 200_000
 MOST_VERTICES = 2_000_000  # of all lines, those of arcs and curves by their chords
 DEEPEST = 16  # blocks within blocks
+FARTHEST = 1e15  # of a coordinate, in units of the drawing: double precision tells no unit apart beyond
 NEAR = 0.1  # m: gaps of loose lines up to this are told
 
 
@@ -68,7 +69,7 @@ def read_dxf(
     name = file.path.name
     try:
         found = read_contained(
-            "extrados.model.geometry.dxf:parse_dxf", file.content, name=name, unit=unit, layers=layers,
+            "extrados.model.geometry.dxf:parse_dxf", file.content, ["ezdxf"], name=name, unit=unit, layers=layers,
             meaning={layer: asdict(one) for layer, one in (meaning or {}).items()}, join_tolerance=join_tolerance, sagitta=sagitta,
         )  # fmt: skip
     except Unreadable as error:
@@ -139,7 +140,7 @@ class _Hiding:
     def __call__(self, entity: Any, layer: str) -> str:
         """A word, empty where the entity on the layer is shown. A layer that is off hides no reference to a block, only what of the
         block lies on the layer itself."""
-        if entity.dxf.get("invisible", 0):
+        if _get(entity, "invisible", 0):
             return "invisible"
         why = self.layers.get(layer.upper(), "")
         if entity.dxftype() != "INSERT":
@@ -160,7 +161,7 @@ def _document(data: bytes, name: str) -> Any:
     try:
         head = dxf_stream_info(io.StringIO(data[:100_000].decode("latin-1")))
         return read(io.StringIO(data.decode(head.encoding, errors="surrogateescape"), newline=None))
-    except (DXFError, UnicodeError, LookupError, ValueError, OSError, StopIteration) as error:
+    except (DXFError, UnicodeError, LookupError, ValueError, ArithmeticError, OSError, StopIteration) as error:
         raise BadGeometry(f"{name}: is not a sound DXF file: {error or 'it ends too early'}") from None
 
 
@@ -210,12 +211,31 @@ def _entities(document: Any, name: str, hides: _Hiding) -> Iterator[tuple[Any, s
             raise BadGeometry(f"{name}: block '{entity.dxf.name}' lies within more than {DEEPEST} others, or in itself")
         if entity.dxf.name not in document.blocks:
             raise BadGeometry(f"{name}: layer '{layer}': a reference to block '{entity.dxf.name}', which is not there")
-        for one in entity.multi_insert() if entity.mcount > 1 else (entity,):
-            for part in one.virtual_entities():
-                yield from within(part, layer if part.dxf.layer == "0" else part.dxf.layer, depth + 1)
+        try:
+            placed = [
+                list(one.virtual_entities()) for one in (entity.multi_insert() if entity.mcount > 1 else (entity,))
+            ]
+        except MemoryError:
+            raise
+        except Exception as error:  # whatever ezdxf raises, at an axis of no length or a dimension without its parts
+            raise BadGeometry(
+                f"{name}: layer '{layer}': block '{entity.dxf.name}' cannot be put in its place: {error}"
+            ) from None
+        for parts in placed:
+            for part in parts:
+                yield from within(part, layer if _layer(part) == "0" else _layer(part), depth + 1)
 
     for entity in document.modelspace():
-        yield from within(entity, entity.dxf.layer, 1)
+        yield from within(entity, _layer(entity), 1)
+
+
+def _get(entity: Any, name: str, default: Any) -> Any:
+    """An attribute of an entity; those of unknown kinds have none."""
+    return entity.dxf.get(name, default) if entity.dxf.is_supported(name) else default
+
+
+def _layer(entity: Any) -> str:
+    return _get(entity, "layer", "0")
 
 
 def _take(entity: Any, layer: str, means: Layer, found: _Read, name: str, sagitta: float) -> None:
@@ -257,17 +277,18 @@ def _handle(entity: Any) -> str:
 def _flattened(entity: Any, kind: str, sagitta: float) -> np.ndarray:
     """Vertices (n, 2) of a line or curve, its chords within `sagitta` of it; BadGeometry where there would be too many, or
     a number is none. Arcs are followed as arcs: the Bezier curves of ezdxf's paths leave them by 0.3 mm a metre of radius."""
-    flat = kind in ("LWPOLYLINE", "POLYLINE")
     places: Iterable[Any]
-    if flat:
-        places = _polyline(entity, kind, sagitta)
-    elif kind == "LINE":
-        places = [entity.dxf.start, entity.dxf.end]
-    else:
-        _refuse_wide(entity, kind, sagitta)
-        places = entity.flattening(sagitta)
     try:
+        if kind in ("LWPOLYLINE", "POLYLINE"):
+            places = _polyline(entity, kind, sagitta)
+        elif kind == "LINE":
+            places = [entity.dxf.start, entity.dxf.end]
+        else:
+            _refuse_wide(entity, kind, sagitta)
+            places = entity.flattening(sagitta)
         found = [(p[0], p[1]) for p in itertools.islice(places, MOST_LINES + 1)]
+    except BadGeometry:
+        raise
     except (ArithmeticError, ValueError, IndexError, RecursionError) as error:  # of ezdxf, at a curve that is none
         raise BadGeometry(f"is no curve that can be followed: {error}") from None
     if len(found) > MOST_LINES:
@@ -275,6 +296,8 @@ def _flattened(entity: Any, kind: str, sagitta: float) -> np.ndarray:
     points = np.array(found).reshape(-1, 2)
     if not np.isfinite(points).all():
         raise BadGeometry("a coordinate is not a finite number")
+    if np.abs(points).max(initial=0.0) > FARTHEST:
+        raise BadGeometry(f"a coordinate is larger than {FARTHEST:.0e}")
     return points
 
 

@@ -44,7 +44,7 @@ def read_mesh_file(file: File) -> ForeignMesh:
         raise BadGeometry(f"{name}: the mesh lies in several files; save it as one")
     try:
         with file.copied() as copy:
-            found = read_contained("extrados.model.geometry.mesh_files:parse_mesh_file", copy)
+            found = read_contained("extrados.model.geometry.mesh_files:parse_mesh_file", copy, ["meshio"])
     except Unreadable as error:
         raise BadGeometry(f"{name}: is not a mesh that meshio reads: {error}; {EXPECTED}") from None
     return ForeignMesh(**{**found, "cells": [Cells(*cells) for cells in found["cells"]]})

@@ -22,7 +22,7 @@ def read(file: File) -> list[Record]:
     """One record per trace, without a unit: the deck says what the numbers are. A process of its own reads."""
     path = file.path
     try:
-        found = read_contained("extrados.motions.formats.seismology:parse", file.content)
+        found = read_contained("extrados.motions.formats.seismology:parse", file.content, ["obspy"])
     except Unreadable as error:
         raise RecordError(f"{path}: {error}") from None
     return [Record(path.stem, values, step, None, component=trace) for values, step, trace in found]
