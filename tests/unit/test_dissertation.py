@@ -46,7 +46,7 @@ def test_every_row_is_whole() -> None:
 def test_pictures_are_those_of_the_deck(deck: str) -> None:
     data = tomllib.loads((ROOT / "cases" / f"{deck}.toml").read_text(encoding="utf-8"))
     asked = data["analysis"] if isinstance(data["analysis"], list) else [data["analysis"]]
-    may, count = [], {}
+    may, count = ["building"], {}  # each run draws the structure
     for analysis in asked:
         kind = analysis["kind"]
         count[kind] = count.get(kind, 0) + 1
