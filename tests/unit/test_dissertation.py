@@ -24,7 +24,11 @@ DECKS = sorted({case for row in ALL for case, _ in redrawn_by(row[2])})
 def pictures(kind: str, name: str) -> list[str]:
     """Patterns of the names of the pictures that an analysis of this kind and name may have, from the source that draws them."""
     place = kinds.ANALYSES[kind].figures.split(":")[0].replace(".", "/")
-    sources = [ROOT / "python" / "extrados" / f"{place}.py", *(ROOT / "python/extrados/show/limit").glob("*.py")]
+    sources = [
+        ROOT / "python" / "extrados" / f"{place}.py",
+        *(ROOT / "python/extrados/show/limit").glob("*.py"),
+        ROOT / "python/extrados/show/solid_dem.py",
+    ]
     words = "".join(file.read_text(encoding="utf-8") for file in sources)
     found = [*re.findall(r'f"\{name\}([^"\s]*)"', words), ""]
     return [re.escape(name) + re.sub(r"\\?\{[^}]*\\?\}", r"(-minus|\\d+)?", end) for end in found]
