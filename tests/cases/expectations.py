@@ -8,6 +8,7 @@ values ("structure.thickness" = 0.12, "none" leaves one out). `slow = true` at t
   computed the number, from what and when.
 - thesis: the number or the statement is in the text of the dissertation. experiment: measured; `scatter` is that of the tests themselves
   (half the band or the standard deviation over the mean), or the words "one test".
+- A tolerance above 10 % of one of these four needs `wide`, the reason why so little is proven.
 - bound: `at_least` or `at_most` in place of a value: a one-sided statement of a source.
 - inferred: printed elsewhere, but sizes that the print does not give were chosen so that it comes out. calibration: a factor was fitted
   to it. regression: the program against itself; `why` says why there is no outside value. None of the three verifies anything.
@@ -44,7 +45,16 @@ class Row:
     change: tuple[tuple[str, Any], ...]
     note: str
     limits: tuple[float, float] | None = None  # of a bound
+    wide: str = ""  # why so much is allowed
     scatter: float | str = ""  # of the tests, of an experiment
+
+    @property
+    def loose(self) -> bool:
+        """Whether so much is allowed that the row proves little."""
+        return (
+            self.kind in PROOFS and not isinstance(self.value, str)
+            and LOOSE * abs(self.value) * (1.0 + 1e-9) < self.allowed and bool(self.value)
+        )  # fmt: skip
 
     @property
     def allowed(self) -> float:
@@ -73,7 +83,11 @@ class Case:
         return str(self.deck.relative_to(CASES).with_suffix(""))
 
 
-_KEYS = {"quantity", "value", "tolerance", "relative_tolerance", "kind", "source", "why", "change", "note"}
+#: Kinds of comparison, the strongest first; the others verify nothing, or only one side
+PROOFS = ("exact", "peer", "thesis", "experiment")
+#: Relative tolerance from which on a row must say why
+LOOSE = 0.10
+_KEYS = {"quantity", "value", "tolerance", "relative_tolerance", "kind", "source", "why", "change", "note", "wide"}
 _OF_KIND = {"bound": {"at_least", "at_most"}, "experiment": {"scatter"}}
 
 
@@ -99,10 +113,13 @@ def _row(row: dict[str, Any], path: Path) -> Row:
         raise ValueError(f"{path}: bad row {row}")
     limits = (row.get("at_least", -math.inf), row.get("at_most", math.inf)) if bound else None
     value = row["value"] if limits is None else " and ".join(f"{k.replace('_', ' ')} {row[k]:g}" for k in sorted(bound))
-    return Row(
+    found = Row(
         row["quantity"], value, row.get("relative_tolerance", row.get("tolerance", 0.0)), "relative_tolerance" in row,
-        kind, row[origin], tuple(sorted((k, _frozen(v)) for k, v in row.get("change", {}).items())), row.get("note", ""), limits, row.get("scatter", ""),
+        kind, row[origin], tuple(sorted((k, _frozen(v)) for k, v in row.get("change", {}).items())), row.get("note", ""), limits, row.get("wide", ""), row.get("scatter", ""),
     )  # fmt: skip
+    if found.loose != bool(found.wide):
+        raise ValueError(f"{path}: `wide` gives the reason of a tolerance above {LOOSE:.0%}, and of no other: {row}")
+    return found
 
 
 def load_cases() -> list[Case]:
