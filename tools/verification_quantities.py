@@ -59,7 +59,7 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
         r"pocket_begins",
         r"scaling_misfit",
     ),
-    "probability": (r"fragility\S*\.(?!mean_peak)", r"(?:median|probability)$"),
+    "probability": (r"fragility\S*\.(?!mean_peak)", r"(?:median|probability)$", r"share_of_starts"),
     "weight and other data": (r"weight_N", r"flanges", r"survey\.sections"),
     "capacity in acceleration": (
         r"collapse_acceleration",
@@ -82,7 +82,7 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
     "restitution": (r"restitution", r"rebound$"),
     "frequency and period": (r"frequency_parameter", r"period_s$"),
     "damping and stiffness of contacts": (r"damping_ratio", r"critical_beta", r"joint_stiffness"),
-    "time and number of impacts": (r"impact_times", r"impacts$", r"half_cycle", r"collapse_time"),
+    "time and number of impacts": (r"bounces$", r"airborne_time", r"impact_times", r"impacts$", r"half_cycle", r"collapse_time"),
     "rotation": (r"rotation_rad", r"peak_rotation_upper", r"critical_rotation", r"rotation_ratio"),
     "slip": (r"_slip_m$",),
     "outcome in words": (r"outcome$", r"\.verdict$"),

@@ -1,11 +1,20 @@
 """Cases and what is expected of them: NAME.toml beside NAME.expect.toml.
 
-Each [[expect]] row has quantity ("rocking.impact_times_s[0]"), value (null cannot be written in TOML: use
-"none"), tolerance (absolute) or relative_tolerance, kind (exact | thesis | experiment | peer | calibration | regression),
-source, and optionally `note` and `change`, deck keys with other values ("structure.thickness" = 0.12, "none" leaves one out). A
-regression compares the program with itself and has no source: `why` says why there is no outside value. `slow = true` at the top moves a case to `make verify`.
+Each [[expect]] row has quantity ("rocking.impact_times_s[0]"; a key with a dot is quoted: "share['0.5']"), value (null cannot be written in
+TOML: use "none"), tolerance (absolute) or relative_tolerance, kind, source, and optionally `note` and `change`, deck keys with other
+values ("structure.thickness" = 0.12, "none" leaves one out). `slow = true` at the top moves a case to `make verify`. Kinds:
+
+- exact: a closed form, or a law that holds exactly. peer: another program, or an unlike method of this one; cases/origins.toml tells who
+  computed the number, from what and when.
+- thesis: the number or the statement is in the text of the dissertation. experiment: measured; `scatter` is that of the tests themselves
+  (half the band or the standard deviation over the mean), or the words "one test".
+- A tolerance above 10 % of one of these four needs `wide`, the reason why so little is proven.
+- bound: `at_least` or `at_most` in place of a value: a one-sided statement of a source.
+- inferred: printed elsewhere, but sizes that the print does not give were chosen so that it comes out. calibration: a factor was fitted
+  to it. regression: the program against itself; `why` says why there is no outside value. None of the three verifies anything.
 """
 
+import math
 import re
 import tomllib
 from copy import deepcopy
@@ -20,7 +29,7 @@ from extrados.results.explain import json_schema
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES = ROOT / "cases"
-KINDS = ("exact", "thesis", "experiment", "peer", "calibration", "regression")
+KINDS = ("exact", "peer", "thesis", "experiment", "bound", "inferred", "calibration", "regression")
 
 
 @dataclass(frozen=True)
@@ -35,6 +44,17 @@ class Row:
     source: str  # of a regression: why there is no outside value
     change: tuple[tuple[str, Any], ...]
     note: str
+    limits: tuple[float, float] | None = None  # of a bound
+    wide: str = ""  # why so much is allowed
+    scatter: float | str = ""  # of the tests, of an experiment
+
+    @property
+    def loose(self) -> bool:
+        """Whether so much is allowed that the row proves little."""
+        return (
+            self.kind in PROOFS and not isinstance(self.value, str)
+            and LOOSE * abs(self.value) * (1.0 + 1e-9) < self.allowed and bool(self.value)
+        )  # fmt: skip
 
     @property
     def allowed(self) -> float:
@@ -43,6 +63,8 @@ class Row:
 
     def fits(self, found: Any) -> bool:
         """True where the found value is what was expected."""
+        if self.limits is not None:
+            return isinstance(found, int | float) and self.limits[0] <= found <= self.limits[1]
         if isinstance(self.value, str):
             return str(found if found is not None else "none") == self.value
         return isinstance(found, int | float) and abs(found - self.value) <= self.allowed
@@ -61,34 +83,51 @@ class Case:
         return str(self.deck.relative_to(CASES).with_suffix(""))
 
 
+#: Kinds of comparison, the strongest first; the others verify nothing, or only one side
+PROOFS = ("exact", "peer", "thesis", "experiment")
+#: Relative tolerance from which on a row must say why
+LOOSE = 0.10
+_KEYS = {"quantity", "value", "tolerance", "relative_tolerance", "kind", "source", "why", "change", "note", "wide"}
+_OF_KIND = {"bound": {"at_least", "at_most"}, "experiment": {"scatter"}}
+
+
+def _frozen(value: Any) -> Any:
+    """A value of a change as part of a key of groups: lists as tuples."""
+    return tuple(map(_frozen, value)) if isinstance(value, list) else value
+
+
+def _row(row: dict[str, Any], path: Path) -> Row:
+    """A row as it stands in the file.
+
+    Raises ValueError for one that lacks what its kind needs, or has keys of another.
+    """
+    kind, own = row["kind"], set(row)
+    origin = "why" if kind == "regression" else "source"
+    wrong = (
+        kind not in KINDS or own - _KEYS - _OF_KIND.get(kind, set()) or not row.get(origin) or {"why", "source"} <= own
+    )
+    bound = own & {"at_least", "at_most"}
+    if kind == "bound":
+        wrong = wrong or not bound or own & {"value", "tolerance", "relative_tolerance"}
+    if wrong or (kind == "experiment" and "scatter" not in own):
+        raise ValueError(f"{path}: bad row {row}")
+    limits = (row.get("at_least", -math.inf), row.get("at_most", math.inf)) if bound else None
+    value = row["value"] if limits is None else " and ".join(f"{k.replace('_', ' ')} {row[k]:g}" for k in sorted(bound))
+    found = Row(
+        row["quantity"], value, row.get("relative_tolerance", row.get("tolerance", 0.0)), "relative_tolerance" in row,
+        kind, row[origin], tuple(sorted((k, _frozen(v)) for k, v in row.get("change", {}).items())), row.get("note", ""), limits, row.get("wide", ""), row.get("scatter", ""),
+    )  # fmt: skip
+    if found.loose != bool(found.wide):
+        raise ValueError(f"{path}: `wide` gives the reason of a tolerance above {LOOSE:.0%}, and of no other: {row}")
+    return found
+
+
 def load_cases() -> list[Case]:
     """All cases, in order of their names."""
     found = []
     for path in sorted(CASES.rglob("*.expect.toml")):
         data = tomllib.loads(path.read_text(encoding="utf-8"))
-        rows = []
-        for row in data["expect"]:
-            known = {
-                "quantity",
-                "value",
-                "tolerance",
-                "relative_tolerance",
-                "kind",
-                "source",
-                "why",
-                "change",
-                "note",
-            }
-            origin = "why" if row["kind"] == "regression" else "source"
-            if set(row) - known or row["kind"] not in KINDS or not row.get(origin) or {"why", "source"} <= set(row):
-                raise ValueError(f"{path}: bad row {row}")
-            relative = "relative_tolerance" in row
-            rows.append(
-                Row(
-                    row["quantity"], row["value"], row.get("relative_tolerance", row.get("tolerance", 0.0)), relative,
-                    row["kind"], row[origin], tuple(sorted(row.get("change", {}).items())), row.get("note", ""),
-                )
-            )  # fmt: skip
+        rows = [_row(row, path) for row in data["expect"]]
         deck = path.with_name(path.name.replace(".expect.toml", ".toml"))
         if not deck.exists():
             raise ValueError(f"{path}: no deck {deck.name} beside it")
@@ -107,15 +146,16 @@ def changed(data: dict[str, Any], change: tuple[tuple[str, Any], ...]) -> dict[s
         if value == "none":
             place.pop(last)
         else:
-            place[last] = value
+            place[last] = list(value) if isinstance(value, tuple) else value
     return data
 
 
 def pick(results: dict[str, dict[str, Any]], quantity: str) -> Any:
-    """The value that "analysis.key.sub[3]" names."""
+    """The value that "analysis.key.sub[3]" names, or "analysis.key['0.5']"."""
     analysis, _, way = quantity.partition(".")
     place: Any = results[analysis]
-    for part in re.findall(r"[^.\[\]]+", way):
+    for quoted, bare in re.findall(r"\['([^']+)'\]|([^.\[\]]+)", way):
+        part = quoted or bare
         place = place[int(part)] if isinstance(place, list) else place[part]
     return place
 
