@@ -250,7 +250,7 @@ export function motionPanel(app, lower, frame) {
     const pose = new Float32Array(blocks * 3), at = 3 * blocks * k, next = share > 0 ? at + 3 * blocks : at;
     for (let i = 0; i < pose.length; i += 1) pose[i] = a.pose[at + i] + share * (a.pose[next + i] - a.pose[at + i]);
     const piers = a.moving_outline ? { outline: a.moving_outline, outline_start: a.moving_start, centroid: a.moving_centroid } : null;
-    if (turned && (piers ?? app.arrays).centroid?.length === 2 * blocks) app.drawing.pose(pose, 0, a.line, a.line ? 2 * n * k : 0, n, piers);
+    if (turned && (piers ?? app.arrays).centroid?.length === 2 * blocks) app.drawing.pose(pose, { line: a.line, lineOffset: a.line ? 2 * n * k : 0, points: n, body: piers });
     cursors();
   }
   function frameAt(time) {

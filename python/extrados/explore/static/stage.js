@@ -8,12 +8,12 @@ const LINES = [
 const f = (v) => (Math.round(v * 1e4) / 1e4).toString();
 
 /** Outlines as one path; pose (blocks x 3) moves each stone from its centroid: a array of x, y, rotation. */
-export function stonesPath(outline, start, centroid = null, pose = null, offset = 0) {
+export function stonesPath(outline, start, centroid = null, pose = null) {
   let d = "";
   for (let b = 0; b + 1 < start.length; b += 1) {
     let c = 1, si = 0, gx = 0, gy = 0, px = 0, py = 0;
     if (pose) {
-      const at = offset + 3 * b, turn = pose[at + 2];
+      const at = 3 * b, turn = pose[at + 2];
       c = Math.cos(turn); si = Math.sin(turn); gx = centroid[2 * b]; gy = centroid[2 * b + 1]; px = pose[at]; py = pose[at + 1];
     }
     for (let i = start[b]; i < start[b + 1]; i += 1) {
@@ -53,7 +53,7 @@ export function stage(box, hands) {
   svg.append(ground, world, screen, overlay);
   screen.append(ruler, loads, marks, knobs);
   box.append(svg);
-  const it = { svg, show, fit, pose, moving, clear, lines, screenOf, modelOf, layers: null, bounds: null, scene: null, redraw, tip: null, setTheta };
+  const it = { svg, show, fit, pose, moving, held, clear, lines, screenOf, modelOf, layers: null, bounds: null, scene: null, redraw, tip: null, setTheta, drawn: () => true };
   const view = { k: 50, cx: 0, cy: 0, theta: 0, w: 800, h: 500 };
   const knob = new Map();
   let dragging = null, shownPose = null, last = null, fresh = true;
@@ -147,7 +147,7 @@ export function stage(box, hands) {
     const [x0, , x1, top] = it.bounds, r = 0.05 * (top - it.bounds[1]), middle = (x0 + x1) / 2;
     set(mass, { d: scene.head_mass_kg && !shownPose ? `M${f(middle - r)} ${f(top)}a${f(r)} ${f(r)} 0 1 0 ${f(2 * r)} 0a${f(r)} ${f(r)} 0 1 0 ${f(-2 * r)} 0Z` : "" });
     for (const [name, path] of Object.entries(lines)) {
-      const drawn = layers[name] && !shownPose && arrays[`${name}_line`];
+      const drawn = it.drawn(name) && !shownPose && arrays[`${name}_line`];
       set(path, { d: drawn ? piecesPath(arrays[`${name}_line`], arrays[`${name}_start`]) : "" });
     }
     supported(arrays, scene.abutting_wall);
@@ -199,8 +199,8 @@ export function stage(box, hands) {
       parts.push({ tag: "circle", class: `hinge ${name}`, cx: x, cy: y, r: 5.5, title: `${h.where} (${h.name})` });
     };
     if (!shownPose) {
-      for (const name of ["plus", "minus"]) if (layers[name]) for (const h of scene[`${name}_hinges`] ?? []) hinge(h, name);
-      for (const name of ["plus", "minus"]) if (layers[name]) for (const j of scene[`${name}_sliding`] ?? []) {
+      for (const name of ["plus", "minus"]) if (it.drawn(name)) for (const h of scene[`${name}_hinges`] ?? []) hinge(h, name);
+      for (const name of ["plus", "minus"]) if (it.drawn(name)) for (const j of scene[`${name}_sliding`] ?? []) {
         const [x, y] = screenOf(...j.at);
         parts.push({ tag: "path", class: `slide ${name}`, d: `M${x - 6} ${y}h12m-4 -4l4 4l-4 4`, title: `slides: ${j.name}` });
       }
@@ -217,7 +217,7 @@ export function stage(box, hands) {
       parts.push({ tag: "path", class: "reaction", d: `M${a} ${b}L${x} ${y}m${-ux * 8 + across[0] * 4} ${-uy * 8 + across[1] * 4}L${x} ${y}L${x - ux * 8 - across[0] * 4} ${y - uy * 8 - across[1] * 4}`,
         title: `reaction at ${r.name}: ${quantity(r.x_N, "N", 3)} across, ${quantity(r.y_N, "N", 3)} up` });
     }
-    shapes(marks, parts);
+    shapes(marks, shownPose?.falling ? openJoints() : parts);
   }
   function drawLoads(scene) {
     shapes(loads, (scene.loads ?? []).filter((l) => l.force_N).map((l) => {
@@ -231,7 +231,7 @@ export function stage(box, hands) {
 
   function drawKnobs(handles, scene) {
     const wanted = new Map();
-    if (!shownPose) {
+    if (!shownPose || shownPose.falling) {
       for (const h of handles) wanted.set(h.name, { ...h, text: Array.isArray(h.value) ? `${number(h.value[0])}; ${number(h.value[1])} m` : quantity(h.value, h.unit), now: Array.isArray(h.value) ? h.value[0] : h.value });
       if (scene.through && it.layers?.through) {
         const t = scene.through;
@@ -315,7 +315,7 @@ export function stage(box, hands) {
     if (!dragging) return;
     const px = event.clientX - dragging.edge.left - dragging.dx, py = event.clientY - dragging.edge.top - dragging.dy;
     if (dragging.name === "tilt") {
-      const theta = Math.max(-1.2, Math.min(1.2, Math.atan2(py - view.cy, px - view.cx)));
+      const theta = Math.max(-1.3, Math.min(1.3, Math.atan2(py - view.cy, px - view.cx)));
       hands.tilt(Math.tan(theta), ends, event.timeStamp);
     } else if (dragging.name === "through") hands.through(modelOf(px, py), ends, event.timeStamp);
     else hands.drag(dragging.name, modelOf(px, py), ends, event.timeStamp);
@@ -323,18 +323,37 @@ export function stage(box, hands) {
 
   // Stones that move
 
-  /** Show the stones in a pose; null brings them back. line: points of a thrust line of that pose; body: other stones. */
-  function pose(value, offset = 0, line = null, lineOffset = 0, points = 0, body = null) {
+  /** Show the stones in a pose; null brings them back. line: points of a thrust line of that pose; body: other stones; falling: the open joints are marked and the handles stay. */
+  function pose(value, { line = null, lineOffset = 0, points = 0, body = null, falling = false } = {}) {
     const was = shownPose;
-    shownPose = value ? { value, offset, line, lineOffset, points, body: body ?? last } : null;
+    shownPose = value ? { value, line, lineOffset, points, body: body ?? last, falling } : null;
     if (!last?.outline) return;
     if (!value) { set(dynamic, { d: "" }); redraw(); return; }
-    if (!was) redraw(); else drawPose();
+    if (!was) redraw(); else { drawPose(); if (falling) shapes(marks, openJoints()); }
+  }
+  /** Marks at the joints that a pose has opened: a hinge where one end still touches. */
+  function openJoints() {
+    const { value } = shownPose, { joint_p: p, joint_q: q, joint_block: block, centroid } = last, parts = [];
+    const size = Math.max(it.bounds[2] - it.bounds[0], it.bounds[3] - it.bounds[1]), least = 0.002 * size;
+    const moved = (b, x, y) => {
+      if (b < 0) return [x, y];
+      const turn = value[3 * b + 2], c = Math.cos(turn), n = Math.sin(turn), dx = x - centroid[2 * b], dy = y - centroid[2 * b + 1];
+      return [value[3 * b] + c * dx - n * dy, value[3 * b + 1] + n * dx + c * dy];
+    };
+    for (let j = 0; j < p.length / 2; j += 1) {
+      const [a, b] = [block[2 * j], block[2 * j + 1]];
+      const gaps = [p, q].map((end) => { const one = moved(a, end[2 * j], end[2 * j + 1]), two = moved(b, end[2 * j], end[2 * j + 1]); return { gap: Math.hypot(one[0] - two[0], one[1] - two[1]), at: one }; });
+      const [closed, open] = gaps[0].gap < gaps[1].gap ? gaps : [gaps[1], gaps[0]];
+      if (open.gap < least || closed.gap > 0.3 * open.gap) continue;
+      const [x, y] = screenOf(...closed.at);
+      parts.push({ tag: "circle", class: "hinge plus", cx: x, cy: y, r: 5.5, title: "hinge" });
+    }
+    return parts;
   }
   function drawPose() {
-    const { value, offset, line, lineOffset, points, body } = shownPose;
+    const { value, line, lineOffset, points, body } = shownPose;
     set(ghost, { d: stonesPath(body.outline, body.outline_start) });
-    set(stones, { d: stonesPath(body.outline, body.outline_start, body.centroid, value, offset) });
+    set(stones, { d: stonesPath(body.outline, body.outline_start, body.centroid, value) });
     let d = "", pen = false;
     if (line) for (let i = 0; i < points; i += 1) {
       const x = line[lineOffset + 2 * i], y = line[lineOffset + 2 * i + 1];
@@ -345,6 +364,7 @@ export function stage(box, hands) {
     set(dynamic, { d });
   }
   function moving() { return shownPose !== null; }
+  function held() { return dragging !== null; }
   return it;
 }
 export { LINES };
