@@ -366,12 +366,15 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     if ((e.ctrlKey || e.metaKey) && e.key.toLowerCase() === "y" && !writing) { e.preventDefault(); app.redo(); }
     if ((e.ctrlKey || e.metaKey) && e.key.toLowerCase() === "s") { e.preventDefault(); app.save?.(); }
     if (e.key === "?" && !writing) help();
+    const by = { "+": 1.3, "-": 1 / 1.3, 0: null }[e.key];
+    if (by !== undefined && !writing && !e.ctrlKey && !e.metaKey && app.tab !== "results") drawing.zoom(by);
   });
   function help() {
     dialog("How to use this page", h("ul", { class: "help" },
       h("li", {}, "Drag a handle of the drawing: sizes of the building, the vertex of a free block, a load, the thrust line, the tilt of the ground."),
       h("li", {}, "Tab goes from handle to handle; arrow keys move one, with Shift ten times as far; Enter or a double click lets you type its value, with a unit if you like."),
       h("li", {}, "Click into the stones, or drag there: the thrust line that passes there is drawn. Or drag the thrust itself, below the drawing, from the least to the greatest (keys Home and End)."),
+      h("li", {}, "Two fingers, the wheel, or the keys + and − enlarge the drawing; 0 fits it into its frame."),
       h("li", {}, "Ctrl+Z undoes, Ctrl+Shift+Z does again, Ctrl+S saves the deck, Space plays a motion."),
       h("li", {}, "Drop a deck (TOML), a drawing (DXF, JSON) or a record (CSV, AT2) on the page."),
       h("li", {}, "The page is served by this machine to this machine; nothing leaves it.")));
@@ -386,7 +389,8 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     e.currentTarget.setAttribute("aria-pressed", String(app.layers[name]));
     show({ lines: Object.keys(app.layers).filter((key) => app.layers[key]) });
     tell("layers");
-  } }, h("i", { class: "swatch" }), label)), playButton, h("span", { class: "spring" }));
+  } }, h("i", { class: "swatch" }), label)), playButton, h("span", { class: "spring" }),
+    ...[["−", "Smaller", 1 / 1.3], ["+", "Larger", 1.3], ["Fit", "Fit the drawing", null]].map(([text, label, by]) => h("button", { class: "layer", "aria-label": label, title: label, onclick: () => drawing.zoom(by) }, text)));
   let swing = null;
   const wayShown = () => (app.view.gamma < 0 || (app.layers.minus && !app.layers.plus) ? "minus" : "plus");
   function mechanism() {

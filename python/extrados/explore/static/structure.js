@@ -4,7 +4,7 @@ import { h, number, quantity, s, set, shapes } from "./dom.js";
 export function structurePanel(app, lower) {
   const svg = s("svg", { class: "polygon", role: "img" });
   const polygonBox = h("div", { class: "card" }, h("h2", {}, "Force polygon"), h("div", { class: "fill" }, svg));
-  const bar = s("svg", { class: "gauge", role: "img" });
+  const bar = s("svg", { class: "gauge", role: "group" });
   const gaugeBox = h("div", { class: "card" }, h("h2", {}, "Tilt and thrust"), h("div", { class: "fill" }, bar));
   const panel = h("div", { class: "cards", "data-for": "structure" }, polygonBox, gaugeBox);
   lower.append(panel);
