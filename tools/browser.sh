@@ -6,7 +6,7 @@ set -u
 
 wanted='import tomllib; extras = tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]; print(*extras["browser"], *extras["notebook"])'
 # shellcheck disable=SC2046
-.venv/bin/python -c 'import anywidget, playwright' 2>/dev/null \
+.venv/bin/python -c 'import anywidget, axe_playwright_python, playwright' 2>/dev/null \
   || .venv/bin/python -m pip install -q --disable-pip-version-check $(.venv/bin/python -c "$wanted") 2>/dev/null \
   || echo "Playwright could not be installed: tests in a browser are skipped" >&2
 for name in chromium chromium-browser google-chrome; do

@@ -103,7 +103,7 @@ def test_a_line_through_a_point_and_the_tilt(page: Any) -> None:
         page.keyboard.press("Shift+ArrowDown")
     settled(page)
     assert page.evaluate("window.extrados.scene.within") is False
-    assert "comes down" in page.locator(".answer").inner_text()
+    assert "Collapses towards +x" in page.locator(".answer").inner_text()
 
 
 def test_the_deck_is_edited_as_text_and_complained_of_by_line(page: Any) -> None:

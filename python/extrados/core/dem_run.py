@@ -4,7 +4,7 @@ the end of a motion."""
 import hashlib
 import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Generic, TypeVar
 
@@ -223,6 +223,17 @@ class BodyModel(Owner, ABC, Generic[Found]):
         if not interrupted:
             check(status, self.what)
         return self._last_run(interrupted)
+
+    def run_pieces(self, motions: MotionSet, times: npt.ArrayLike, steps: int) -> Iterator[tuple[Found, bool]]:
+        """The run under the first motion as it grows by `steps` time steps at a time, and whether that is all of it; times
+        (frames): ascending output times [s]."""
+        wanted = real("times", times, (None,))
+        check(_core.api_dem_run.start(self.handle, wanted), self.what)
+        paused = True
+        while paused:
+            paused, _, status = long_call(_core.api_dem_run.run, self.handle, motions.handle, 1, 0, 1.0, steps)
+            check(status, self.what)
+            yield self._last_run(False), not paused
 
     def state(self) -> np.ndarray:
         """The whole state (words) of a run that has paused, for `run` of this build alone; HandleError where none has."""

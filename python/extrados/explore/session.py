@@ -15,7 +15,7 @@ log = logging.getLogger(__name__)
 ANSWERS: dict[str, Callable[[Desk, Message], Iterator[Reply]]] = {
     "hello": decks.hello, "list": decks.list_folder, "open": decks.open_deck, "drop": decks.drop, "blocks": decks.blocks,
     "analysis": decks.analysis, "save": decks.save, "drag": changes.drag, "set": changes.set_keys, "rest": changes.rest,
-    "show": views.show, "push": views.push, "rocking": motion.response, "impulse": motion.impulse, "domain": motion.domain,
+    "show": views.show, "push": views.push, "fall": views.fall, "rocking": motion.response, "impulse": motion.impulse, "domain": motion.domain,
     "run": results.stored_run, "compute": results.compute,
 }  # fmt: skip
 

@@ -105,7 +105,7 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
     except NoEquilibrium:
         try:
             cannot_stand(made.limit)
-            words["stands"] = False
+            words |= {"stands": False, "falls": "weight"}
         except (NoAnswer, NoEquilibrium) as error:  # no certificate: nothing is said of the structure
             words |= {"stands": None, "unknown": str(error)}
         return made
@@ -125,13 +125,18 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
         words[f"{name}_sliding"] = [
             {"name": assembly.joint_names[j], "at": (assembly.middle[j] - anchor).tolist()} for j in mechanism.sliding
         ]
-    for row in tie_rows(building, limit.loads, ends["plus"][0]).get("ties", []):
+    way = "minus" if view.gamma < 0.0 else "plus"
+    words["way"], governing = way, ends[way][0]
+    for row in tie_rows(building, limit.loads, governing).get("ties", []):
         words.setdefault("ties", []).append({"name": row.name, "force_N": row.force_N})
-    words["required_friction"] = float(ends["plus"][0].friction.max())
+    words["required_friction"] = float(governing.friction.max())
     if not -minus <= view.gamma <= plus:
-        words["within"] = False
-        words["reactions"] = _reactions(assembly, ends["plus" if view.gamma > plus else "minus"][0], anchor)
-        _polygon(made, ends["plus" if view.gamma > plus else "minus"][0], chain)
+        words |= {"within": False, "falls": "plus" if view.gamma > plus else "minus"}
+        words["why"] = _reason(words)
+        _line(made, words["falls"], ends[words["falls"]][0], anchor)
+        words["reactions"] = _reactions(assembly, ends[words["falls"]][0], anchor)
+        words["reactions_of"] = words["falls"]
+        _polygon(made, ends[words["falls"]][0], chain)
         return made
     words["within"] = True
     quick = len(assembly.a) - len(assembly.mass) <= QUICK_LOOPS
@@ -164,13 +169,24 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
                 words["chosen"] = {"thrust_N": thrust_of(assembly, shown, chains[chain], told), "wanted_N": view.thrust}
         except (NoEquilibrium, NoAnswer) as error:
             words["remark"] = str(error)
-    shown = shown or ends["plus"][0]
+    shown = shown or governing
     words["reactions"] = _reactions(assembly, shown, anchor)
     words["reactions_of"] = (
-        "through" if "through" in words or "chosen" in words else "least" if shown is not ends["plus"][0] else "plus"
+        "through" if "through" in words or "chosen" in words else "least" if shown is not governing else way
     )
     _polygon(made, shown, chain)
     return made
+
+
+def _reason(words: dict[str, Any]) -> str:
+    """Why a tilted structure falls, in one line."""
+    way, gamma = words["falls"], words["gamma"]
+    capacity = words["capacity"][f"{way}_g"]
+    hinges, slides = [row["where"] for row in words[f"{way}_hinges"]], words[f"{way}_sliding"]
+    told = f"{abs(gamma):.3g} g exceeds the capacity of {capacity:.3g} g towards {'+x' if way == 'plus' else '−x'}"
+    if hinges:
+        told += f"; {len(hinges)} hinges open ({'; '.join(hinges[:4])}{'; …' if len(hinges) > 4 else ''})"
+    return told + (f"; {len(slides)} joints slide" if slides else "")
 
 
 def detail(made: Picture, anchor: np.ndarray) -> tuple[dict[str, Any], dict[str, np.ndarray]]:

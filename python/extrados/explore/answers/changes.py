@@ -1,5 +1,6 @@
 """Changes by hands: handles that are dragged, stepped or typed, keys that are set; and what is told when a hand rests."""
 
+import math
 import re
 from collections.abc import Iterator
 from typing import Any
@@ -14,9 +15,11 @@ from extrados.explore.desk import Desk
 from extrados.explore.document import as_written, tidy
 from extrados.explore.frames import Reply
 from extrados.explore.handles import Handle, rounded
-from extrados.explore.messages import BadMessage, Message, numbers, quantity
+from extrados.explore.messages import TOLD, BadMessage, Message, numbers, quantity
 from extrados.schema.keys import unit_along
 
+#: Halvings of the way to a value that the building does not take
+HALVINGS = 12
 KEY = re.compile(r"[A-Za-z_][\w-]*(\.[\w-]+){0,8}")
 
 
@@ -34,7 +37,7 @@ def drag(desk: Desk, message: Message) -> Iterator[Reply]:
     else:
         value = _typed(handle, message.get("text"))
     try:
-        yield _change(desk, handle.changes(value))
+        yield _change(desk, handle.changes(value)) if "to" not in message else _towards(desk, handle, value)
     finally:
         if message.get("ends") is True or "to" not in message:
             desk.held = None
@@ -72,6 +75,59 @@ def _led(handle: Handle, desk: Desk, to: list[float]) -> Any:
     if handle.unit != "m":
         return rounded(value, max(abs(value), 1e-6))
     return [rounded(v, desk.size) for v in value] if isinstance(value, list) else rounded(value, desk.size)
+
+
+def _towards(desk: Desk, handle: Handle, wanted: Any) -> Reply:
+    """The handle at a value, or at the last one towards it that the building takes; `limit` says then which limit holds it."""
+    inside = _clipped(handle, wanted)
+    try:
+        reply = _change(desk, handle.changes(inside))
+        told = "" if inside == wanted else _range(handle)
+    except TOLD as error:
+        reached, told = _reached(desk, handle, inside, str(error))
+        reply = scene(desk) if reached is None else _change(desk, handle.changes(reached))
+    if told:
+        reply.words["limit"] = f"Limit of {handle.label}: {told}"
+    return reply
+
+
+def _clipped(handle: Handle, value: Any) -> Any:
+    """A value within the bounds of its handle."""
+    if isinstance(value, list):
+        return value
+    return min(max(value, handle.least), math.inf if handle.most is None else handle.most)
+
+
+def _range(handle: Handle) -> str:
+    """The bounds of a handle in words."""
+    return (
+        f"{handle.least:g} to {handle.most:g} {handle.unit}"
+        if handle.most is not None
+        else f"at least {handle.least:g} {handle.unit}"
+    )
+
+
+def _reached(desk: Desk, handle: Handle, wanted: Any, why: str) -> tuple[Any, str]:
+    """The last value on the way from the present one to a wanted one that the building takes, None where that is the present
+    one; and why the way ends there."""
+    live = desk.there()
+    before, reached = live.deck, None
+    now, end = np.array(handle.value, dtype=float), np.array(wanted, dtype=float)
+    low, high = 0.0, 1.0
+    try:
+        for _ in range(HALVINGS):
+            share = 0.5 * (low + high)
+            value = (now + share * (end - now)).tolist()
+            value = [rounded(v, desk.size) for v in value] if isinstance(value, list) else rounded(value, desk.size)
+            try:
+                live.update({key: _written(desk, key, one) for key, one in handle.changes(value).items()})
+                live.deck.building.blocks()
+                low, reached = share, value
+            except TOLD as error:
+                high, why = share, str(error)
+    finally:
+        live.back_to(before)
+    return reached, why.splitlines()[0].removeprefix("deck: ")
 
 
 def _stepped(handle: Handle, size: float, dx: float, dy: float) -> Any:

@@ -12,11 +12,15 @@ from extrados.analyses.limit.tables import LimitAnalysisTable, Tilt
 from extrados.analyses.sequence import run_one
 from extrados.explore import bodies, statics
 from extrados.explore.desk import Desk
+from extrados.explore.fall import begin_fall
 from extrados.explore.frames import Reply
 from extrados.explore.handles import Handle, anchor_of, handles_of, load_handles
 from extrados.explore.messages import BadMessage, Message, numbers, quantity
 from extrados.model.errors import NoView
 from extrados.model.geometry.assembly import Assembly
+
+#: Greatest tilt that a hand gives the ground [g]
+MOST_TILT = 2.5
 
 
 def scene(desk: Desk) -> Reply:
@@ -85,8 +89,11 @@ def show(desk: Desk, message: Message) -> Iterator[Reply]:
     """Another view of the same building: the tilt, the chain, the place that the line shall pass or its thrust."""
     view = desk.view
     gamma, through, thrust, lines = view.gamma, view.through, view.thrust, view.lines
+    limit = ""
     if "gamma" in message:
-        gamma = float(np.clip(numbers([message["gamma"]], 1)[0], -5.0, 5.0))
+        wanted = numbers([message["gamma"]], 1)[0]
+        gamma = float(np.clip(wanted, -MOST_TILT, MOST_TILT))
+        limit = "" if gamma == wanted else f"Limit of Tilt of the ground: −{MOST_TILT:g} to {MOST_TILT:g} g"
     chain = message["chain"] if isinstance(message.get("chain"), str) else view.chain
     if "thrust" in message:
         thrust = None if message["thrust"] is None else _thrust(message["thrust"])
@@ -97,7 +104,8 @@ def show(desk: Desk, message: Message) -> Iterator[Reply]:
     if isinstance(message.get("lines"), list):
         lines = frozenset(str(name)[:20] for name in message["lines"][:20])
     desk.view = statics.View(gamma, chain, through, thrust, lines)
-    yield scene(desk)
+    reply = scene(desk)
+    yield Reply({**reply.words, "limit": limit}, reply.arrays)
 
 
 def _through(desk: Desk, wanted: Any, chain: str | None) -> tuple[int, float]:
@@ -129,3 +137,17 @@ def push(desk: Desk, _: Message) -> Iterator[Reply]:
     arrays = {name: result.arrays[name].data for name in wanted if name in result.arrays}
     told = {k: v for k, v in result.results.as_json().items() if isinstance(v, int | float | str)}
     yield Reply({"push": {"answer": result.answer, "numbers": told, "warnings": result.warnings}}, arrays)
+
+
+def fall(desk: Desk, _: Message) -> Iterator[Reply]:
+    """The collapse of what is drawn, a piece with each reply; ends early when the drawing has changed meanwhile."""
+    made = desk.picture
+    if made is None or "falls" not in made.words:
+        raise BadMessage("the structure does not collapse")
+    _options, building, _name = desk.analysis(LimitAnalysisTable, lambda: None)
+    anchor = np.append(desk.anchor, 0.0)
+    for k, piece in enumerate(begin_fall(desk.there().context(), building, made)):
+        words = {"first": k == 0, "done": piece.last, "stopped": piece.stopped}
+        yield Reply({"fall": words}, {"fall_time": piece.time, "fall_pose": piece.pose - anchor})
+        if desk.picture is not made:
+            return

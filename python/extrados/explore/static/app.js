@@ -6,6 +6,7 @@ import { motionPanel } from "./motion.js";
 import { resultsPanel } from "./results.js";
 import { solidPanel } from "./solid.js";
 import { outMenu } from "./out.js";
+import { fallPanel } from "./fall.js";
 import { sidebar } from "./sidebar.js";
 
 const REST = 130; // ms without a change, after which the hand rests
@@ -73,6 +74,8 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   app.drawing = drawing;
   app.solid = solidPanel(app, stageBox);
   drawing.layers = app.layers;
+  /** Whether a line with its hinges is drawn: as chosen, but of a collapse the side to which the structure falls. */
+  app.drawn = drawing.drawn = (name) => (["plus", "minus"].includes(name) && ["plus", "minus"].includes(app.scene?.falls) ? app.scene.falls === name : app.layers[name]);
 
   /** Choose the line that has a thrust, between the least and the greatest; text may have a unit. */
   app.choose = (thrust, when) => { reveal(); show({ thrust, lines: app.view.lines }, when); };
@@ -168,14 +171,14 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     if (words.presets) { app.welcome = words; tell("welcome", words); }
     if (words.decks && app.welcome) { app.welcome.decks = words.decks; if (words.runs) app.welcome.runs = words.runs; tell("folder"); }
     if (words.scene) {
-      app.scene = words.scene; app.arrays = arrays; app.handles = words.handles ?? []; app.deck = words.deck; app.anchor = words.anchor ?? [0, 0]; app.detail = null;
+      app.scene = words.scene; app.arrays = arrays; app.view.gamma = words.limit && words.to === "show" ? words.scene.gamma : app.view.gamma; app.handles = words.handles ?? []; app.deck = words.deck; app.anchor = words.anchor ?? [0, 0]; app.detail = null;
       if (words.opened !== undefined) opened(words);
       app.turned();
       drawing.show(app.scene, arrays, app.handles, words.opened === true);
       if (["drag", "set"].includes(words.to)) dirty = true;
       tell("scene", words.opened === true, entry?.when);
       follow();
-      if (words.to !== "hello") say("");
+      if (words.to !== "hello") say(words.limit ?? "");
       rest();
     }
     else if (words.to === "set" && words.deck) { // a motion alone has changed
@@ -187,7 +190,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     }
     if (words.detail) { app.detail = words.detail; Object.assign(app.arrays, arrays); drawing.redraw(); tell("detail"); }
     if (words.text !== undefined && words.to === "rest") settled(words);
-    for (const key of ["rocking", "domain", "impulse", "push", "run", "computing", "saved"]) if (words[key] !== undefined) tell(key, words[key], arrays, words);
+    for (const key of ["rocking", "domain", "impulse", "push", "run", "computing", "saved", "fall"]) if (words[key] !== undefined) tell(key, words[key], arrays, words);
     entry?.reply?.(words, arrays);
     if (entry) {
       if (entry.message.do !== "hello" || words.scene) landed(entry);
@@ -363,12 +366,15 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     if ((e.ctrlKey || e.metaKey) && e.key.toLowerCase() === "y" && !writing) { e.preventDefault(); app.redo(); }
     if ((e.ctrlKey || e.metaKey) && e.key.toLowerCase() === "s") { e.preventDefault(); app.save?.(); }
     if (e.key === "?" && !writing) help();
+    const by = { "+": 1.3, "-": 1 / 1.3, 0: null }[e.key];
+    if (by !== undefined && !writing && !e.ctrlKey && !e.metaKey && app.tab !== "results") drawing.zoom(by);
   });
   function help() {
     dialog("How to use this page", h("ul", { class: "help" },
       h("li", {}, "Drag a handle of the drawing: sizes of the building, the vertex of a free block, a load, the thrust line, the tilt of the ground."),
       h("li", {}, "Tab goes from handle to handle; arrow keys move one, with Shift ten times as far; Enter or a double click lets you type its value, with a unit if you like."),
       h("li", {}, "Click into the stones, or drag there: the thrust line that passes there is drawn. Or drag the thrust itself, below the drawing, from the least to the greatest (keys Home and End)."),
+      h("li", {}, "Two fingers, the wheel, or the keys + and − enlarge the drawing; 0 fits it into its frame."),
       h("li", {}, "Ctrl+Z undoes, Ctrl+Shift+Z does again, Ctrl+S saves the deck, Space plays a motion."),
       h("li", {}, "Drop a deck (TOML), a drawing (DXF, JSON) or a record (CSV, AT2) on the page."),
       h("li", {}, "The page is served by this machine to this machine; nothing leaves it.")));
@@ -383,11 +389,14 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     e.currentTarget.setAttribute("aria-pressed", String(app.layers[name]));
     show({ lines: Object.keys(app.layers).filter((key) => app.layers[key]) });
     tell("layers");
-  } }, h("i", { class: "swatch" }), label)), playButton, h("span", { class: "spring" }));
+  } }, h("i", { class: "swatch" }), label)), playButton, h("span", { class: "spring" }),
+    ...[["−", "Smaller", 1 / 1.3], ["+", "Larger", 1.3], ["Fit", "Fit the drawing", null]].map(([text, label, by]) => h("button", { class: "layer", "aria-label": label, title: label, onclick: () => drawing.zoom(by) }, text)));
   let swing = null;
-  function mechanism(stop = false) {
-    if (swing || stop) { cancelAnimationFrame(swing); swing = null; drawing.pose(null); playButton.setAttribute("aria-pressed", "false"); return; }
-    const way = app.view.gamma < 0 || (app.layers.minus && !app.layers.plus) ? "minus" : "plus";
+  const wayShown = () => (app.view.gamma < 0 || (app.layers.minus && !app.layers.plus) ? "minus" : "plus");
+  function mechanism() {
+    if (swing) { app.stopMechanism(); return; }
+    app.fall.stop();
+    const way = wayShown();
     if (!app.arrays[`${way}_velocity`]) { say("There is no mechanism to show.", true); return; }
     playButton.setAttribute("aria-pressed", "true");
     const begin = performance.now();
@@ -413,12 +422,12 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   /** The mechanism at a share of its way, for films; null where there is none. */
   app.mechanismAt = (share) => {
     if (app.scene?.seen) return app.solid.mechanismAt(share);
-    const way = app.view.gamma < 0 || (app.layers.minus && !app.layers.plus) ? "minus" : "plus";
+    const way = wayShown();
     if (!app.arrays[`${way}_velocity`]) return false;
     if (share !== undefined) drawing.pose(share === null ? null : between(way, share));
     return true;
   };
-  app.stopMechanism = () => { if (swing) mechanism(true); app.solid.stop(); };
+  app.stopMechanism = () => { if (swing) { cancelAnimationFrame(swing); swing = null; drawing.pose(null); playButton.setAttribute("aria-pressed", "false"); } app.solid.stop(); };
   app.mechanismShown = () => swing !== null;
   /** A press beside the handles: the line of thrust follows from there on. */
   function pressed(e) {
@@ -434,6 +443,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   top.append(outMenu(app), themeButton, h("button", { class: "icon", "aria-label": "Help", title: "Help (?)", onclick: help }, "?"));
   sidebar(app, side);
   structurePanel(app, lower);
+  fallPanel(app, stageFrame);
   motionPanel(app, lower, stageFrame);
   resultsPanel(app, wide);
   const arranged = () => {

@@ -62,7 +62,7 @@ function path(x, y, X, Y, fx, fy) {
  * [{array, label, x, factor, sort, lower, dashed, faint, data}], optional heat {codes, x, y, stride}, least, most, marks.
  */
 export function chart(box, options = {}) {
-  const svg = s("svg", { class: "chart", role: "img", tabindex: options.onpick ? null : undefined });
+  const svg = s("svg", { class: "chart", role: options.ondraw ? "group" : "img" });
   const title = s("text", { class: "chart-title" });
   const back = s("g"), grid = s("g", { class: "grid" }), body = s("g"), axes = s("g", { class: "axes" });
   const cursor = s("line", { class: "cursor", visibility: "hidden" });

@@ -63,6 +63,7 @@ export function quantity(value, unit, digits = 4) {
   return unit ? `${number(value, digits)} ${unit}` : number(value, digits);
 }
 
+export const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 export const degrees = (gamma) => (Math.atan(gamma) * 180) / Math.PI;
 
 export function download(blob, name) {

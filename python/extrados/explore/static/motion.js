@@ -9,6 +9,8 @@ export function motionPanel(app, lower, frame) {
   app.motion = it;
   const box = (name) => h("div", { class: "fill", "data-chart": name });
   const boxes = { pulse: box("pulse"), history: box("history"), map: box("map"), energy: box("energy"), friction: box("friction") };
+  const mapLegend = h("div", { class: "map-legend", "aria-label": "Outcomes on the map" });
+  const thirds = { map: h("div", { class: "fill beside" }, boxes.map, mapLegend), energy: boxes.energy, friction: boxes.friction };
   const words = h("p", { class: "outcome", role: "status" });
   const impulse = h("p", { class: "impulse" });
   const keep = h("button", { title: "Keep this response in the picture", onclick: () => { if (it.arrays) { it.earlier.push({ time: it.arrays.time, rotation: it.arrays.rotation }); if (it.earlier.length > 5) it.earlier.shift(); draw(); } } }, "Keep");
@@ -18,7 +20,7 @@ export function motionPanel(app, lower, frame) {
   const panel = h("div", { class: "cards motion", "data-for": "motion" },
     h("div", { class: "card" }, h("div", { class: "card-head" }, h("h2", {}, "Motion"), kinds), boxes.pulse),
     h("div", { class: "card" }, h("div", { class: "card-head" }, h("h2", {}, "Rocking"), keep, drop), boxes.history),
-    h("div", { class: "card" }, h("div", { class: "card-head" }, lowerTabs), boxes.map, boxes.energy, boxes.friction));
+    h("div", { class: "card" }, h("div", { class: "card-head" }, lowerTabs), ...Object.values(thirds)));
   lower.append(panel);
   const slider = h("input", { type: "range", min: 0, max: 1, step: "any", value: 0, "aria-label": "Time", oninput: () => seek(Number(slider.value)) });
   const clock = h("output", { class: "clock" });
@@ -26,7 +28,7 @@ export function motionPanel(app, lower, frame) {
   const player = h("div", { class: "player", hidden: true }, play, slider, clock,
     h("select", { "aria-label": "Speed", onchange: (e) => { it.speed = Number(e.target.value); } }, SPEEDS.map(([v, label]) => h("option", { value: v, selected: v === it.speed }, label))),
     h("label", {}, h("input", { type: "checkbox", onchange: (e) => { it.stop = e.target.checked; } }), " stop at impacts"));
-  const answer = h("div", { class: "motion-words", hidden: true }, words, impulse);
+  const answer = h("div", { class: "motion-words", hidden: true, role: "group", "aria-label": "Response in words", tabindex: "0" }, words, impulse);
   frame.prepend(answer);
   frame.append(player);
 
@@ -39,7 +41,7 @@ export function motionPanel(app, lower, frame) {
   let shownThird = "map";
   function third(name) {
     shownThird = name;
-    for (const key of ["map", "energy", "friction"]) boxes[key].hidden = key !== name;
+    for (const key of ["map", "energy", "friction"]) thirds[key].hidden = key !== name;
     for (const button of lowerTabs.children) button.setAttribute("aria-selected", button.dataset.third === name);
     draw();
   }
@@ -140,10 +142,10 @@ export function motionPanel(app, lower, frame) {
     if (app.tab !== "motion" || shownThird !== "map") return;
     for (const old of boxes.map.querySelectorAll(".map-why, .remark")) old.remove();
     if (it.map?.why) boxes.map.append(h("p", { class: "map-why" }, `No map: ${it.map.why}.`));
-    if (!it.map || it.map.why) { boxes.map.querySelector(".map-legend")?.remove(); charts.map.draw({ title: "Which pulses bring it down", x: { label: "duration", unit: "s" }, y: { label: "amplitude", unit: "g" }, series: [], span: [0, 1] }, {}); return; }
+    if (!it.map || it.map.why) { mapLegend.replaceChildren(); charts.map.draw({ title: "Pulses that cause collapse", x: { label: "duration", unit: "s" }, y: { label: "amplitude", unit: "g" }, series: [], span: [0, 1] }, {}); return; }
     const { told, arrays } = it.map;
-    charts.map.draw({ title: `Which ${told.pulse} pulses bring it down`, x: { array: "duration", label: told.pulse === "step" ? "t_p" : "T_p", unit: "s" }, y: { label: "amplitude", unit: "g" }, series: [], heat: { codes: "codes", x: "duration", y: "amplitude", stride: told.stride }, least: 0 }, arrays);
-    if (!boxes.map.querySelector(".map-legend")) boxes.map.append(h("div", { class: "map-legend" }, told.outcomes.map((o, k) => h("span", {}, h("i", { class: `m${k}` }), o))));
+    charts.map.draw({ title: `Collapse by ${told.pulse} pulses`, x: { array: "duration", label: told.pulse === "step" ? "t_p" : "T_p", unit: "s" }, y: { label: "amplitude", unit: "g" }, series: [], heat: { codes: "codes", x: "duration", y: "amplitude", stride: told.stride }, least: 0 }, arrays);
+    mapLegend.replaceChildren(...told.outcomes.map((o, k) => h("span", {}, h("i", { class: `m${k}` }), o)));
     boxes.map.append(...(told.conditions ?? []).map((text) => h("p", { class: "remark" }, text)));
   }
   function pulse() {
@@ -250,7 +252,7 @@ export function motionPanel(app, lower, frame) {
     const pose = new Float32Array(blocks * 3), at = 3 * blocks * k, next = share > 0 ? at + 3 * blocks : at;
     for (let i = 0; i < pose.length; i += 1) pose[i] = a.pose[at + i] + share * (a.pose[next + i] - a.pose[at + i]);
     const piers = a.moving_outline ? { outline: a.moving_outline, outline_start: a.moving_start, centroid: a.moving_centroid } : null;
-    if (turned && (piers ?? app.arrays).centroid?.length === 2 * blocks) app.drawing.pose(pose, 0, a.line, a.line ? 2 * n * k : 0, n, piers);
+    if (turned && (piers ?? app.arrays).centroid?.length === 2 * blocks) app.drawing.pose(pose, { line: a.line, lineOffset: a.line ? 2 * n * k : 0, points: n, body: piers });
     cursors();
   }
   function frameAt(time) {

@@ -1,13 +1,13 @@
 // Beside the drawing: what the structure bears, its sizes, its deck.
 import { teachPanel } from "./teach.js";
-import { degrees, download, h, number, quantity } from "./dom.js";
+import { capital, degrees, download, h, number, quantity } from "./dom.js";
 
 const NAMES = { structure: "Structure", motion: "Motion", joints: "Joints", material: "Material", supports: "Supports", initial: "Start" };
 
 export function sidebar(app, box) {
   const pages = { answer: h("div", { class: "page answer" }), sizes: h("div", { class: "page sizes" }), deck: h("div", { class: "page deck" }), teach: h("div", { class: "page teach" }) };
   const labels = { answer: "Answer", sizes: "Sizes", deck: "Deck", teach: "Exercises" };
-  const tabs = h("div", { class: "tabs small", role: "tablist", "aria-label": "Beside the drawing" }, Object.keys(pages).map((name) => h("button", { role: "tab", "data-side": name, onclick: () => choose(name) }, labels[name])));
+  const tabs = h("div", { class: "tabs small", role: "tablist", "aria-label": "Beside the drawing" }, Object.keys(pages).map((name) => h("button", { role: "tab", "data-side": name, onclick: () => { app.root.dataset.sheet = chosen === name && app.root.dataset.sheet === "open" ? "" : "open"; choose(name); } }, labels[name])));
   box.append(tabs, ...Object.values(pages));
   let chosen = "answer";
   function choose(name) {
@@ -32,17 +32,17 @@ export function sidebar(app, box) {
     if (scene.seen) { pages.answer.replaceChildren(...app.solid.page(scene.seen, scene.empty)); return; }
     if (scene.empty) { pages.answer.replaceChildren(h("p", { class: "verdict" }, scene.empty)); return; }
     const parts = [];
-    const c = scene.capacity;
+    const c = scene.capacity, way = scene.way ?? "plus", side = way === "plus" ? "+x" : "−x";
     if (scene.immovable) parts.push(h("p", { class: "verdict good" }, scene.immovable));
     else if (scene.unknown) parts.push(h("p", { class: "verdict" }, h("b", {}, "Limit analysis has no answer: "), scene.unknown));
-    else if (!scene.stands) parts.push(h("p", { class: "verdict bad" }, h("b", {}, "It cannot stand. "), app.detail?.why ?? "No thrust line stays within the stones."));
-    else if (!scene.within) parts.push(h("p", { class: "verdict bad" }, h("b", {}, "It comes down. "), `${number(scene.gamma, 3)} g is more than it bears.`));
-    else parts.push(h("p", { class: "verdict good" }, h("b", {}, scene.gamma ? "It stands when tilted. " : "It stands. "), `As a mechanism it comes down at ${number(Math.min(c.plus_g, c.minus_g), 4)} g.`));
+    else if (!scene.stands) parts.push(h("p", { class: "verdict bad" }, h("b", {}, "Cannot stand. "), capital(app.detail?.why ?? "no thrust line stays within the blocks"), "."));
+    else if (!scene.within) parts.push(h("p", { class: "verdict bad" }, h("b", {}, `Collapses towards ${side}. `), capital(scene.why), "."));
+    else parts.push(h("p", { class: "verdict good" }, h("b", {}, scene.gamma ? "Stands when tilted. " : "Stands. "), scene.gamma ? `Collapse towards ${side} at ${number(c[`${way}_g`], 4)} g.` : `Collapse at ${number(Math.min(c.plus_g, c.minus_g), 4)} g.`));
     const rows = [];
     if (c && (scene.dilating?.plus || scene.dilating?.minus)) parts.push(h("p", { class: "remark" }, "Joints slide in the mechanism: the collapse acceleration is an upper bound (dilatant friction). The analysis tilt of a deck also gives the least state found without dilatancy."));
     if (c) {
-      rows.push(row("Bears to +x", h("span", { "data-number": "plus" }, `${number(c.plus_g, 4)} g · ${number(degrees(c.plus_g), 4)}°`), "horizontal acceleration, and tilt of the ground, at which it becomes a mechanism"));
-      rows.push(row("Bears to −x", h("span", { "data-number": "minus" }, `${number(c.minus_g, 4)} g · ${number(degrees(c.minus_g), 4)}°`)));
+      rows.push(row("Capacity to +x", h("span", { "data-number": "plus" }, `${number(c.plus_g, 4)} g · ${number(degrees(c.plus_g), 4)}°`), "horizontal acceleration, and tilt of the ground, at which the structure becomes a mechanism"));
+      rows.push(row("Capacity to −x", h("span", { "data-number": "minus" }, `${number(c.minus_g, 4)} g · ${number(degrees(c.minus_g), 4)}°`)));
     }
     if (scene.least_N !== undefined) {
       rows.push(row("Least thrust", h("span", { "data-number": "least" }, quantity(scene.least_N, "N")), "horizontal thrust of the chain at the present tilt"));
@@ -51,8 +51,8 @@ export function sidebar(app, box) {
     if (scene.chosen) rows.push(row("Chosen line", quantity(scene.chosen.thrust_N, "N"), "the line between those of least and greatest thrust that has this one"));
     if (scene.through) rows.push(row("Through the point", quantity(scene.through.thrust_N, "N")));
     if (app.detail && "safety" in app.detail) rows.push(row("Geometric safety", app.detail.safety === null ? "unbounded" : number(app.detail.safety, 3), "one over the least part of the joints that holds a thrust line upright"));
-    if (scene.required_friction !== undefined) rows.push(row("Friction needed", number(scene.required_friction, 3), "coefficient of friction needed at collapse to +x"));
-    for (const tie of scene.ties ?? []) rows.push(row(`${tie.name}, at collapse`, quantity(tie.force_N, "N"), "tension of the tie at collapse to +x"));
+    if (scene.required_friction !== undefined) rows.push(row("Required friction", number(scene.required_friction, 3), `coefficient of friction required at collapse to ${side}`));
+    for (const tie of scene.ties ?? []) rows.push(row(`${tie.name}, at collapse`, quantity(tie.force_N, "N"), `tension of the tie at collapse to ${side}`));
     rows.push(row("Weight", `${quantity(scene.weight_N, "N")} for ${number(scene.depth_m, 3)} m of depth`));
     rows.push(row("Stones, joints", `${scene.blocks}, ${scene.joints}`));
     for (const [key, value] of Object.entries(scene.measures ?? {})) rows.push(row(key.replace(/_m$/, "").replaceAll("_", " "), quantity(value, key.endsWith("_m") ? "m" : "")));
@@ -61,11 +61,11 @@ export function sidebar(app, box) {
       parts.push(h("label", { class: "field" }, "Thrust of the ", h("select", { "aria-label": "Whose thrust", onchange: (e) => app.show({ chain: e.target.value, through: null }) }, scene.chains.map((name) => h("option", { value: name, selected: name === scene.chain }, name)))));
     }
     for (const [name, text] of [["plus", "Hinges, load to +x"], ["minus", "Hinges, load to −x"]]) {
-      if (!scene[`${name}_hinges`]?.length || !app.layers[name]) continue;
+      if (!scene[`${name}_hinges`]?.length || !app.drawn(name)) continue;
       parts.push(h("h3", {}, text), h("ul", { class: "plain" }, scene[`${name}_hinges`].map((x) => h("li", {}, x.where)), (scene[`${name}_sliding`] ?? []).slice(0, 6).map((x) => h("li", {}, `slides: ${x.name}`))));
     }
     if (scene.reactions?.length && app.layers.reactions) {
-      const of = { least: "at least thrust", through: "of the chosen line", plus: "at collapse" }[scene.reactions_of] ?? "";
+      const of = { least: "at least thrust", through: "of the chosen line", plus: "at collapse to +x", minus: "at collapse to −x" }[scene.reactions_of] ?? "";
       parts.push(h("h3", {}, `Reactions ${of}`), h("table", { class: "numbers" }, h("thead", {}, h("tr", {}, h("th", {}, ""), h("th", {}, "across"), h("th", {}, "up"))), h("tbody", {}, scene.reactions.slice(0, 12).map((r) => h("tr", {}, h("th", { scope: "row" }, r.name), h("td", {}, quantity(r.x_N, "N", 3)), h("td", {}, quantity(r.y_N, "N", 3)))))));
     }
     if (scene.remark) parts.push(h("p", { class: "remark" }, scene.remark));

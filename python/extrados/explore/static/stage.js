@@ -5,15 +5,38 @@ const LINES = [
   ["least", "least thrust"], ["most", "greatest thrust"], ["through", "thrust through the point"],
   ["plus", "collapse, load to +x"], ["minus", "collapse, load to −x"], ["central", "most central"],
 ];
+const CLOSE = { fine: 26, coarse: 44 }; // px between the centres of handles, by the finger or the mouse
+const MANY = 24; // handles beyond which they stay where they are, and the nearest one is taken
+const LOUPE = 58; // px, its radius
+
+/** Places (px) moved apart until no two are nearer than `reach`; the one numbered `fixed` stays. All stay within w x h. */
+export function spread(places, reach, fixed, w, h) {
+  const out = places.map((p) => [...p]), edge = reach / 2;
+  for (let round = 0; round < 80; round += 1) {
+    let moved = false;
+    for (let i = 0; i < out.length; i += 1) for (let k = i + 1; k < out.length; k += 1) {
+      let dx = out[k][0] - out[i][0], dy = out[k][1] - out[i][1], apart = Math.hypot(dx, dy);
+      if (apart >= reach - 0.5) continue;
+      if (apart < 1e-6) { dx = 1; dy = 0; apart = 1; }
+      moved = true;
+      const push = (reach - Math.hypot(out[k][0] - out[i][0], out[k][1] - out[i][1])) / apart, share = i === fixed ? 0 : k === fixed ? 1 : 0.5;
+      out[i] = [out[i][0] - share * push * dx, out[i][1] - share * push * dy];
+      out[k] = [out[k][0] + (1 - share) * push * dx, out[k][1] + (1 - share) * push * dy];
+    }
+    for (const [i, p] of out.entries()) if (i !== fixed) { p[0] = Math.min(Math.max(p[0], edge), w - edge); p[1] = Math.min(Math.max(p[1], edge), h - edge); }
+    if (!moved) break;
+  }
+  return out;
+}
 const f = (v) => (Math.round(v * 1e4) / 1e4).toString();
 
 /** Outlines as one path; pose (blocks x 3) moves each stone from its centroid: a array of x, y, rotation. */
-export function stonesPath(outline, start, centroid = null, pose = null, offset = 0) {
+export function stonesPath(outline, start, centroid = null, pose = null) {
   let d = "";
   for (let b = 0; b + 1 < start.length; b += 1) {
     let c = 1, si = 0, gx = 0, gy = 0, px = 0, py = 0;
     if (pose) {
-      const at = offset + 3 * b, turn = pose[at + 2];
+      const at = 3 * b, turn = pose[at + 2];
       c = Math.cos(turn); si = Math.sin(turn); gx = centroid[2 * b]; gy = centroid[2 * b + 1]; px = pose[at]; py = pose[at + 1];
     }
     for (let i = start[b]; i < start[b + 1]; i += 1) {
@@ -50,11 +73,19 @@ export function stage(box, hands) {
   const dynamic = s("path", { class: "thrust dynamic" });
   const marks = s("g", { class: "marks" }), loads = s("g"), knobs = s("g", { class: "knobs" }), ruler = s("g", { class: "ruler" });
   world.append(earth, supports, ghost, stones, mass, joints, ties, dampers, ...Object.values(lines), dynamic);
+  for (const part of world.children) part.setAttribute("vector-effect", "non-scaling-stroke"); // in the loupe too
   svg.append(ground, world, screen, overlay);
   screen.append(ruler, loads, marks, knobs);
+  const mark = Math.random().toString(36).slice(2);
+  world.id = `world-${mark}`; marks.id = `marks-${mark}`;
+  const inside = s("g", {}, s("use", { href: `#${world.id}` }), s("use", { href: `#${marks.id}` }));
+  const loupe = s("g", { class: "loupe", visibility: "hidden", "aria-hidden": "true" }, s("defs", {}, s("clipPath", { id: `clip-${mark}` }, s("circle", { r: LOUPE }))),
+    s("g", { "clip-path": `url(#clip-${mark})` }, s("circle", { class: "paper", r: LOUPE }), inside, s("path", { class: "cross", d: "M-9 0H9M0 -9V9" })), s("circle", { class: "rim", r: LOUPE }));
+  overlay.append(loupe);
   box.append(svg);
-  const it = { svg, show, fit, pose, moving, clear, lines, screenOf, modelOf, layers: null, bounds: null, scene: null, redraw, tip: null, setTheta };
-  const view = { k: 50, cx: 0, cy: 0, theta: 0, w: 800, h: 500 };
+  const coarse = matchMedia("(pointer: coarse)");
+  const it = { svg, show, fit, pose, moving, held, clear, lines, screenOf, modelOf, layers: null, bounds: null, scene: null, redraw, tip: null, setTheta, zoom, drawn: () => true };
+  const view = { k: 50, cx: 0, cy: 0, theta: 0, w: 800, h: 500, free: false };
   const knob = new Map();
   let dragging = null, shownPose = null, last = null, fresh = true;
 
@@ -78,8 +109,9 @@ export function stage(box, hands) {
   function setTheta(theta) { view.theta = theta; }
 
   /** Fit what is there, with room for handles around it. */
-  function fit() {
-    if (!it.bounds) return;
+  function fit(anew = false) {
+    if (!it.bounds || (view.free && !anew)) return;
+    view.free = false;
     const [a0, b0, a1, b1] = it.bounds, size = Math.max(a1 - a0, b1 - b0, 1e-9);
     const room = { left: 40, right: 46, top: 50, bottom: 44 };
     // what the ground's turn makes of the building and the ground beside it
@@ -114,10 +146,41 @@ export function stage(box, hands) {
     last = arrays;
     if (!arrays.outline) { clear(); return; }
     it.bounds = boundsOf(arrays.outline);
-    if (opened || fresh) { shownPose = null; fit(); fresh = false; }
+    if (opened || fresh) { shownPose = null; fit(true); fresh = false; }
     else if (!dragging && outside()) fit();
     redraw();
   }
+  /** Enlarge the drawing about a place on the screen; null fits it into the stage again. */
+  function zoom(by, x = view.w / 2, y = view.h / 2) {
+    if (by === null) fit(true);
+    else {
+      view.free = true;
+      view.k *= by; view.cx = x + by * (view.cx - x); view.cy = y + by * (view.cy - y);
+    }
+    redraw();
+  }
+  svg.addEventListener("wheel", (event) => {
+    event.preventDefault();
+    const edge = svg.getBoundingClientRect();
+    zoom(1.0015 ** -event.deltaY, event.clientX - edge.left, event.clientY - edge.top);
+  }, { passive: false });
+  const fingers = new Map(); // places of the fingers on the drawing
+  const middle = () => { const [a, b] = [...fingers.values()]; return { x: (a[0] + b[0]) / 2, y: (a[1] + b[1]) / 2, apart: Math.hypot(a[0] - b[0], a[1] - b[1]) }; };
+  svg.addEventListener("pointerdown", (event) => {
+    if (event.pointerType !== "touch") return;
+    fingers.set(event.pointerId, [event.clientX, event.clientY]);
+    if (fingers.size === 2) { dragging = null; set(loupe, { visibility: "hidden" }); }
+  }, true);
+  svg.addEventListener("pointermove", (event) => {
+    if (!fingers.has(event.pointerId)) return;
+    const was = fingers.size === 2 ? middle() : null;
+    fingers.set(event.pointerId, [event.clientX, event.clientY]);
+    if (!was) return;
+    const now = middle(), edge = svg.getBoundingClientRect();
+    view.cx += now.x - was.x; view.cy += now.y - was.y;
+    zoom(now.apart / (was.apart || 1), now.x - edge.left, now.y - edge.top);
+  }, true);
+  for (const end of ["pointerup", "pointercancel"]) svg.addEventListener(end, (event) => fingers.delete(event.pointerId), true);
   function clear() {
     it.bounds = null; shownPose = null;
     for (const part of [stones, ties, dampers, mass, ghost, joints, supports, earth, dynamic, ground, ...Object.values(lines)]) set(part, { d: "" });
@@ -147,7 +210,7 @@ export function stage(box, hands) {
     const [x0, , x1, top] = it.bounds, r = 0.05 * (top - it.bounds[1]), middle = (x0 + x1) / 2;
     set(mass, { d: scene.head_mass_kg && !shownPose ? `M${f(middle - r)} ${f(top)}a${f(r)} ${f(r)} 0 1 0 ${f(2 * r)} 0a${f(r)} ${f(r)} 0 1 0 ${f(-2 * r)} 0Z` : "" });
     for (const [name, path] of Object.entries(lines)) {
-      const drawn = layers[name] && !shownPose && arrays[`${name}_line`];
+      const drawn = it.drawn(name) && !shownPose && arrays[`${name}_line`];
       set(path, { d: drawn ? piecesPath(arrays[`${name}_line`], arrays[`${name}_start`]) : "" });
     }
     supported(arrays, scene.abutting_wall);
@@ -199,8 +262,8 @@ export function stage(box, hands) {
       parts.push({ tag: "circle", class: `hinge ${name}`, cx: x, cy: y, r: 5.5, title: `${h.where} (${h.name})` });
     };
     if (!shownPose) {
-      for (const name of ["plus", "minus"]) if (layers[name]) for (const h of scene[`${name}_hinges`] ?? []) hinge(h, name);
-      for (const name of ["plus", "minus"]) if (layers[name]) for (const j of scene[`${name}_sliding`] ?? []) {
+      for (const name of ["plus", "minus"]) if (it.drawn(name)) for (const h of scene[`${name}_hinges`] ?? []) hinge(h, name);
+      for (const name of ["plus", "minus"]) if (it.drawn(name)) for (const j of scene[`${name}_sliding`] ?? []) {
         const [x, y] = screenOf(...j.at);
         parts.push({ tag: "path", class: `slide ${name}`, d: `M${x - 6} ${y}h12m-4 -4l4 4l-4 4`, title: `slides: ${j.name}` });
       }
@@ -217,7 +280,7 @@ export function stage(box, hands) {
       parts.push({ tag: "path", class: "reaction", d: `M${a} ${b}L${x} ${y}m${-ux * 8 + across[0] * 4} ${-uy * 8 + across[1] * 4}L${x} ${y}L${x - ux * 8 - across[0] * 4} ${y - uy * 8 - across[1] * 4}`,
         title: `reaction at ${r.name}: ${quantity(r.x_N, "N", 3)} across, ${quantity(r.y_N, "N", 3)} up` });
     }
-    shapes(marks, parts);
+    shapes(marks, shownPose?.falling ? openJoints() : parts);
   }
   function drawLoads(scene) {
     shapes(loads, (scene.loads ?? []).filter((l) => l.force_N).map((l) => {
@@ -231,7 +294,7 @@ export function stage(box, hands) {
 
   function drawKnobs(handles, scene) {
     const wanted = new Map();
-    if (!shownPose) {
+    if (!shownPose || shownPose.falling) {
       for (const h of handles) wanted.set(h.name, { ...h, text: Array.isArray(h.value) ? `${number(h.value[0])}; ${number(h.value[1])} m` : quantity(h.value, h.unit), now: Array.isArray(h.value) ? h.value[0] : h.value });
       if (scene.through && it.layers?.through) {
         const t = scene.through;
@@ -241,11 +304,15 @@ export function stage(box, hands) {
       if (!scene.seen) wanted.set("tilt", { name: "tilt", label: "Tilt of the ground", at: [reach, 0], along: "y", text: `${number(degrees(scene.gamma), 3)}°, ${number(scene.gamma, 3)} g`, now: scene.gamma, sort: "tilt" });
     }
     for (const [name, element] of knob) if (!wanted.has(name)) { element.remove(); knob.delete(name); }
-    for (const [name, w] of wanted) {
+    const names = [...wanted.keys()], places = names.map((name) => screenOf(...wanted.get(name).at));
+    const apart = names.length > MANY ? places : spread(places, coarse.matches ? CLOSE.coarse : CLOSE.fine, names.indexOf(dragging?.name), view.w, view.h);
+    for (const [i, [name, w]] of [...wanted].entries()) {
       let element = knob.get(name);
       if (!element) { element = make(name, w); knob.set(name, element); knobs.append(element); }
-      const [x, y] = screenOf(...w.at);
-      if (element.place !== `${x},${y}`) { set(element, { transform: `translate(${x} ${y})` }); element.place = `${x},${y}`; }
+      const [x, y] = apart[i];
+      element.at = apart[i];
+      set(element, { transform: `translate(${x} ${y})` });
+      set(element.leader, { x2: places[i][0] - x, y2: places[i][1] - y });
       if (element.now !== w.text) {
         element.now = w.text;
         set(element, { "aria-valuenow": number(w.now, 6).replace("−", "-"), "aria-valuetext": w.text });
@@ -257,7 +324,7 @@ export function stage(box, hands) {
   }
   function fitTag(element) {
     const width = 12 + element.tag.textContent.length * 6.3;
-    const left = element.data && screenOf(...element.data.at)[0] > view.w - width - 20;
+    const left = element.at && element.at[0] > view.w - width - 20;
     set(element.back, { width, x: left ? -width - 12 : 12 });
     set(element.tag, { x: left ? -width - 6 : 18 });
   }
@@ -265,7 +332,8 @@ export function stage(box, hands) {
     const tag = s("text", { y: -12 }), back = s("rect", { y: -26, height: 20, rx: 4 });
     const shape = w.along === "x" ? "M-9 0L-4 -5V5ZM9 0L4 -5V5Z" : w.along === "y" ? "M0 -9L-5 -4H5ZM0 9L-5 4H5Z" : "";
     const element = s("g", { class: `knob ${w.sort ?? ""}`, role: "slider", tabindex: "0", "aria-label": w.label, "data-handle": name, "aria-keyshortcuts": "ArrowLeft ArrowRight ArrowUp ArrowDown Enter" },
-      s("circle", { class: "hit", r: 15 }), shape ? s("path", { class: "arrows", d: shape }) : null, s("circle", { class: "dot", r: w.along === "both" ? 6 : 4 }), s("g", { class: "tag" }, back, tag));
+      s("line", { class: "leader", x1: 0, y1: 0 }), s("circle", { class: "hit", r: coarse.matches ? CLOSE.coarse / 2 : 15 }), shape ? s("path", { class: "arrows", d: shape }) : null, s("circle", { class: "dot", r: w.along === "both" ? 6 : 4 }), s("g", { class: "tag" }, back, tag));
+    element.leader = element.firstElementChild;
     element.tag = tag; element.back = back; element.data = w;
     element.addEventListener("pointerdown", (event) => grab(event, element));
     element.addEventListener("pointerenter", () => fitTag(element));
@@ -278,12 +346,26 @@ export function stage(box, hands) {
     });
     return element;
   }
-  function grab(event, element) {
+  /** The handle nearest to a pointer, of many that cover each other. */
+  function nearest(event) {
+    const edge = svg.getBoundingClientRect(), far = (e) => Math.hypot(event.clientX - edge.left - e.at[0], event.clientY - edge.top - e.at[1]);
+    return [...knob.values()].reduce((best, e) => (far(e) < far(best) ? e : best));
+  }
+  /** An enlarged picture of what a finger covers. */
+  function drawLoupe(event) {
+    if (!dragging || event.pointerType === "mouse") return;
+    const x = event.clientX - dragging.edge.left, y = event.clientY - dragging.edge.top, above = y > 2.8 * LOUPE;
+    const cx = Math.min(Math.max(above ? x : x + (x > view.w / 2 ? -2 : 2) * LOUPE, LOUPE), view.w - LOUPE), cy = above ? y - 1.8 * LOUPE : Math.max(y, LOUPE);
+    set(loupe, { visibility: "visible", transform: `translate(${cx} ${cy})` });
+    set(inside, { transform: `scale(2) translate(${-(x - dragging.dx)} ${-(y - dragging.dy)})` });
+  }
+  function grab(event, touched) {
     if (event.button !== 0) return;
+    const element = knob.size > MANY ? nearest(event) : touched;
     event.preventDefault();
     element.focus({ preventScroll: true });
     element.setPointerCapture(event.pointerId);
-    const edge = svg.getBoundingClientRect(), at = screenOf(...element.data.at);
+    const edge = svg.getBoundingClientRect(), at = screenOf(...element.data.at); // a knob moved aside is led as from its own place
     dragging = { name: element.data.name, dx: event.clientX - edge.left - at[0], dy: event.clientY - edge.top - at[1], edge, theta: view.theta };
     element.classList.add("held");
     // Raw positions come as the hand moves, those of pointermove wait for the next picture.
@@ -294,6 +376,7 @@ export function stage(box, hands) {
       element.classList.remove("held");
       if (e.type === "pointerup") moved(e, true);
       dragging = null;
+      set(loupe, { visibility: "hidden" });
       if (it.bounds && outside()) { fit(); redraw(); }
     };
     element.addEventListener(kind, move);
@@ -302,20 +385,31 @@ export function stage(box, hands) {
   }
   /** The line through a point is dragged from where the stones are pressed. */
   svg.addEventListener("pointerdown", (event) => {
-    if (event.target.closest?.(".knob") || !hands.begin(event)) return;
+    if (event.target.closest?.(".knob")) return;
+    if (!hands.begin(event)) { if (view.free && event.button === 0 && event.pointerType !== "touch") shift(event); return; }
     svg.setPointerCapture(event.pointerId);
     dragging = { name: "through", dx: 0, dy: 0, edge: svg.getBoundingClientRect(), theta: view.theta };
     const move = (e) => moved(e, false);
-    const up = () => { svg.removeEventListener("pointermove", move); dragging = null; };
+    const up = () => { svg.removeEventListener("pointermove", move); dragging = null; set(loupe, { visibility: "hidden" }); };
     svg.addEventListener("pointermove", move);
     svg.addEventListener("pointerup", up, { once: true });
     svg.addEventListener("pointercancel", up, { once: true });
   });
+  /** An enlarged drawing follows the pointer that holds it beside the blocks. */
+  function shift(event) {
+    svg.setPointerCapture(event.pointerId);
+    const move = (e) => { view.cx += e.movementX; view.cy += e.movementY; redraw(); };
+    const up = () => svg.removeEventListener("pointermove", move);
+    svg.addEventListener("pointermove", move);
+    svg.addEventListener("pointerup", up, { once: true });
+    svg.addEventListener("pointercancel", up, { once: true });
+  }
   function moved(event, ends) {
     if (!dragging) return;
+    drawLoupe(event);
     const px = event.clientX - dragging.edge.left - dragging.dx, py = event.clientY - dragging.edge.top - dragging.dy;
     if (dragging.name === "tilt") {
-      const theta = Math.max(-1.2, Math.min(1.2, Math.atan2(py - view.cy, px - view.cx)));
+      const theta = Math.max(-1.3, Math.min(1.3, Math.atan2(py - view.cy, px - view.cx)));
       hands.tilt(Math.tan(theta), ends, event.timeStamp);
     } else if (dragging.name === "through") hands.through(modelOf(px, py), ends, event.timeStamp);
     else hands.drag(dragging.name, modelOf(px, py), ends, event.timeStamp);
@@ -323,18 +417,37 @@ export function stage(box, hands) {
 
   // Stones that move
 
-  /** Show the stones in a pose; null brings them back. line: points of a thrust line of that pose; body: other stones. */
-  function pose(value, offset = 0, line = null, lineOffset = 0, points = 0, body = null) {
+  /** Show the stones in a pose; null brings them back. line: points of a thrust line of that pose; body: other stones; falling: the open joints are marked and the handles stay. */
+  function pose(value, { line = null, lineOffset = 0, points = 0, body = null, falling = false } = {}) {
     const was = shownPose;
-    shownPose = value ? { value, offset, line, lineOffset, points, body: body ?? last } : null;
+    shownPose = value ? { value, line, lineOffset, points, body: body ?? last, falling } : null;
     if (!last?.outline) return;
     if (!value) { set(dynamic, { d: "" }); redraw(); return; }
-    if (!was) redraw(); else drawPose();
+    if (!was) redraw(); else { drawPose(); if (falling) shapes(marks, openJoints()); }
+  }
+  /** Marks at the joints that a pose has opened: a hinge where one end still touches. */
+  function openJoints() {
+    const { value } = shownPose, { joint_p: p, joint_q: q, joint_block: block, centroid } = last, parts = [];
+    const size = Math.max(it.bounds[2] - it.bounds[0], it.bounds[3] - it.bounds[1]), least = 0.002 * size;
+    const moved = (b, x, y) => {
+      if (b < 0) return [x, y];
+      const turn = value[3 * b + 2], c = Math.cos(turn), n = Math.sin(turn), dx = x - centroid[2 * b], dy = y - centroid[2 * b + 1];
+      return [value[3 * b] + c * dx - n * dy, value[3 * b + 1] + n * dx + c * dy];
+    };
+    for (let j = 0; j < p.length / 2; j += 1) {
+      const [a, b] = [block[2 * j], block[2 * j + 1]];
+      const gaps = [p, q].map((end) => { const one = moved(a, end[2 * j], end[2 * j + 1]), two = moved(b, end[2 * j], end[2 * j + 1]); return { gap: Math.hypot(one[0] - two[0], one[1] - two[1]), at: one }; });
+      const [closed, open] = gaps[0].gap < gaps[1].gap ? gaps : [gaps[1], gaps[0]];
+      if (open.gap < least || closed.gap > 0.3 * open.gap) continue;
+      const [x, y] = screenOf(...closed.at);
+      parts.push({ tag: "circle", class: "hinge plus", cx: x, cy: y, r: 5.5, title: "hinge" });
+    }
+    return parts;
   }
   function drawPose() {
-    const { value, offset, line, lineOffset, points, body } = shownPose;
+    const { value, line, lineOffset, points, body } = shownPose;
     set(ghost, { d: stonesPath(body.outline, body.outline_start) });
-    set(stones, { d: stonesPath(body.outline, body.outline_start, body.centroid, value, offset) });
+    set(stones, { d: stonesPath(body.outline, body.outline_start, body.centroid, value) });
     let d = "", pen = false;
     if (line) for (let i = 0; i < points; i += 1) {
       const x = line[lineOffset + 2 * i], y = line[lineOffset + 2 * i + 1];
@@ -345,6 +458,7 @@ export function stage(box, hands) {
     set(dynamic, { d });
   }
   function moving() { return shownPose !== null; }
+  function held() { return dragging !== null; }
   return it;
 }
 export { LINES };

@@ -4,7 +4,7 @@ import { h, number, quantity, s, set, shapes } from "./dom.js";
 export function structurePanel(app, lower) {
   const svg = s("svg", { class: "polygon", role: "img" });
   const polygonBox = h("div", { class: "card" }, h("h2", {}, "Force polygon"), h("div", { class: "fill" }, svg));
-  const bar = s("svg", { class: "gauge", role: "img" });
+  const bar = s("svg", { class: "gauge", role: "group" });
   const gaugeBox = h("div", { class: "card" }, h("h2", {}, "Tilt and thrust"), h("div", { class: "fill" }, bar));
   const panel = h("div", { class: "cards", "data-for": "structure" }, polygonBox, gaugeBox);
   lower.append(panel);
@@ -21,7 +21,7 @@ export function structurePanel(app, lower) {
   function polygon() {
     const rays = app.arrays.polygon, { w, h: hgt } = room;
     set(svg, { viewBox: `0 0 ${w} ${hgt}`, width: w, height: hgt });
-    if (!rays?.length || !w) { shapes(svg, []); set(svg, { "aria-label": "There is no force polygon." }); return; }
+    if (!rays?.length || !w) { shapes(svg, w && app.scene.falls ? [{ tag: "text", x: w / 2, y: 30, "text-anchor": "middle", text: "no equilibrium, no force polygon" }] : []); set(svg, { "aria-label": "There is no force polygon." }); return; }
     let x1 = 0, y0 = 0, y1 = 0, x0 = 0;
     for (let i = 0; i < rays.length; i += 2) { x1 = Math.max(x1, rays[i]); x0 = Math.min(x0, rays[i]); y0 = Math.min(y0, rays[i + 1]); y1 = Math.max(y1, rays[i + 1]); }
     const k = Math.min((w - 40) / Math.max(x1 - x0, 1e-9), (hgt - 36) / Math.max(y1 - y0, 1e-9));
@@ -52,7 +52,7 @@ export function structurePanel(app, lower) {
     const scene = app.scene, { w, h: hgt } = room;
     set(bar, { viewBox: `0 0 ${w} ${hgt}`, width: w, height: hgt });
     span = null;
-    if (!scene.capacity || !w) { shapes(bars, []); knob.remove(); return; }
+    if (!scene.capacity || !w) { shapes(bars, w && scene.falls ? [label(w / 2, 30, "no capacity: the structure cannot stand", w)] : []); knob.remove(); return; }
     const { plus_g: plus, minus_g: minus } = scene.capacity, far = 1.15 * Math.max(plus, minus, Math.abs(scene.gamma), 1e-6);
     const X = (g) => 16 + ((g + far) / (2 * far)) * (w - 32);
     const y = 34, parts = [
@@ -74,7 +74,7 @@ export function structurePanel(app, lower) {
     }
     if (span && most > least) { if (!knob.isConnected) bar.append(knob); } else knob.remove();
     shapes(bars, parts);
-    set(bar, { "aria-label": `It bears from ${number(-minus, 3)} to ${number(plus, 3)} g; now ${number(scene.gamma, 3)} g.` });
+    set(bar, { "aria-label": `Capacity from ${number(-minus, 3)} to ${number(plus, 3)} g; now ${number(scene.gamma, 3)} g.` });
   }
   function keys(e) {
     if (!span) return;

@@ -1,0 +1,170 @@
+"""The page at four sizes of screen, by finger and by mouse: nothing overflows, all is reachable, handles are apart; axe-core."""
+
+import itertools
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hands import ROCKING, open_text, settled, until
+from served import SHOTS, Served
+
+#: Width, height, and whether it is held by fingers
+SCREENS = [(390, 844, True), (820, 1180, True), (1366, 768, False), (2560, 1440, False)]
+BY_SIZE = pytest.mark.parametrize("screen", SCREENS, indirect=True, ids=lambda s: f"{s[0]}x{s[1]}")
+
+#: Buttons, fields and handles that lie outside of the window, of their scrolled box, or under something else
+BEYOND = """() => {
+    const seen = e => e.getClientRects().length && !e.closest("[hidden]") && getComputedStyle(e).visibility !== "hidden";
+    const scrolls = e => { for (let p = e.parentElement; p; p = p.parentElement) { const s = getComputedStyle(p); if (/auto|scroll/.test(s.overflowX + s.overflowY)) return true; } return false; };
+    const out = [];
+    for (const e of document.querySelectorAll("button, select, input, textarea, .knob .hit, a")) {
+        if (!seen(e) || e.type === "file") continue;
+        const r = e.getBoundingClientRect();
+        const within = r.left >= -1 && r.top >= -1 && r.right <= innerWidth + 1 && r.bottom <= innerHeight + 1;
+        if (!within && !scrolls(e)) out.push((e.getAttribute("aria-label") || e.textContent || e.parentElement.dataset.handle || e.outerHTML).slice(0, 60) + ` ${[r.left, r.top, r.right, r.bottom].map(Math.round)}`);
+    }
+    return out;
+}"""
+OVERFLOW = "[document.documentElement.scrollWidth - innerWidth, document.documentElement.scrollHeight - innerHeight]"
+
+
+@pytest.fixture
+def screen(browser: Any, served: Served, request: pytest.FixtureRequest) -> Iterator[Any]:
+    width, height, fingers = request.param
+    context = browser.new_context(
+        viewport={"width": width, "height": height}, has_touch=fingers, is_mobile=fingers, device_scale_factor=1
+    )
+    page = context.new_page()
+    troubles: list[str] = []
+    page.on("pageerror", lambda error: troubles.append(str(error)))
+    page.set_default_timeout(60_000)
+    page.goto(served.address)
+    page.wait_for_selector("[data-handle=thickness]")
+    settled(page)
+    SHOTS.mkdir(parents=True, exist_ok=True)
+    yield page
+    context.close()
+    assert not troubles
+
+
+def fits(page: Any) -> None:
+    assert page.evaluate(OVERFLOW) == [0, 0]
+    assert page.evaluate(BEYOND) == []
+
+
+@BY_SIZE
+def test_nothing_overflows_and_all_is_reachable(screen: Any) -> None:
+    page, size = screen, screen.viewport_size
+    name = f"{size['width']}x{size['height']}"
+    fits(page)
+    page.screenshot(path=SHOTS / f"screen-{name}-structure.png")
+    for side in ("sizes", "deck", "teach", "answer"):
+        page.click(f"[data-side={side}]")
+        if page.locator(f".page.{side}").is_hidden():
+            page.click(f"[data-side={side}]")
+        assert page.locator(f".page.{side}").is_visible()
+        fits(page)
+    page.screenshot(path=SHOTS / f"screen-{name}-answer.png")
+    if size["width"] < 700:
+        page.click("[data-side=answer]")
+        assert page.locator(".page.answer").is_hidden(), "the sheet closes"
+    open_text(page, ROCKING)
+    page.click("[data-tab=motion]")
+    until(page, "window.extrados.motion.map?.told")
+    settled(page)
+    fits(page)
+    page.screenshot(path=SHOTS / f"screen-{name}-motion.png")
+    legend = page.locator(".map-legend").bounding_box()
+    chart = page.locator("[data-chart=map] svg").bounding_box()
+    assert legend["x"] >= chart["x"] + chart["width"] - 1, "the legend stands beside the map"
+    page.click("[data-tab=results]")
+    fits(page)
+    page.click("text=Export")
+    fits(page)
+    page.keyboard.press("Escape")
+    page.click("[data-tab=structure]")
+    page.click("[aria-label='Dark or light']")
+    page.evaluate("window.extrados.show({ gamma: 0.6 })")
+    settled(page)
+    until(page, "window.extrados.fall.now > 0.6")
+    fits(page)
+    page.screenshot(path=SHOTS / f"screen-{name}-collapse-dark.png")
+
+
+@BY_SIZE
+@pytest.mark.parametrize("preset", ["limit/arch-120", "vault/vezelay-like", "rocking/housner"])
+def test_handles_never_cover_each_other(screen: Any, preset: str) -> None:
+    page = screen
+    page.evaluate("preset => window.extrados.open({ preset })", preset)
+    settled(page)
+    until(page, "window.extrados.source.preset !== undefined")
+    fingers = page.evaluate("matchMedia('(pointer: coarse)').matches")
+    boxes = page.evaluate(
+        "[...document.querySelectorAll('.stage .knob .hit')].map(e => { const r = e.getBoundingClientRect(); return [r.left + r.width / 2, r.top + r.height / 2, r.width]; })"
+    )
+    assert len(boxes) >= 3
+    least = 44 if fingers else 26
+    assert all(box[2] >= least for box in boxes)
+    for one, two in itertools.combinations(boxes, 2):
+        assert ((one[0] - two[0]) ** 2 + (one[1] - two[1]) ** 2) ** 0.5 >= least - 1.5
+    if fingers:
+        small = page.evaluate(
+            """[...document.querySelectorAll("button, select")].filter(e => e.getClientRects().length).map(e => [e.getBoundingClientRect(), e.textContent])
+                .filter(([r]) => r.height < 43.5 || r.width < 43.5).map(([, text]) => text)"""
+        )
+        assert small == []
+
+
+@pytest.mark.parametrize("screen", SCREENS[:1], indirect=True, ids=["390x844"])
+def test_a_finger_drags_under_a_loupe_and_two_enlarge(screen: Any) -> None:
+    page = screen
+    link = page.context.new_cdp_session(page)
+    box = page.locator("[data-handle=thickness] .hit").bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+    def touch(kind: str, *points: tuple[float, float]) -> None:
+        link.send("Input.dispatchTouchEvent", {
+            "type": kind, "touchPoints": [{"x": px, "y": py, "id": k} for k, (px, py) in enumerate(points)],
+        })  # fmt: skip
+
+    before = settled(page)
+    touch("touchStart", (x, y))
+    for k in range(1, 7):
+        touch("touchMove", (x, y - 3 * k))
+    assert page.locator(".loupe").get_attribute("visibility") == "visible"
+    page.screenshot(path=SHOTS / "loupe.png")
+    touch("touchEnd")
+    assert settled(page) != before
+    assert page.locator(".loupe").get_attribute("visibility") == "hidden"
+    stage = page.locator(".stage").bounding_box()
+    x, y = stage["x"] + stage["width"] / 2, stage["y"] + 0.75 * stage["height"]
+    page.click("[aria-label='Fit the drawing']")
+    wide = page.locator(".stones").bounding_box()["width"]
+    touch("touchStart", (x - 30, y), (x + 30, y))
+    for k in range(1, 9):
+        touch("touchMove", (x - 30 - 5 * k, y), (x + 30 + 5 * k, y))
+    touch("touchEnd")
+    assert page.locator(".stones").bounding_box()["width"] > 1.6 * wide
+    page.click("[aria-label='Fit the drawing']")
+    assert page.locator(".stones").bounding_box()["width"] == pytest.approx(wide, rel=0.1)
+
+
+@pytest.mark.parametrize("screen", [SCREENS[0], SCREENS[2]], indirect=True, ids=["390x844", "1366x768"])
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+def test_axe_finds_nothing_serious(screen: Any, dark: bool) -> None:
+    found = pytest.importorskip("axe_playwright_python", reason="axe-core is not installed: make browser")
+    source = (Path(found.__file__).parent / "axe.min.js").read_text("utf-8")
+    page = screen
+    if dark:
+        page.click("[aria-label='Dark or light']")
+    page.evaluate(f"() => {{ {source}; window.axe = window.axe ?? axe; }}")
+    open_text(page, ROCKING)
+    for tab in ("structure", "motion", "results"):
+        page.click(f"[data-tab={tab}]")
+        page.wait_for_timeout(300)
+        told = page.evaluate(
+            """async () => (await window.axe.run(document, { resultTypes: ["violations"] })).violations
+                .filter(v => ["serious", "critical"].includes(v.impact)).map(v => [v.id, v.nodes.slice(0, 4).map(n => n.html.slice(0, 160))])"""
+        )
+        assert told == [], tab
