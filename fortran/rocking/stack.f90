@@ -248,8 +248,8 @@ contains
       s = found
    end subroutine choose_pivots
 
-   !> Rates after an impact at contacts, and which stay open. A contact that hardly parts stays shut, and its impulses are
-   !> found anew: to keep the other rate as it was would change the momentum, and might give energy.
+   !> Rates after an impact at contacts, and which stay open. A contact that hardly parts stays shut, and its impulses
+   !> are found anew: to keep the other rate as it was would change the momentum, and might give energy.
    pure subroutine stack_impact(body, s, q, v, at, s_after, v_after)
       type(stack), intent(in) :: body
       integer, intent(in) :: s(2)         !! pivots before

@@ -45,7 +45,7 @@ def history(
     end = options.end_time or motion.end + rest_time(rocker)
     fine = options.model_copy(update={"output_step": max(options.output_step, end / MOST_OUTPUTS)})
     response = run_history(context, fine, rocker.body, end, 12, rocker.start_rotation)
-    conditions = of_one(rocker, response)["conditions"]
+    conditions = of_one(rocker, response)
     words: dict[str, Any] = {
         "outcome": response.outcome, "settled": response.settled, "half_cycles": response.half_cycles,
         "impacts": response.impacts, "impact_times_s": [t for kind, t, _ in response.events if kind == "impact"][:400],
