@@ -270,7 +270,9 @@ class FailureDomain(KindResults):
     )
     natural_time_s: float = fact("time by which the curves scale: sqrt(R/g) of an arch, 1/p of a block", "s")
     safe_pockets: int = fact("durations with safe amplitudes above a failing one")
-    at_amplitudes: AtAmplitudes = maybe("shortest failing durations at the amplitudes that the deck requests")
+    at_amplitudes: AtAmplitudes = maybe(
+        "shortest failing durations at the amplitudes that the deck requests, by fixed hinges without sliding"
+    )
     frequency_ratio: list[float] = maybe("of a block: omega/p of the pulses")
     pocket_begins_ratio: list[float | None] = maybe(
         "of a block: pocket_begins over the uplift acceleration, that on rigid ground"

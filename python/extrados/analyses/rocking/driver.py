@@ -7,7 +7,7 @@ from extrados.analyses.rocking import mechanism as mechanism_rocking
 from extrados.analyses.rocking import soft_base as soft_base_rocking
 from extrados.analyses.rocking import stack as stack_rocking
 from extrados.analyses.rocking.common import with_moving_supports
-from extrados.analyses.rocking.shapes import film_arrays
+from extrados.analyses.rocking.shapes import film_arrays, on_contacts
 from extrados.analyses.rocking.tables import Rocking
 from extrados.results.model import Result
 from extrados.views.rockers.arch import ArchModel
@@ -28,6 +28,10 @@ def run(context: Context, options: Rocking) -> Result:
     result = next(run for kind, run in kinds.items() if isinstance(rocker.model, kind))(context, options, rocker)
     if options.animation != "none":
         result.arrays |= film_arrays(rocker, result)
+    if result.results.hand_over is not None:
+        result.arrays |= on_contacts(context.building.blocks(), result)
+        for line in ("snapshot_thrust", "film_line"):  # of the mechanism
+            result.arrays.pop(line, None)
     return _with_friction(context, result)
 
 

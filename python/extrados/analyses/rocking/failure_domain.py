@@ -374,10 +374,15 @@ def run(context: Context, options: FailureDomain) -> Result:
     result.answer = _answer(model, options, durations, curves, r.safe_pockets)
     result.warnings += warned(r)
     if handed:
+        given = f" at friction {conditions.friction:.2f}" if conditions.friction is not None else ""
         result.warnings.append(
-            f"Rigid contacts decided {handed} of {curves.codes.size} pulses, in which joints slide or hinges form elsewhere. The curves "
-            "at these durations are known to a cell of the map."
+            f"Rigid contacts decided {handed} of {curves.codes.size} pulses: joints slide{given} in {conditions.sliding} pulses, and hinges "
+            f"form elsewhere in {conditions.hinges_elsewhere}. The curves at these durations are known to a cell of the map."
         )
+        if options.at_amplitudes:
+            result.warnings.append(
+                "The shortest failing durations (at_amplitudes) are those of fixed hinges without sliding."
+            )
     return result
 
 

@@ -28,7 +28,7 @@ from extrados.core.ground import Ground
 from extrados.core.rocking import OUTCOMES, Body, Response, history
 from extrados.limit.linkage import Linkage
 from extrados.model.errors import BadGeometry
-from extrados.model.geometry.assembly import Assembly
+from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.results.dem import DemRun
 from extrados.results.model import Array, Result
 from extrados.results.rocking import COLLAPSE, NO_HINGING, RECOVERY, WholeOutcome
@@ -38,8 +38,10 @@ from extrados.views.rockers.watch import LOST
 
 #: Handed over so much before the condition fails, over the time unit of the structure: contacts take an impact themselves
 BEFORE = 1e-3
-#: Spacing of the history of contacts in maps, over the time unit: no number of it is kept
+#: Spacing of the history of contacts in maps, over the time unit of the structure
 COARSE = 0.02
+#: Heights of joints on the ground that differ by no more than this share of the size are one level
+LEVEL = 1e-6
 #: Outcome of `rocking` for one of contacts; of many runs sliding counts as recovery
 WORDS: dict[str, WholeOutcome] = {
     "at-rest": "no-hinging", "slid": "slid", "rocked": "recovery", "collapse": "collapse",
@@ -96,10 +98,12 @@ class Leaving:
 
 @dataclass(frozen=True)
 class Contacts:
-    """The blocks of a building on rigid contacts, and the mechanism that they leave."""
+    """The blocks of a building on rigid contacts, and the mechanism that they leave; floor: height of the level ground on which they
+    slide [m], None where they stand on footings."""
 
     leaving: Leaving
     model: Model
+    floor: float | None
 
     @cached_property
     def bodies(self) -> dem.Bodies:
@@ -119,7 +123,9 @@ def contacts_of(rocker: Rocker, building: Building, linear: bool = False, tolera
     if watch is None or not len(watch.joints) or linear:
         return None
     try:
-        blocks, rigid = building.blocks(), building.rigid()
+        blocks = building.blocks()
+        floor = level_of(blocks)
+        rigid = building.rigid((), floor)
     except BadGeometry:
         return None
     linkages = watch.linkages
@@ -134,16 +140,23 @@ def contacts_of(rocker: Rocker, building: Building, linear: bool = False, tolera
     leaving = Leaving(
         rocker.body, linkages, blocks, astray_of(rocker), rocker.start_rotation, rocker.time_unit, tolerance
     )
-    return Contacts(leaving, model)
+    return Contacts(leaving, model, floor)
+
+
+def level_of(blocks: Assembly) -> float | None:
+    """Height of the ground [m]; None where joints on it are not level, or not at one height."""
+    grounded = (blocks.a == GROUND) | (blocks.b == GROUND)
+    heights = np.concatenate([blocks.p[grounded, 1], blocks.q[grounded, 1]])
+    return float(heights[0]) if np.ptp(heights) <= LEVEL * blocks.size else None
 
 
 def follow_contacts(
-    context: Context, model: Model, begin: Begin, end_time: float | None, output_step: float
+    context: Context, contacts: Contacts, begin: Begin, end_time: float | None, output_step: float
 ) -> tuple[DemRun, Result]:  # fmt: skip
     """The run of contacts from a state, and what is stored of it. Refused where it has no result."""
-    options = Dem(kind="dem", solver="nonsmooth", end_time=end_time, output_step=output_step)
-    context.warnings += dem_model.adjusted(model)
-    trial = Trial(context, options, model, begin)
+    options = Dem(kind="dem", solver="nonsmooth", end_time=end_time, output_step=output_step, floor=contacts.floor)
+    context.warnings += dem_model.adjusted(contacts.model)
+    trial = Trial(context, options, contacts.model, begin)
     result = dem_history.follow(context, options, trial, "rocking-contacts")
     assert isinstance(result.results, DemRun)
     return result.results, result
@@ -158,10 +171,10 @@ def stored(result: Result) -> dict[str, Array]:
     """Histories of the blocks on contacts, by names of their own."""
     get = result.arrays
     axes = {"time": "contacts_time"}
-    kept = {"time": "time", "place": "place", "rotation": "rotation", "slip": "slip", "ground": "ground"}
+    kept = ("time", "place", "rotation", "slip", "ground", "kinetic_energy", "friction_energy", "damping_energy")
     return {
-        f"contacts_{name}": Array(get[old].data, tuple(axes.get(d, d) for d in get[old].dims), get[old].unit, get[old].about)
-        for name, old in kept.items()
+        f"contacts_{name}": Array(get[name].data, tuple(axes.get(d, d) for d in get[name].dims), get[name].unit, get[name].about)
+        for name in kept
     }  # fmt: skip
 
 
@@ -204,7 +217,7 @@ class ContactRuns:
             dem_model.checked(run, c.model)
         except Refused:
             return UNKNOWN
-        fate = Seen.of(c.model, run, False).fate(self.collapse)
+        fate = Seen.of(c.model, run, c.floor is not None).fate(self.collapse)
         return CODES[outcome_of(bool(response.half_cycles), fate.outcome)]
 
 
@@ -217,7 +230,7 @@ def decide(
 ) -> np.ndarray:  # fmt: skip
     """Outcomes (runs) on contacts of runs whose mechanism a condition leaves, UNKNOWN where contacts gave no result; see
     ContactRuns."""
-    options, model = Dem(kind="dem", solver="nonsmooth"), contacts.model
+    options, model = Dem(kind="dem", solver="nonsmooth", floor=contacts.floor), contacts.model
     step = COARSE * contacts.leaving.time_unit
     asked = core_options(context, options, model)
     collapse = Collapse.of(0.2 * model.size, model.size)

@@ -68,10 +68,10 @@ def rock(context: Context, options: Rocking, rocker: Rocker, end_time: float, wi
         ground = context.motion.ground
         try:
             run, result = follow_contacts(
-                context, contacts.model, contacts.begin(ground, time), options.end_time, options.output_step
+                context, contacts, contacts.begin(ground, time), options.end_time, options.output_step
             )
         except (Refused, Unfinished) as error:
-            context.warnings.append(f"Rigid contacts did not go on from {time:.3f} s: {error}")
+            context.warnings.append(f"Rigid contacts gave no result from {time:.3f} s: {error}")
         else:
             response = until(max(time, 1e-9 * rocker.time_unit))
             conditions = of_one(rocker, fixed, handed=True)
