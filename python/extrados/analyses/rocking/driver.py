@@ -13,13 +13,13 @@ from extrados.results.model import Result
 from extrados.views.rockers.arch import ArchModel
 from extrados.views.rockers.block import BlockModel
 from extrados.views.rockers.mechanism import MechanismModel
+from extrados.views.rockers.stack import rocks_as_stack
 
 
 def run(context: Context, options: Rocking) -> Result:
     """History, impacts, energies, friction needed; of an arch the dynamic thrust line too."""
     context = with_moving_supports(context)
-    structure = context.building.structure
-    if structure is not None and structure.rocks_as == "stack":
+    if rocks_as_stack(context.building):
         return _with_friction(context, stack_rocking.run(context, options))
     if context.building.supports.stiffness is not None:
         return _with_friction(context, soft_base_rocking.run(context, options))
