@@ -25,6 +25,7 @@ FIGURES: dict[str, tuple[str, str, str, tuple[int, ...], int]] = {
     "corner": ("solid/corner", "tilt", "", (), 800),
     "survey": ("limit/church", "tilt", "tilt-collapse", (), 900),
     "rocking": ("arch/readme", "rocking", "rocking-history", (), 900),
+    "hand-over": ("vault/hand-over", "rocking", "rocking-history", (), 900),
     "domain": ("arch/oppenheim-domain", "failure-domain", "", (), 800),
     "motion": ("motion/el-centro", "motion", "", (), 900),
     "facade": ("codes/facade", "local-mechanism", "", (), 900),

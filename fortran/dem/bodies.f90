@@ -23,7 +23,7 @@ module dem_bodies
       real(wp) :: inertia = 0.0_wp                             !! [kg m^2]
       real(wp) :: radius = 0.0_wp                              !! farthest vertex from the centroid [m]
       real(wp) :: seen_x = 0.0_wp, seen_y = 0.0_wp, seen_angle = 0.0_wp     !! place at the last search
-      real(wp) :: rest_x = 0.0_wp, rest_y = 0.0_wp, rest_angle = 0.0_wp     !! place after settling
+      real(wp) :: rest_x = 0.0_wp, rest_y = 0.0_wp, rest_angle = 0.0_wp     !! place as drawn, then after settling
       real(wp) :: work = 0.0_wp                                !! done by the ground's body force [J]
       real(wp) :: mass_loss = 0.0_wp                           !! taken by mass-proportional damping [J]
       real(wp) :: airborne = 0.0_wp                            !! time without contact [s]
@@ -86,6 +86,8 @@ contains
             item%number = b
             item%x = centroid(1, b)
             item%y = centroid(2, b)
+            item%rest_x = item%x
+            item%rest_y = item%y
             item%mass = mass(b)
             item%inertia = inertia(b)
             item%fixed = .not. mass(b) > 0.0_wp

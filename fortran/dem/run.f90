@@ -40,12 +40,12 @@ contains
       run%record%least_step = model%step
       if (model%step > stable) run%record%reason = stop_step
       if (run%record%reason /= stop_end) return
-      call run%mark_rest()
+      ! What starts moving is displaced from where it was drawn.
       if (run%options%settle_steps > 0) then
          call settle_bodies(run, status)
          if (status /= status_ok .or. run%record%reason /= stop_end) return
+         call run%mark_rest()
       end if
-      call run%mark_rest()
       model%shaking = .true.
       call take_exactly(run, 1, status)
       if (status /= status_ok) return

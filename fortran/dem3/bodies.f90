@@ -34,8 +34,8 @@ module dem3_bodies
       real(wp) :: seen_turn(3, 3) = 0.0_wp
       real(wp) :: marked(3) = 0.0_wp           !! and at the last mark
       real(wp) :: marked_turn(3, 3) = 0.0_wp
-      real(wp) :: rest(3) = 0.0_wp             !! place after settling
-      real(wp) :: rest_turn(3, 3) = 0.0_wp     !! attitude after settling
+      real(wp) :: rest(3) = 0.0_wp             !! place as drawn, then after settling
+      real(wp) :: rest_turn(3, 3) = 0.0_wp     !! attitude as drawn, then after settling
       real(wp) :: work = 0.0_wp                !! done by the ground's body force [J]
       real(wp) :: airborne = 0.0_wp            !! time without contact [s]
       integer :: marks = 0                     !! times that it has moved far enough to look at its contacts anew
@@ -109,6 +109,8 @@ contains
          associate (item => set%item(b))
             item%x = centroid(:, b)
             item%turn = axes(:, :, b)
+            item%rest = item%x
+            item%rest_turn = item%turn
             item%mass = mass(b)
             item%inertia = inertia(:, b)
             item%fixed = .not. mass(b) > 0.0_wp

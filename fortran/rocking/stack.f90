@@ -248,7 +248,8 @@ contains
       s = found
    end subroutine choose_pivots
 
-   !> Rates after an impact at a contact, for tests and for the run
+   !> Rates after an impact at contacts, and which stay open. A contact that hardly parts stays shut, and its impulses
+   !> are found anew: to keep the other rate as it was would change the momentum, and might give energy.
    pure subroutine stack_impact(body, s, q, v, at, s_after, v_after)
       type(stack), intent(in) :: body
       integer, intent(in) :: s(2)         !! pivots before
@@ -256,8 +257,17 @@ contains
       logical, intent(in) :: at(2)        !! contacts that close
       integer, intent(out) :: s_after(2)
       real(wp), intent(out) :: v_after(2)
+      logical :: touching(2), stays(2)
+      touching = at .or. s == 0
       s_after = s
-      call choose_pivots(body, at .or. s == 0, s_after, q, v, [0.0_wp, 0.0_wp], v_after, s)
+      call choose_pivots(body, touching, s_after, q, v, [0.0_wp, 0.0_wp], v_after, s)
+      do
+         stays = touching .and. s_after /= 0 &
+            .and. real(s_after, wp) * [v_after(1), v_after(2) - v_after(1)] <= body%rest_rate
+         if (.not. any(stays)) exit
+         where (stays) s_after = 0
+         v_after = solved(momentum_about(body, s_after, q, s, v), s_after)
+      end do
    end subroutine stack_impact
 
    !> Kinetic and potential energy [J]

@@ -146,7 +146,7 @@ contains
       type(mode_history), intent(inout) :: history
       real(wp) :: energy(2), gone(2), after(2)
       integer :: contact, pivots(2)
-      logical :: at(2), touching(2)
+      logical :: at(2)
 
       at = body%closes(y)
       if (any(at)) then
@@ -161,15 +161,7 @@ contains
          end if
          if (at(2) .or. body%s(2) == 0) y(2) = y(1)
          energy = energies(body%body, body%s, y(1:2), y(3:4))
-         touching = at .or. body%s == 0
          call stack_impact(body%body, body%s, y(1:2), y(3:4), at, pivots, after)
-         ! contacts that hardly part stay shut
-         if (touching(1) .and. abs(after(1)) <= body%body%rest_rate(1)) then
-            after(1) = 0.0_wp
-            pivots(1) = 0
-         end if
-         if (touching(2) .and. real(pivots(2), wp) * (after(2) - after(1)) <= body%body%rest_rate(2)) pivots(2) = 0
-         if (pivots(2) == 0) after(2) = after(1)
          body%s = pivots
          y(3:4) = after
          gone = energies(body%body, body%s, y(1:2), y(3:4))

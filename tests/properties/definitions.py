@@ -824,7 +824,7 @@ def _pairs(deck: Deck) -> tuple[np.ndarray, np.ndarray]:
 
 @relation("failure-domain rocking", st.tuples(decks("block", "arch", "column", friction=number(0.3, 2.0)), st.sampled_from(["sine", "step"]), number(0.8, 1.6), st.booleans()), 0.0, share=1.0)  # fmt: skip
 def curves_by_rules_and_at_amplitudes(deck: Deck, pulse: str, period: float, numbered: bool, within: float) -> None:
-    """Curves by an impact rule are those of a deck with it; shortest durations fail and shorter ones do not; single runs agree."""
+    """Of fixed hinges: curves by an impact rule are those of a deck with it; shortest durations fail and shorter ones do not; single runs agree."""
     if numbered:
         deck = changed(deck, joints={"restitution": 0.8})
     keys = {
@@ -833,6 +833,7 @@ def curves_by_rules_and_at_amplitudes(deck: Deck, pulse: str, period: float, num
         "amplitudes": 6,
         "accuracy": 1e-3,
         "at_amplitudes": ["1.2 g"],
+        "hand_over_cells": 0,
     }
     answer = ask(deck, "failure-domain", **keys)
     ok(answer)
@@ -857,7 +858,7 @@ def curves_by_rules_and_at_amplitudes(deck: Deck, pulse: str, period: float, num
 
     def falls(amplitude: float, duration: float) -> bool | None:
         motion = {"kind": shape[0], "amplitude": f"-{amplitude!r} g", shape[1]: duration}
-        one = ask(changed(deck, motion=motion), "rocking")
+        one = ask(changed(deck, motion=motion), "rocking", hand_over=False)
         return None if not one.answers or one.results.decided_by_last_digits else one.results.outcome == "collapse"
 
     half = {}

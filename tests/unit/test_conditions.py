@@ -31,8 +31,10 @@ KINDS = {
     "rocking": SINE, "fragility": GENERATED, "failure-domain": None, "failure-curves": None, "rocking-spectrum": SINE,
     "harmonic-map": None, "resonance": None, "assessment": SINE,
 }  # fmt: skip
+#: Small, and without rigid contacts, which would decide where a condition fails (test_hand_over.py)
 SMALL = {
-    "fragility": {"count": 40, "seed": 1}, "failure-domain": {"durations": [0.2, 0.6], "amplitudes": 8},
+    "rocking": {"hand_over": False}, "fragility": {"count": 40, "seed": 1},
+    "failure-domain": {"durations": [0.2, 0.6], "amplitudes": 8, "hand_over_cells": 0},
     "failure-curves": {"durations": [0.3, 0.6], "amplitudes": 8}, "harmonic-map": {"frequencies": [1.0, 2.0], "amplitudes": 6},
     "rocking-spectrum": {"periods": [2.0, 4.0]},
 }  # fmt: skip
@@ -187,7 +189,7 @@ def test_a_vault_on_buttresses_says_that_hinges_form_elsewhere() -> None:
     """None of the nine sines whose outcome is wrong is decided; an impact leaves 98 % of its energy outside the mechanism."""
     for period, factor in WRONG:
         motion = {"kind": "sine-pulse", "amplitude": f"{0.134 * factor} g", "period": period}
-        run = extrados.run({"structure": VAULT, "motion": motion, "analysis": {"kind": "rocking"}}).results[0]
+        run = result_of("rocking", VAULT, 0.7, motion)
         assert run.verdict.outcome == "open" and any("thrust line leaves" in text for text in run.verdict.violated)
         assert run.results.conditions.energy_astray == pytest.approx(0.975, abs=0.002)
     calm = {"kind": "sine-pulse", "amplitude": "0.13 g", "period": 1.0}
@@ -204,7 +206,7 @@ def test_a_wrong_outcome_of_the_vault_is_that_of_elements() -> None:
         {
             "structure": VAULT,
             "motion": motion,
-            "analysis": [{"kind": "rocking"}, {"kind": "dem", "solver": "nonsmooth"}],
+            "analysis": [{"kind": "rocking", "hand_over": False}, {"kind": "dem", "solver": "nonsmooth"}],
         }
     )
     assert run["rocking"].outcome == "recovery" and run["dem"].outcome == "collapse"

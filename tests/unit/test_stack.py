@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import extrados
 from extrados.core import mechanism as core_mechanism
 from extrados.core.ground import Ground
 from extrados.core.rocking import history
@@ -214,3 +215,24 @@ def test_a_start_from_a_given_rotation_is_that_of_one_block() -> None:
     )
     n = int(np.searchsorted(one.time, one.events[0][1]))
     assert two.rotation[:n, 0] == pytest.approx(one.rotation[:n], abs=1e-9)
+
+
+@pytest.mark.parametrize("upper_first", [False, True])
+def test_two_blocks_drawn_one_by_one_rock_as_a_stack(upper_first: bool) -> None:
+    """The same two rectangles as `stack` and, elsewhere and in either order, as `blocks`: every result is the same."""
+    stack = {"kind": "stack", "lower_width": 0.6, "lower_height": 0.68, "upper_width": 0.3, "upper_height": 0.926}
+    corners = [(0.6, 0.0, 0.68), (0.3, 0.68, 1.606)]
+    drawn = [
+        {"name": name, "points": [[3 - w / 2, 1 + y], [3 + w / 2, 1 + y], [3 + w / 2, 1 + z], [3 - w / 2, 1 + z]]}
+        for name, (w, y, z) in zip(("lower block", "upper block"), corners, strict=True)
+    ]
+    ground = {"kind": "blocks", "ground": [[2.0, 1.0, 4.0, 1.0]], "block": drawn[::-1] if upper_first else drawn}
+    motion = {"kind": "sine-pulse", "amplitude": "0.655 g", "period": 0.96}
+    rest = {"joints": {"friction": 0.6}, "motion": motion, "analysis": {"kind": "rocking", "end_time": 3.0}}
+    one, other = (extrados.run({"structure": s, **rest}).results[0] for s in (stack, ground))
+    x, y = one.results, other.results
+    assert y.stack is not None and x.outcome == y.outcome and x.impacts == y.impacts
+    assert y.peak_rotation_rad == pytest.approx(x.peak_rotation_rad, rel=1e-6)
+    assert y.stack.peak_rotation_upper_rad == pytest.approx(x.stack.peak_rotation_upper_rad, rel=1e-6)
+    pose = other.arrays["snapshot_pose"].data - [3.0, 1.0, 0.0]
+    assert (pose[:, ::-1] if upper_first else pose) == pytest.approx(one.arrays["snapshot_pose"].data, abs=1e-6)

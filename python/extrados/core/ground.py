@@ -1,7 +1,7 @@
 """Ground motions as the core takes them: sampled, or piecewise analytic (fortran/common/signal.f90)."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -34,6 +34,11 @@ class Ground:
         if self.samples is not None:
             return self.start + self.step * (self.samples.shape[1] - 1)
         return float(_given("breaks", self.breaks)[-1])
+
+    def seen_from(self, time: float) -> "Ground":
+        """The same motion by a clock that starts at a time [s]."""
+        breaks = None if self.breaks is None else self.breaks - time
+        return replace(self, start=self.start - time, breaks=breaks)
 
     @property
     def channels(self) -> int:

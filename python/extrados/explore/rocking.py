@@ -18,6 +18,7 @@ from extrados.model.geometry.assembly import Assembly
 from extrados.motions.motion import Motion
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
+from extrados.views.rockers.stack import rocks_as_stack
 
 #: Pictures of a history, and points of its curves
 MOST_PICTURES, MOST_POINTS = 600, 1600
@@ -36,16 +37,14 @@ def history(
     context: Context, building: Building, options: Rocking, anchor: np.ndarray, still: bool
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """Words and arrays of a response; `still`: without shapes, as where a hand only looks for an amplitude."""
-    if building.structure is not None and (
-        building.structure.rocks_as == "stack" or building.supports.stiffness is not None
-    ):
+    if rocks_as_stack(building) or building.supports.stiffness is not None:
         return _in_two(context, building, options, anchor)
     rocker = building.rocker(options.form == "linear")
     motion = context.motion
     end = options.end_time or motion.end + rest_time(rocker)
     fine = options.model_copy(update={"output_step": max(options.output_step, end / MOST_OUTPUTS)})
     response = run_history(context, fine, rocker.body, end, 12, rocker.start_rotation)
-    conditions = of_one(rocker, response)["conditions"]
+    conditions = of_one(rocker, response)
     words: dict[str, Any] = {
         "outcome": response.outcome, "settled": response.settled, "half_cycles": response.half_cycles,
         "impacts": response.impacts, "impact_times_s": [t for kind, t, _ in response.events if kind == "impact"][:400],

@@ -61,6 +61,17 @@ class Linkage:
         out[..., moving, 2] = place[..., k, 2]
         return out
 
+    def block_rates(self, assembly: Assembly, place: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """Velocities (..., blocks, 3) of the centroids [m/s] and spins [rad/s] of the blocks, from places and velocities of the
+        parts (..., parts, 3)."""
+        out = np.zeros((*place.shape[:-2], len(self.part), 3))
+        moving = self.part > 0
+        k = self.part[moving] - 1
+        arm = self.blocks(assembly, place)[..., moving, :2] - place[..., k, :2]
+        out[..., moving, :] = rate[..., k, :]
+        out[..., moving, :2] += rate[..., k, 2, None] * np.stack([-arm[..., 1], arm[..., 0]], axis=-1)
+        return out
+
     def velocities(self, points: np.ndarray, first: np.ndarray) -> np.ndarray:
         """Velocities (blocks, 3) at rest of points [m] of the blocks, and spins, from those of the parts (parts, 3)."""
         out = np.zeros((len(self.part), 3))

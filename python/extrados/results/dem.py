@@ -2,9 +2,9 @@
 
 from typing import Literal
 
+from extrados.results.curves import between
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.limit import NamedHinge
-from extrados.results.rocking import between
 from extrados.results.verdict import Demand, KindResults, Verdict, judge, judge_acceleration
 
 #: What a joint does, in the stored array `hinge`: hinged at its first end (intrados) or its second (extrados)

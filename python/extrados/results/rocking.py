@@ -2,10 +2,14 @@
 
 from typing import Literal, get_args
 
+from extrados.results.curves import between, least_beside
+from extrados.results.dem import DemRun
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judge
 
 RockingOutcome = Literal["no-hinging", "recovery", "collapse"]
+#: Outcome of a motion that contacts may have gone on with: blocks that only slide do not rock
+WholeOutcome = Literal["no-hinging", "slid", "recovery", "collapse"]
 #: Numbers of the outcomes in stored arrays, as the core counts them
 NO_HINGING, RECOVERY, COLLAPSE = range(len(get_args(RockingOutcome)))
 Pulse = Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"]
@@ -114,11 +118,25 @@ class SoftBaseRocking(ResultModel):
     rigid_peak_rotation_rad: float | None = fact("greatest rotation on a rigid base; null: no answer", "rad")
 
 
+class HandOver(ResultModel):
+    """The rest of the motion on rigid contacts, from the state in which a condition of the mechanism fails."""
+
+    time_s: float = fact(
+        "time at which places and velocities of the blocks were handed over, just before the condition fails", "s"
+    )
+    reason: str = fact("condition that fails, and where")
+    outcome: WholeOutcome = fact("outcome of the whole motion")
+    fixed_hinges_outcome: RockingOutcome = fact("outcome that fixed hinges without sliding would have")
+    contacts: DemRun = fact("the run of the blocks; its times are those of the motion", source="Moreau 1988")
+
+
 class Rocking(KindResults):
     """rocking: the response of the single-degree-of-freedom mechanism to a motion."""
 
     rotation_of: str = fact("body to which the rotation belongs")
-    outcome: RockingOutcome = fact("no rocking, rocking and recovery, or collapse")
+    outcome: WholeOutcome = fact(
+        "no rocking, sliding alone, rocking and recovery, or collapse; by rigid contacts where these went on"
+    )
     settled: bool = fact("whether it came to rest, or down, before the run ended; false leaves the outcome open")
     collapse_half_cycle: int | None = fact("half cycle of the collapse")
     collapse_time_s: float | None = fact("when it turned past recall", "s")
@@ -164,6 +182,9 @@ class Rocking(KindResults):
         "greatest separation of histories, over the critical rotation, under a motion scaled by 1 +- 1e-6, over that perturbation"
     )
     conditions: Conditions = maybe("whether joints slide or hinges form elsewhere")
+    hand_over: HandOver = maybe(
+        "where joints slide or hinges form elsewhere: the rest of the motion on rigid contacts; all other results of the mechanism end there"
+    )
     violated: list[str] = fact(
         "further assumptions that were checked and do not hold: chaos, impact rules, a sentence each"
     )
@@ -172,7 +193,11 @@ class Rocking(KindResults):
     thrust_line_residual_m: float = maybe("of an arch: greatest error of the closing thrust line", "m")
 
     def judged(self, demand: Demand) -> Verdict:
-        """The greatest rotation against the critical one; open where the run ended before it settled."""
+        """The greatest rotation against the critical one; open where the run ended before it settled. Where rigid contacts went
+        on, they decide."""
+        if self.hand_over is not None:
+            found = self.hand_over.contacts.judged(demand)
+            return found.model_copy(update={"statement": f"{self.hand_over.reason} {found.statement}"})
         outcome: Outcome = "collapses" if self.outcome == "collapse" else "stands" if self.settled else "open"
         text = {
             "collapses": "Collapse under the motion",
@@ -224,6 +249,9 @@ class FailureDomain(KindResults):
         "at each duration: lowest amplitude of the map at which hinges form elsewhere; null: at none", "g"
     )
     conditions: Conditions = fact("over the map: whether blocks slide or hinges form elsewhere")
+    handed_over: int = maybe(
+        "pulses of the map that rigid contacts decided, as joints slide or hinges form elsewhere; a curve is known to a cell of the map there"
+    )
     amplitudes_by_rule: list[RuleCurve] = maybe(
         "failure curve by each impact rule, where their c_v differ by more than 1.3"
     )
@@ -242,7 +270,9 @@ class FailureDomain(KindResults):
     )
     natural_time_s: float = fact("time by which the curves scale: sqrt(R/g) of an arch, 1/p of a block", "s")
     safe_pockets: int = fact("durations with safe amplitudes above a failing one")
-    at_amplitudes: AtAmplitudes = maybe("shortest failing durations at the amplitudes that the deck requests")
+    at_amplitudes: AtAmplitudes = maybe(
+        "shortest failing durations at the amplitudes that the deck requests, by fixed hinges without sliding"
+    )
     frequency_ratio: list[float] = maybe("of a block: omega/p of the pulses")
     pocket_begins_ratio: list[float | None] = maybe(
         "of a block: pocket_begins over the uplift acceleration, that on rigid ground"
@@ -252,12 +282,14 @@ class FailureDomain(KindResults):
     def _violated(self, duration: float, amplitude: float) -> list[str]:
         """What does not hold of the assumptions for a pulse [s, g]: conditions at the neighbouring durations of the map, and impact
         rules between whose curves it lies."""
-        places, found = self.mode_I.durations_s, []
-        slides = _least(places, self.sliding_from_g, duration)
-        if slides is not None and amplitude >= slides:
+        places: list[float] = self.mode_I.durations_s
+        found: list[str] = []
+        slides = least_beside(places, self.sliding_from_g, duration)
+        decided = not self.conditions.violated  # rigid contacts decided where a condition fails
+        if slides is not None and amplitude >= slides and not decided:
             found.append(f"Blocks slide from {slides:.3g} g on at this duration. Use dem, or check the friction.")
-        elsewhere = _least(places, self.hinges_elsewhere_from_g, duration)
-        if elsewhere is not None and amplitude >= elsewhere:
+        elsewhere = least_beside(places, self.hinges_elsewhere_from_g, duration)
+        if elsewhere is not None and amplitude >= elsewhere and not decided:
             found.append(f"Hinges form elsewhere from {elsewhere:.3g} g on at this duration. Use dem.")
         curves = [(one.rule, between(places, one.amplitudes_g, duration)) for one in self.amplitudes_by_rule or []]
         fails = {rule: capacity is not None and amplitude >= capacity for rule, capacity in curves}
@@ -286,23 +318,6 @@ class FailureDomain(KindResults):
             f"Over the {self.pulse} pulses that were run the lowest amplitude that causes collapse is {min(failing):.3g} g.",
             None, min(failing), "g", violated=self.conditions.violated,
         )  # fmt: skip
-
-
-def _least(places: list[float], values: list[float | None], place: float) -> float | None:
-    """The least value at the neighbours of a place; None where both have none."""
-    order = sorted(zip(places, values, strict=True), key=lambda pair: abs(pair[0] - place))
-    low = [pair for pair in order if pair[0] <= place][:1]
-    high = [pair for pair in order if pair[0] >= place][:1]
-    return min((value for _, value in low + high if value is not None), default=None)
-
-
-def between(places: list[float], values: list[float | None], place: float) -> float | None:
-    """The value at a place, on the straight line between its neighbours; None outside or beside a null."""
-    pairs = sorted(zip(places, values, strict=True), key=lambda pair: pair[0])
-    for (x0, y0), (x1, y1) in zip(pairs, [*pairs[1:], pairs[-1]], strict=True):
-        if x0 <= place <= x1 and y0 is not None and y1 is not None:
-            return y0 if x1 == x0 else y0 + (y1 - y0) * (place - x0) / (x1 - x0)
-    return None
 
 
 class MotionImpulse(ResultModel):

@@ -15,7 +15,55 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """History of rotation, ground acceleration, energies and friction; shapes, of an arch with its thrust line."""
     r = run[name]
     t = run.array(name, "time")
-    found = []
+    found = [_draw_contacts(run, name, folder) if r.hand_over else _draw_history(run, name, folder)]
+    if r.restraints:
+        found.append(_draw_restraints(run, name, folder, t))
+    if r.soft_base:
+        found.append(_draw_base(run, name, folder, t))
+    film_rocking(run, name, folder)
+    moving = _rocks(run, name)
+    if moving.any() and run.array(name, "required_friction").shape[1] > 1:
+        found.append(_draw_friction(run, name, folder, t, moving))
+    times = run.arrays[name].get("snapshot_time")
+    if times is not None and len(times.data):
+        blocks, centroid = outlines(run, name), run.array(name, "centroid")
+        poses = run.array(name, "snapshot_pose")
+        lines = run.arrays[name].get("snapshot_thrust")
+        count = len(times.data)
+        columns = min(3, count)
+        rows = -(-count // columns)
+        wide, high = np.ptp(np.concatenate(blocks), axis=0)
+        tall = float(np.clip(3.0 * high / wide + 0.8, 2.0, 4.0))
+        with style.figure(3.2 * columns, tall * rows, rows=rows, columns=columns, sharex=True, sharey=True) as (
+            fig,
+            axes,
+        ):
+            for ax in axes[count:]:
+                ax.set_axis_off()
+            for k, (ax, when, pose) in enumerate(zip(axes, times.data, poses, strict=False)):
+                style.draw_blocks(ax, [moved(o, c, p) for o, c, p in zip(blocks, centroid, pose, strict=True)])
+                if lines is not None:
+                    ax.plot(*lines.data[k].T, color=style.THRUST, marker=".", markersize=3, scalex=False, scaley=False)
+                ax.set_title(f"{when:.3f} s")
+                style.section_axes(ax)
+                ax.label_outer()
+                if count <= k + columns < len(axes):  # nothing stands below it
+                    ax.tick_params(labelbottom=True)
+                    ax.set_xlabel("x [m]")
+            found.append(
+                (
+                    style.save(fig, folder, f"{name}-shapes"),
+                    f"True scale, {'on rigid contacts' if r.hand_over else 'at the greatest rotations'}"
+                    + ("." if lines is None else ", with the dynamic thrust line."),
+                )
+            )
+    return found
+
+
+def _draw_history(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    """Rotation, ground acceleration, energies and friction over time."""
+    r = run[name]
+    t = run.array(name, "time")
     with style.figure(8.0, 7.0, rows=4, sharex=True, height_ratios=[1, 1.6, 1, 1]) as (fig, axes):
         ground, rotation, energy, friction = axes
         ground.plot(t, run.array(name, "ground") / GRAVITY, color=style.GROUND, linewidth=0.8)
@@ -60,54 +108,62 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         if len(moving):
             pad = 0.5 + 0.05 * (t[moving[-1]] - t[moving[0]])
             friction.set_xlim(max(0.0, t[moving[0]] - pad), min(t[-1], t[moving[-1]] + pad))
-        found.append(
-            (
-                style.save(fig, folder, f"{name}-history"),
-                f"Ground motion, rotation of {r.rotation_of} with impacts, energies, friction needed. Dashed: acceleration at which rocking starts; dotted: critical rotation.",
-            )
-        )
-    if r.restraints:
-        found.append(_draw_restraints(run, name, folder, t))
-    if r.soft_base:
-        found.append(_draw_base(run, name, folder, t))
-    film_rocking(run, name, folder)
-    moving = _rocks(run, name)
-    if moving.any() and run.array(name, "required_friction").shape[1] > 1:
-        found.append(_draw_friction(run, name, folder, t, moving))
-    times = run.arrays[name].get("snapshot_time")
-    if times is not None and len(times.data):
-        blocks, centroid = outlines(run, name), run.array(name, "centroid")
-        poses = run.array(name, "snapshot_pose")
-        lines = run.arrays[name].get("snapshot_thrust")
-        count = len(times.data)
-        columns = min(3, count)
-        rows = -(-count // columns)
-        wide, high = np.ptp(np.concatenate(blocks), axis=0)
-        tall = float(np.clip(3.0 * high / wide + 0.8, 2.0, 4.0))
-        with style.figure(3.2 * columns, tall * rows, rows=rows, columns=columns, sharex=True, sharey=True) as (
-            fig,
-            axes,
-        ):
-            for ax in axes[count:]:
-                ax.set_axis_off()
-            for k, (ax, when, pose) in enumerate(zip(axes, times.data, poses, strict=False)):
-                style.draw_blocks(ax, [moved(o, c, p) for o, c, p in zip(blocks, centroid, pose, strict=True)])
-                if lines is not None:
-                    ax.plot(*lines.data[k].T, color=style.THRUST, marker=".", markersize=3, scalex=False, scaley=False)
-                ax.set_title(f"{when:.3f} s")
-                style.section_axes(ax)
-                ax.label_outer()
-                if count <= k + columns < len(axes):  # nothing stands below it
-                    ax.tick_params(labelbottom=True)
-                    ax.set_xlabel("x [m]")
-            found.append(
-                (
-                    style.save(fig, folder, f"{name}-shapes"),
-                    "True scale, at the greatest rotations"
-                    + ("." if lines is None else ", with the dynamic thrust line."),
-                )
-            )
-    return found
+        saved = style.save(fig, folder, f"{name}-history")
+    return (
+        saved,
+        f"Ground motion, rotation of {r.rotation_of} with impacts, energies, friction needed. Dashed: acceleration at which rocking starts; "
+        "dotted: critical rotation.",
+    )
+
+
+#: Blocks whose rotation on contacts is drawn
+MOST_BLOCKS = 6
+
+
+def _turned_most(run: Stored, name: str) -> list[tuple[str, np.ndarray]]:
+    """Names of the blocks that turn most on rigid contacts, and their rotations over time [rad]."""
+    turned = run.array(name, "contacts_rotation")
+    most = np.argsort(-np.abs(turned).max(axis=0, initial=0.0), kind="stable")[:MOST_BLOCKS]
+    return [(str(run.array(name, "block_name")[k]), turned[:, k]) for k in sorted(most.tolist())]
+
+
+def _draw_contacts(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    """Ground, rotations, energies and slip over time, of the mechanism and then of its blocks on rigid contacts."""
+    r, over = run[name], run[name].hand_over
+    t, time = run.array(name, "time"), run.array(name, "contacts_time")
+    place = run.array(name, "contacts_place")
+    with style.figure(8.0, 7.0, rows=4, sharex=True, height_ratios=[1, 1.6, 1, 1]) as (fig, axes):
+        ground, rotation, energy, slip = axes
+        for at, of in ((t, "ground"), (time, "contacts_ground")):
+            ground.plot(at, run.array(name, of) / GRAVITY, color=style.GROUND, linewidth=0.8)
+        for sign in (1, -1):
+            ground.axhline(sign * r.uplift_acceleration_g, color=style.EDGE, linestyle="--", linewidth=0.7)
+        ground.set_ylabel("ground [g]")
+        rotation.plot(t, 1e3 * run.array(name, "rotation"), color="k", linewidth=1.5, label="mechanism")
+        for who, turned in _turned_most(run, name):
+            rotation.plot(time, 1e3 * turned, linewidth=0.8, label=who)
+        rotation.set_ylabel("rotation [mrad]\n+ to +x")
+        style.legend_above(rotation)
+        style.energies(energy, "energy", [
+            (time, run.array(name, "contacts_kinetic_energy"), {"label": "kinetic"}),
+            (time, run.array(name, "contacts_friction_energy"), {"label": "lost in friction"}),
+            (time, run.array(name, "contacts_damping_energy"), {"label": "lost at impacts"}),
+        ])  # fmt: skip
+        style.legend_above(energy)
+        slip.plot(time, 1e3 * np.abs(run.array(name, "contacts_slip")).max(axis=1), color=style.HINGE, linewidth=0.9)
+        slip.set_ylabel("greatest slip\n[mm]")
+        slip.set_xlabel("time [s]")
+        for ax in axes:
+            ax.axvline(over.time_s, color=style.THRUST, linestyle=":", linewidth=1.0)
+        away = np.abs(place - place[-1]).max(axis=(1, 2))
+        last = np.flatnonzero(away >= 0.01 * away.max())[-1]
+        slip.set_xlim(max(0.0, over.time_s - 0.5), time[min(last + 20, len(time) - 1)])
+        saved = style.save(fig, folder, f"{name}-history")
+    return (
+        saved,
+        f"Ground motion, rotations, energies, greatest slip of a joint. Dotted: hand-over to rigid contacts at {over.time_s:.3f} s. Dashed: "
+        "acceleration at which rocking starts.",
+    )
 
 
 def film_rocking(run: Stored, name: str, folder: Path) -> None:
@@ -135,6 +191,11 @@ def film_rocking(run: Stored, name: str, folder: Path) -> None:
             linewidth=1.0,
             label="lower block" if upper else None,
         )
+        if run[name].hand_over:
+            after = run.array(name, "contacts_time")
+            ground.plot(after, run.array(name, "contacts_ground") / GRAVITY, color=style.GROUND, linewidth=0.8)
+            for _, turned in _turned_most(run, name):
+                rotation.plot(after, 1e3 * turned, linewidth=0.8)
         if upper:
             rotation.plot(
                 history,

@@ -112,17 +112,18 @@ def rigid_bodies(
     if not support_of:
         raise BadGeometry("no block stands on the ground")
     cut = _cut_overlaps(parts, outer, owner, assembly.tolerance)
+    middles = [polygon.mean(axis=0) for polygon in parts[len(stones) :]]
     if floor is not None:
-        for polygon in _floor(assembly, floor, parts[len(stones) :]):
+        level = _floor(assembly, floor, parts[len(stones) :])
+        for k, polygon in level.items():
+            parts[len(stones) + k], outer[len(stones) + k] = polygon, np.ones(4, dtype=bool)
+        if not level:
+            parts.append(_rectangle(assembly, floor, -np.inf, np.inf))
             owner.append(len(names))
-            parts.append(polygon)
             outer.append(np.ones(4, dtype=bool))
-        names.append("floor")
+            middles.append(parts[-1].mean(axis=0))
+            names.append("floor")
     supports = len(names) - count
-    middles = [
-        np.mean([p.mean(axis=0) for p, o in zip(parts, owner, strict=True) if o == k], axis=0)
-        for k in range(count, len(names))
-    ]
     joints: list[tuple[int, int] | None] = []
     for j, (a, b) in enumerate(zip(assembly.a.tolist(), assembly.b.tolist(), strict=True)):
         one, two = (support_of[j] if k == GROUND else int(body[k]) for k in (a, b))
@@ -431,20 +432,27 @@ def _support(assembly: Assembly, line: list[int], blocks: list[np.ndarray]) -> t
     return polygon, False
 
 
-def _floor(assembly: Assembly, level: float, footings: list[np.ndarray]) -> list[np.ndarray]:
-    """A wide floor below the structure: the rectangles that it leaves between footings whose tops lie in it."""
+def _floor(assembly: Assembly, level: float, footings: list[np.ndarray]) -> dict[int, np.ndarray]:
+    """Footings whose tops lie in a floor, by their numbers, each as wide as the floor around it: to the middle between two of them, and
+    beyond the outer ones. Between a footing and a floor beside it a block that slides would catch on the seam."""
+    extent = float(np.ptp(np.concatenate(assembly.outlines), axis=0).max())
+    flush = [
+        k
+        for k, polygon in enumerate(footings)
+        if (np.abs(polygon[:, 1] - level) < 1e-6 * extent).sum() == 2 and polygon[:, 1].max() < level + 1e-6 * extent
+    ]
+    flush.sort(key=lambda k: float(footings[k][:, 0].min()))
+    between = [
+        0.5 * (float(footings[a][:, 0].max()) + float(footings[b][:, 0].min())) for a, b in itertools.pairwise(flush)
+    ]
+    ends = [-np.inf, *between, np.inf]
+    return {k: _rectangle(assembly, level, ends[i], ends[i + 1]) for i, k in enumerate(flush)}
+
+
+def _rectangle(assembly: Assembly, level: float, low: float, high: float) -> np.ndarray:
+    """Ground up to a level [m] from low to high [m], at most so far as blocks may go."""
     points = np.concatenate(assembly.outlines)
     middle, extent = 0.5 * (points[:, 0].min() + points[:, 0].max()), float(np.ptp(points, axis=0).max())
-    taken = sorted(
-        (float(polygon[:, 0].min()), float(polygon[:, 0].max()))
-        for polygon in footings
-        if (np.abs(polygon[:, 1] - level) < 1e-6 * extent).sum() == 2 and polygon[:, 1].max() < level + 1e-6 * extent
-    )
-    left, pieces = middle - 12.0 * extent, []
-    for low, high in [*taken, (middle + 12.0 * extent, np.inf)]:
-        if low - left > 1e-6 * extent:
-            pieces.append(
-                np.array([[left, level - 0.25 * extent], [low, level - 0.25 * extent], [low, level], [left, level]])
-            )
-        left = max(left, high)
-    return pieces
+    left, right = max(low, middle - 12.0 * extent), min(high, middle + 12.0 * extent)
+    foot = level - 0.25 * extent
+    return np.array([[left, foot], [right, foot], [right, level], [left, level]])

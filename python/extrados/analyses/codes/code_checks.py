@@ -103,7 +103,7 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
             rocker.body, motion.ground, motion.end + 30.0 / float(model.frequency.min()), 0.01,
             start_side=1 if start >= 0.0 else -1, start_rotation=abs(start),
         )  # fmt: skip
-        conditions = of_one(rocker, dynamic)["conditions"]
+        conditions = of_one(rocker, dynamic)
         context.warnings += told(conditions)
         violated += [text for text in conditions.violated if text.startswith("Hinges form elsewhere")]
         beside |= {"dynamic_outcome": dynamic.outcome, "dynamic_peak_rotation_ratio": dynamic.peak_ratio}

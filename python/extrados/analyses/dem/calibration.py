@@ -64,7 +64,6 @@ def _restitution(model: Model) -> float:
     shift = about_a_toe(block, 0, START, len(model.rigid.mass))
     options = dem.Options(end_time=0.8 * period, output_step=0.001 * period)
     run = dem.run(model.bodies(), options, shift=shift)
-    run = replace(run, settled=np.column_stack([model.rigid.centroid, np.zeros(len(model.rigid.mass))]))
     state = measures.hinges(model, *measures.openings(model, run))
     kept = measures.restitution(run, state, np.zeros(len(run.time)))
     return 1.0 if kept is None else kept

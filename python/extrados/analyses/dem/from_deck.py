@@ -16,8 +16,9 @@ from extrados.views.building import Building
 from extrados.views.rockers.arch import ArchModel
 
 
-def joint_values(building: Building) -> JointValues:
-    """Properties of all joints by the rules and exceptions of [joints]; Refused where the deck names an unknown joint."""
+def joint_values(building: Building, rigid: bool = False) -> JointValues:
+    """Properties of all joints by the rules and exceptions of [joints]; Refused where the deck names an unknown joint. rigid: for
+    contacts without springs, whose damping is not calibrated."""
     assembly, joints = building.blocks(), building.joints
     length = impact_rules.joint_lengths(assembly)
     elastic = impact_rules.joint_stiffness(building.material.young, length, assembly.length, joints.stiffness_rule)
@@ -45,7 +46,7 @@ def joint_values(building: Building) -> JointValues:
         impact,
         length,
     )
-    if wanted:
+    if wanted and not rigid:
         return replace(values, beta=beta_for_restitution(building, values))
     return values
 

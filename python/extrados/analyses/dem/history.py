@@ -1,5 +1,6 @@
 """dem under a motion: from rest under the own weight to the end, to rest or to collapse."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -28,11 +29,18 @@ from extrados.views.rockers.block import BlockModel
 
 def run(context: Context, options: Dem, model: Model) -> Result:
     """The run, and with it what else the deck asks: variations, the least friction."""
-    trial = Trial(context, options, model)
+    return follow(context, options, Trial(context, options, model))
+
+
+def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> Result:
+    """What `run` does, of any trial; its times are those of the motion. name: of what is kept of it."""
+    model = trial.model
     # The rates after and before impacts of a single block need a fine history.
     step = min(options.output_step, 0.002) if model.rigid.count == 1 else options.output_step
     job = trial.job([model.values], output_step=step)
-    found = dem_model.checked(watched(context, "dem-motion", job, "discrete elements"), model)
+    found = dem_model.checked(watched(context, f"{name}-motion", job, "discrete elements"), model)
+    if trial.begin:
+        found = replace(found, time=found.time + trial.starts, stop_time=found.stop_time + trial.starts)
     ground = context.motion.sample(found.time) if context.deck.motion else np.zeros(len(found.time))
     seen = Seen.of(model, found, options.floor is not None)
     result = Result("dem", status="interrupted" if found.interrupted else "ok")
@@ -43,7 +51,9 @@ def run(context: Context, options: Dem, model: Model) -> Result:
     def outcome_of(one: dem.Run) -> str:
         return Seen.of(model, one, options.floor is not None).fate(trial.collapse).outcome
 
-    chaos = probe_chaos(context, shadow, trial.idle, found, model.rigid.count, trial.collapse, outcome_of, result)
+    chaos = probe_chaos(
+        context, shadow, trial.idle, found, model.rigid.count, trial.collapse, outcome_of, result, f"{name}-perturbed"
+    )
     numbers = _numbers(options, trial, seen, ground) | chaos | {"animation": options.animation}
     _store(options, seen, ground, result)
     if seen.slides:

@@ -32,14 +32,15 @@ Found = TypeVar("Found", bound=dem_run.FoundRun)
 
 @dataclass(frozen=True)
 class Task:
-    """One run: the number of its bodies in the job, options, the ground times `scale`, displacements at the start
-    (bodies, 3) [m, m, rad] and supports that move."""
+    """One run: the number of its bodies in the job, options, the ground times `scale`, displacements and velocities at the start
+    (bodies, 3) [m, m, rad], none where it starts at rest, and supports that move."""
 
     bodies: int
     options: dem.Options
     ground: Ground | None = None
     scale: float = 1.0
     shift: np.ndarray | None = None
+    rate: np.ndarray | None = None
     moves: tuple[dem.SupportMove, ...] = ()
 
     @property
@@ -88,15 +89,11 @@ class Runs(Job[dem.Run]):
         many = len(bodies.mass) >= BODIES_FOR_THREADS
         options = replace(task.options, threads=threads if many else 1)
         with (
-            dem.Model(bodies, options, shift=task.shift, moves=task.moves) as model,
+            dem.Model(bodies, options, shift=task.shift, rate=task.rate, moves=task.moves) as model,
             as_motion_set([task.ground or dem_run.STILL]) as motions,
         ):
             told = None if watch is None else partial(watch, model)
-            found = model.run(motions, scale=task.scale, times=task.times, state=state, watch=told)
-        if task.shift is None:
-            return found
-        # A block that starts rotated does not settle: its place of rest is the one it was drawn in.
-        return replace(found, settled=np.column_stack([bodies.centroid, np.zeros(len(bodies.mass))]))
+            return model.run(motions, scale=task.scale, times=task.times, state=state, watch=told)
 
     def rows(self, found: dem.Run) -> dict[str, np.ndarray]:
         """The row of a run; histories are as long as the longest that was asked for."""

@@ -28,7 +28,8 @@ MOST_TRACKED = 24
 def openings(model: Model, run: dem.Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """How far each joint gapes at its ends p and q, and its slip at the closed end (time, joint) [m].
 
-    Measured from the settled state, along the mean normal of the two faces; NaN where both sides are one body.
+    Measured from the settled state, slip along the mean of the two faces, gaps along the normal of either face, whichever is less: the
+    corner of a block that slid and turned lies on the face of the other, at an angle. NaN where both sides are one body.
     """
     a = model.assembly
     nt, nj = len(run.time), len(a.a)
@@ -47,18 +48,21 @@ def openings(model: Model, run: dem.Run) -> tuple[np.ndarray, np.ndarray, np.nda
                 moved.append(place[:, :2] + np.stack([c * arm[0] - s * arm[1], s * arm[0] + c * arm[1]], axis=1))
             ends.append(moved)
             turns.append(turn)
-        mean = 0.5 * (turns[0] + turns[1])
-        c, s = np.cos(mean), np.sin(mean)
-
-        def turned(v: np.ndarray, c: np.ndarray = c, s: np.ndarray = s) -> np.ndarray:
-            return np.stack([c * v[0] - s * v[1], s * v[0] + c * v[1]], axis=1)
-
-        normal, tangent = turned(a.normal[j]), turned(a.tangent[j])
+        tangent = _turned(a.tangent[j], 0.5 * (turns[0] + turns[1]))
+        normals = [_turned(a.normal[j], turn) for turn in turns]
         apart = [ends[0][k] - ends[1][k] for k in (0, 1)]
-        gap_p[:, j], gap_q[:, j] = ((d * normal).sum(axis=1) for d in apart)
+        for gap, d in zip((gap_p, gap_q), apart, strict=True):
+            one, other = ((d * normal).sum(axis=1) for normal in normals)
+            gap[:, j] = np.where(np.abs(one) < np.abs(other), one, other)
         along = [(d * tangent).sum(axis=1) for d in apart]
         slip[:, j] = np.where(gap_p[:, j] < gap_q[:, j], *along)
     return gap_p, gap_q, slip
+
+
+def _turned(v: np.ndarray, turn: np.ndarray) -> np.ndarray:
+    """A vector (2) turned by angles (n) [rad]."""
+    c, s = np.cos(turn), np.sin(turn)
+    return np.stack([c * v[0] - s * v[1], s * v[0] + c * v[1]], axis=1)
 
 
 def hinges(model: Model, gap_p: np.ndarray, gap_q: np.ndarray, slip: np.ndarray) -> np.ndarray:

@@ -32,17 +32,17 @@ def chaos_of(outcome: str, other: str, grown: float) -> dict[str, Any]:
 
 def probe_chaos(
     context: Context, job: Runs | SolidRuns | None, idle: bool, found: dem.Run | dem3.Run, count: int, collapse: measures.Collapse,
-    outcome_of: Callable[[Any], str], result: Result,
+    outcome_of: Callable[[Any], str], result: Result, name: str = "dem-perturbed",
 ) -> dict[str, Any]:  # fmt: skip
     """Results on chaos of a run of `count` bodies. job: the run under the motion times FACTOR, None where it is not wanted; idle:
-    nothing moves the building; outcome_of: of a run. An interruption is told in `result`."""
+    nothing moves the building; outcome_of: of a run; name: of what is kept of it. An interruption is told in `result`."""
     if idle:
         return chaos_of(outcome_of(found), outcome_of(found), 0.0)
     unknown = {"decided_by_last_digits": False, "perturbation_growth": None, "perturbed_outcome": None, "violated": []}
     if job is None or result.status != "ok":
         return unknown
     try:
-        (other,) = answered(context, "dem-perturbed", job, "perturbed motion")
+        (other,) = answered(context, name, job, "perturbed motion")
     except Unfinished as error:
         result.status = "interrupted" if error.interrupted else "failed"
         result.reason = f"under the perturbed motion: {error}; the run before it is complete"

@@ -1,6 +1,7 @@
 """The run that a deck asks for: options of the core, movements of supports, the start, and the same with other joints."""
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,15 +24,24 @@ def collapse_of(options: Dem, model: Model) -> Collapse:
     return Collapse.of(options.collapse_displacement or 0.2 * model.size, model.size)
 
 
-def core_options(context: Context, options: Dem, model: Model) -> dem.Options:
-    """Options of the core for a run of this deck."""
+@dataclass(frozen=True)
+class Begin:
+    """A run that does not begin at rest: its time [s] by the clock of the motion; state: displacements and velocities (bodies, 3)
+    [m, m, rad] of all bodies then, under the motion times a factor."""
+
+    time: float
+    state: Callable[[float], tuple[np.ndarray, np.ndarray]]
+
+
+def core_options(context: Context, options: Dem, model: Model, begin: float = 0.0) -> dem.Options:
+    """Options of the core for a run of this deck; begin: its time by the clock of the motion [s]."""
     outline = np.concatenate(model.assembly.outlines)
     reach = options.domain * model.size
     low, high = outline.min(axis=0) - reach, outline.max(axis=0) + reach
     moved = [m.start + m.duration for m in context.building.initial.movements]
     quiet = max([context.motion.end if context.deck.motion else 0.0, *moved])
     return dem.Options(
-        end_time=options.end_time or quiet + dem_model.settle_time(model),
+        end_time=(options.end_time or quiet + dem_model.settle_time(model)) - begin,
         output_step=options.output_step,
         step=options.time_step or 0.0,
         fraction=options.fraction,
@@ -95,15 +105,17 @@ def about_a_toe(block: BlockAssembly, side: int, ratio: float, bodies: int) -> n
 
 
 class Trial:
-    """What a deck's motion does to its model, with any joint values."""
+    """What a deck's motion does to its model, with any joint values; from rest or from another beginning."""
 
-    def __init__(self, context: Context, options: Dem, model: Model):
+    def __init__(self, context: Context, options: Dem, model: Model, begin: Begin | None = None):
         self.model = model
-        self.options = core_options(context, options, model)
+        self.begin = begin
+        self.starts = begin.time if begin else 0.0
+        self.options = core_options(context, options, model, self.starts)
         self.collapse = collapse_of(options, model)
-        self.ground: Ground | None = context.motion.ground if context.deck.motion else None
-        self.moves = _moves(context, model)
-        self.shift = start(context, model)
+        self.ground: Ground | None = context.motion.ground.seen_from(self.starts) if context.deck.motion else None
+        self.moves = () if begin else _moves(context, model)  # a rocking structure feels them as motion of its ground
+        self.shift = None if begin else start(context, model)
 
     @property
     def idle(self) -> bool:
@@ -113,12 +125,14 @@ class Trial:
     def job(self, values: list[JointValues], factor: float = 1.0, **change: object) -> Runs:
         """A run with each of these joint values; what moves the building times a factor; `change` replaces options of the core."""
         options = replace(self.options, **change)
-        shift = None if self.shift is None else factor * self.shift
+        shift, rate = (None if self.shift is None else factor * self.shift), None
+        if self.begin:
+            shift, rate = self.begin.state(factor)
         moves = tuple(replace(m, dx=factor * m.dx, dy=factor * m.dy, turn=factor * m.turn) for m in self.moves)
         tasks = [
             Task(
                 k, replace(options, settlement=farthest_settlement(self.model, v, options.rigid), settle_damping=v.settle_damping),
-                self.ground, factor, shift, moves,
+                self.ground, factor, shift, rate, moves,
             )
             for k, v in enumerate(values)
         ]  # fmt: skip

@@ -4,8 +4,7 @@ import numpy as np
 
 from extrados.analyses.context import Context
 from extrados.analyses.limit.tilt import geometry_arrays
-from extrados.analyses.rocking.doubts import doubts
-from extrados.analyses.rocking.history import answer, rest_time, rocking_result, run_history, snapshot_index
+from extrados.analyses.rocking.history import answer_of, rest_time, rock, rocking_result, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
 from extrados.core import arch as core_arch
 from extrados.core import rocking as core_rocking
@@ -22,14 +21,13 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     gamma = model.collapse[0].gamma
     end_time = options.end_time or context.motion.end + rest_time(rocker)
     joints = model.arch.voussoirs + 1
-    response = run_history(context, options, rocker.body, end_time, 8 + 6 * joints, rocker.start_rotation)
+    ran = rock(context, options, rocker, end_time, 8 + 6 * joints)
+    response = ran.response
 
     thrust = thrust_line(model, response)
-    doubt = doubts(context, options, rocker, response, end_time)
     result = rocking_result(
         context,
-        response,
-        doubt,
+        ran,
         rocker,
         "link AB",
         thrust.friction,
@@ -47,7 +45,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
         "thrust_position": Array(thrust.position, ("time", "joint"), "", "thrust line: 0 intrados, 1 extrados"),
         **_snapshots(model, response, thrust, snapshot_index(response, options, result.warnings)),
     }
-    result.answer = answer(context, response, f"The {rocker.word}", "collapses", gamma)
+    result.answer = answer_of(context, ran, f"The {rocker.word}", "collapses", gamma)
     return result
 
 

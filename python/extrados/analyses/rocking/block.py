@@ -4,8 +4,7 @@ import numpy as np
 
 from extrados.analyses.context import Context
 from extrados.analyses.limit.tilt import geometry_arrays
-from extrados.analyses.rocking.doubts import doubts
-from extrados.analyses.rocking.history import answer, rest_time, rocking_result, run_history, snapshot_index
+from extrados.analyses.rocking.history import answer_of, rest_time, rock, rocking_result, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
 from extrados.core import rocking as core_rocking
 from extrados.results.model import Array, Result
@@ -25,7 +24,8 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
             "the column is taken as one rigid body; joints that open are left to the analysis `dem`"
         )
     end_time = options.end_time or context.motion.end + rest_time(rocker)
-    response = run_history(context, options, rocker.body, end_time, 12, rocker.start_rotation)
+    ran = rock(context, options, rocker, end_time, 12)
+    response = ran.response
 
     tangential, normal = toe_forces(model, response, rocker.restraints)
     c, s = np.cos(model.block.slope), np.sin(model.block.slope)
@@ -40,8 +40,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
         needed = max(float(response.joints.friction), float(still.max(initial=0.0)))
     result = rocking_result(
         context,
-        response,
-        doubts(context, options, rocker, response, end_time),
+        ran,
         rocker,
         f"the {rocker.word}",
         friction[:, None],
@@ -62,7 +61,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     index = snapshot_index(response, options, result.warnings)
     result.arrays |= {**geometry_arrays(model.block), **_snapshots(model, response, tangential, normal, index)}
     result.answer = (
-        answer(context, response, f"The {rocker.word}", "overturns", rocker.uplift)
+        answer_of(context, ran, f"The {rocker.word}", "overturns", rocker.uplift)
         + f" The {rocker.word} slides instead where friction is below {needed:.2f}."
     )
     return result

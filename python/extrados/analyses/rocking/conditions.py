@@ -178,31 +178,31 @@ def _share(part: int, whole: int, runs: str) -> str:
     )
 
 
-def of_one(rocker: Rocker, response: Response) -> dict[str, Any]:
-    """Results of the conditions of one run."""
+def of_one(rocker: Rocker, response: Response, handed: bool = False) -> Conditions:
+    """Conditions of one run; `violated` in the order in which they fail. handed: rigid contacts go on, so that nothing is left to do."""
     watch, joints = rocker.watch, response.joints
     if watch is None or joints is None:
-        return {"conditions": Conditions(not_checked=not_checked(rocker), violated=[])}
-    found: list[str] = []
+        return Conditions(not_checked=not_checked(rocker), violated=[])
+    found: list[tuple[float, str]] = []
+    use, check = ("", "") if handed else (" Use dem.", " Use dem, or check the friction.")
     given, needed, outside = friction_of(watch), float(joints.friction), float(joints.outside)
     slides = leaves = None
     if joints.slips_at >= 0.0:
         at_rest = joints.slips < 0
         slides = JointTime(joint="" if at_rest else watch.name(int(joints.slips)), time_s=float(joints.slips_at))
         if at_rest:
-            found.append(
+            text = (
                 f"Friction {given:.2f} lets the resting {rocker.word} slide at {slides.time_s:.3f} s, from {min(watch.capacity):.3g} g on; "
-                f"rocking starts at {rocker.uplift:.3g} g. Use dem, or check the friction."
+                f"rocking starts at {rocker.uplift:.3g} g.{check}"
             )
         elif np.isfinite(needed):
-            found.append(
+            text = (
                 f"Friction {given:.2f} is below the {needed:.2f} that rocking needs, first at {slides.joint} at {slides.time_s:.3f} s: "
-                "blocks slide. Use dem, or check the friction."
+                f"blocks slide.{check}"
             )
         else:
-            found.append(
-                f"{_upper(slides.joint)} comes under tension or slides, first at {slides.time_s:.3f} s. Use dem."
-            )
+            text = f"{_upper(slides.joint)} comes under tension or slides, first at {slides.time_s:.3f} s.{use}"
+        found.append((slides.time_s, text))
     if joints.leaves_at >= 0.0:
         leaves = JointTime(joint=watch.name(int(joints.leaves)), time_s=float(joints.leaves_at))
         far = (
@@ -210,17 +210,20 @@ def of_one(rocker: Rocker, response: Response) -> dict[str, Any]:
             if np.isfinite(outside)
             else ", and a joint comes under tension"
         )
-        found.append(
-            f"Hinges form elsewhere: the thrust line leaves {leaves.joint} at {leaves.time_s:.3f} s{far}. Use dem." if len(watch.joints) > 1
-            else f"The base lifts off as a whole at {leaves.time_s:.3f} s: rocking without flight is assumed. Use dem."
-        )  # fmt: skip
+        found.append((
+            leaves.time_s,
+            f"Hinges form elsewhere: the thrust line leaves {leaves.joint} at {leaves.time_s:.3f} s{far}.{use}" if len(watch.joints) > 1
+            else f"The base lifts off as a whole at {leaves.time_s:.3f} s: rocking without flight is assumed.{use}",
+        ))  # fmt: skip
     astray = astray_of(rocker)
     if response.half_cycles > 1 and astray > LOST:
-        found.append(
+        impacts = [t for kind, t, _ in response.events if kind == "impact"]
+        found.append((
+            impacts[0] if impacts else response.stop_time,
             f"Hinges form elsewhere: an impact leaves {100.0 * astray:.0f} % of its kinetic energy outside the mechanism that rocks "
-            "on. Use dem."
-        )
-    results = Conditions(
+            f"on.{use}",
+        ))  # fmt: skip
+    return Conditions(
         friction=given if np.isfinite(given) else None,
         required_friction=needed,
         **({"slides_first": slides} if slides else {}),
@@ -228,9 +231,8 @@ def of_one(rocker: Rocker, response: Response) -> dict[str, Any]:
         thrust_line_outside=outside,
         energy_astray=astray,
         not_checked=not_checked(rocker),
-        violated=found,
+        violated=[text for _, text in sorted(found)],
     )
-    return {"conditions": results}
 
 
 def _upper(text: str) -> str:

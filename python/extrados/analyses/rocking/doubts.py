@@ -1,15 +1,16 @@
 """How sure the outcome of a rocking run is: under the other impact rules, where the blow at all joints is known to lose too
 much, and under perturbations of the motion from a millionth to a ten thousandth."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from extrados.analyses.chaos import CHAOTIC, NUDGE, chaos_told, growth, over_critical, perturbed, turning
 from extrados.analyses.context import Context
+from extrados.analyses.rocking.hand_over import Contacts, decide
 from extrados.analyses.rocking.tables import Rocking
 from extrados.core.rocking import FAILED, OUTCOMES, Body, Response, arch_body, ensemble, history
-from extrados.results.rocking import RuleOutcome
+from extrados.results.rocking import HandOver, RuleOutcome
 from extrados.views.rockers.arch import ArchModel
 from extrados.views.rockers.rocker import Rocker
 
@@ -131,3 +132,25 @@ def doubts(context: Context, options: Rocking, rocker: Rocker, response: Respons
             if one != response.outcome:
                 violated.append(f"The restitution decides the outcome: with {c_v:.3f} {one}. Use dem.")
     return Doubts(rules, grown, chaotic, warnings, violated)
+
+
+def doubts_on_contacts(
+    context: Context, rocker: Rocker, contacts: Contacts, response: Response, over: HandOver, end_time: float
+) -> Doubts:  # fmt: skip
+    """How sure the outcome is where rigid contacts went on: they were run again under a perturbed motion; where impacts came before,
+    under the rival rules of impact too. response: of the mechanism until then."""
+    run = over.contacts
+    growth_found = run.perturbation_growth or 0.0
+    rivals = rocker.model.rivals(DIFFER) if response.impacts else {}
+    rules = []
+    for rule, (c_v, body) in rivals.items():
+        rival = replace(contacts, leaving=replace(contacts.leaving, body=rocker.held(body)))
+        one = np.zeros(1, dtype=int)
+        place = decide(context, f"contacts-{rule}", rival, [context.motion.ground], one, one + 1.0, one + end_time)[0]
+        if place >= 0:
+            rules.append(RuleOutcome(rule=rule, restitution=c_v, outcome=OUTCOMES[place]))
+    violated = list(run.violated)
+    if len({one.outcome == "collapse" for one in rules}) > 1:
+        told = ", ".join(f'"{one.rule}" {one.restitution:.3f}: {one.outcome}' for one in rules)
+        violated.append(f"The impact rule decides the outcome: {told}.")
+    return Doubts(rules, growth_found, run.decided_by_last_digits, [], violated)

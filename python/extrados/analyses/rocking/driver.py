@@ -7,19 +7,19 @@ from extrados.analyses.rocking import mechanism as mechanism_rocking
 from extrados.analyses.rocking import soft_base as soft_base_rocking
 from extrados.analyses.rocking import stack as stack_rocking
 from extrados.analyses.rocking.common import with_moving_supports
-from extrados.analyses.rocking.shapes import film_arrays
+from extrados.analyses.rocking.shapes import film_arrays, on_contacts
 from extrados.analyses.rocking.tables import Rocking
 from extrados.results.model import Result
 from extrados.views.rockers.arch import ArchModel
 from extrados.views.rockers.block import BlockModel
 from extrados.views.rockers.mechanism import MechanismModel
+from extrados.views.rockers.stack import rocks_as_stack
 
 
 def run(context: Context, options: Rocking) -> Result:
     """History, impacts, energies, friction needed; of an arch the dynamic thrust line too."""
     context = with_moving_supports(context)
-    structure = context.building.structure
-    if structure is not None and structure.rocks_as == "stack":
+    if rocks_as_stack(context.building):
         return _with_friction(context, stack_rocking.run(context, options))
     if context.building.supports.stiffness is not None:
         return _with_friction(context, soft_base_rocking.run(context, options))
@@ -28,6 +28,10 @@ def run(context: Context, options: Rocking) -> Result:
     result = next(run for kind, run in kinds.items() if isinstance(rocker.model, kind))(context, options, rocker)
     if options.animation != "none":
         result.arrays |= film_arrays(rocker, result)
+    if result.results.hand_over is not None:
+        result.arrays |= on_contacts(context.building.blocks(), result)
+        for line in ("snapshot_thrust", "film_line"):  # of the mechanism
+            result.arrays.pop(line, None)
     return _with_friction(context, result)
 
 

@@ -15,6 +15,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.rocking.conditions import ROWS, Counted, astray_of, of_many, told
 from extrados.analyses.rocking.doubts import DIFFER
+from extrados.analyses.rocking.hand_over import UNKNOWN, contacts_of, decide
 from extrados.analyses.rocking.job import RunsJob, runs_job
 from extrados.analyses.rocking.tables import FailureDomain
 from extrados.core.calls import interruptible
@@ -57,6 +58,7 @@ class Curves:
     the first safe pocket above the curve begins (NaN: none).
 
     codes (durations, amplitudes): 0 no hinging, 1 recovery, 2 Mode I, 3 Mode II; rows (durations, amplitudes): see Mapper.rows.
+    handed (durations, amplitudes): cells that rigid contacts decided; a curve next to one is known to a cell of the map only.
     """
 
     durations: np.ndarray
@@ -66,6 +68,7 @@ class Curves:
     mode_ii: np.ndarray
     pocket: np.ndarray
     rows: dict[str, np.ndarray]
+    handed: np.ndarray
 
 
 def codes_of(outcome: np.ndarray, half_cycles: np.ndarray) -> np.ndarray:
@@ -121,21 +124,37 @@ class Mapper:
         return self.rows(index, amplitude)["code"]
 
 
-def failure_curves(mapper: Mapper, durations: np.ndarray, amplitudes: np.ndarray, accuracy: float) -> Curves:
-    """Map and curves; `accuracy` [m/s^2] of the lowest failing amplitudes within their cell of the map."""
+def failure_curves(
+    mapper: Mapper, durations: np.ndarray, amplitudes: np.ndarray, accuracy: float,
+    decided: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None,
+) -> Curves:  # fmt: skip
+    """Map and curves; `accuracy` [m/s^2] of the lowest failing amplitudes within their cell of the map. decided: outcomes by rigid
+    contacts of pulses (numbers of durations, amplitudes [m/s^2]) whose mechanism a condition leaves."""
     nd, na = len(durations), len(amplitudes)
     rows = mapper.rows(np.repeat(np.arange(nd), na), np.tile(amplitudes, nd))
     rows = {name: values.reshape(nd, na) for name, values in rows.items()}
     codes = rows["code"]
     grid = np.broadcast_to(amplitudes, codes.shape)
-    refined = [_refine(mapper.codes, codes, grid, wanted, accuracy) for wanted in (MODE_I, MODE_II)]
+    handed = np.zeros(codes.shape, dtype=bool)
+    if decided is not None:
+        handed = (rows["slips"] > 0) | (rows["strays"] > 0)
+        place, _ = np.nonzero(handed)
+        found = decided(place, grid[handed])
+        known = found >= 0
+        # contacts have no half cycles: a collapse keeps the mode of fixed hinges, and is of Mode I where these stand
+        codes[handed] = np.where(
+            known, np.where(found == COLLAPSE, np.maximum(codes[handed], MODE_I), found), codes[handed]
+        )
+        handed[handed] = known
+    within = np.where(handed.any(axis=1), np.inf, accuracy)
+    refined = [_refine(mapper.codes, codes, grid, wanted, within) for wanted in (MODE_I, MODE_II)]
     # The pocket is the first safe amplitude above a failing one: the same search with the roles exchanged.
     risen = np.where((codes < MODE_I) & (np.cumsum(codes >= MODE_I, axis=1) > 0), MODE_I, RECOVERY)
 
     def safe(index: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
         return np.where(mapper.codes(index, amplitude) < MODE_I, MODE_I, RECOVERY)
 
-    return Curves(durations, amplitudes, codes, *refined, _refine(safe, risen, grid, MODE_I, accuracy), rows)
+    return Curves(durations, amplitudes, codes, *refined, _refine(safe, risen, grid, MODE_I, within), rows, handed)
 
 
 @dataclass(frozen=True)
@@ -239,10 +258,10 @@ def _refine(
     codes: np.ndarray,
     values: np.ndarray,
     wanted: int,
-    accuracy: float,
+    accuracy: float | np.ndarray,
 ) -> np.ndarray:
     """Lowest failing value of each row of a scan (codes, values ascending): its first failing cell is scanned
-    again in 8 parts until it is smaller than `accuracy`, whatever the other rows need. `codes_at(rows, values)` runs
+    again in 8 parts until it is smaller than `accuracy` (of all, or of each row), whatever the other rows need. `codes_at(rows, values)` runs
     more pulses."""
 
     def fails(c: np.ndarray) -> np.ndarray:
@@ -253,8 +272,9 @@ def _refine(
     index = np.flatnonzero(first >= 0)
     high = values[index, first[index]]
     low = np.where(first[index] > 0, values[index, np.maximum(first[index] - 1, 0)], 0.0)
+    within = np.broadcast_to(accuracy, len(codes))[index]
     parts = 8
-    while len(wide := np.flatnonzero(high - low > accuracy)):
+    while len(wide := np.flatnonzero(high - low > within)):
         steps = np.arange(1, parts) / parts
         trial = low[wide, None] + (high - low)[wide, None] * steps
         again = fails(codes_at(np.repeat(index[wide], parts - 1), trial.ravel()).reshape(trial.shape))
@@ -297,9 +317,11 @@ def run(context: Context, options: FailureDomain) -> Result:
         astray=astray_of(model),
     )  # fmt: skip
     with interruptible():  # Ctrl-C between two rounds stops the next one
-        curves = failure_curves(mapper, durations, amplitudes, options.accuracy * GRAVITY)
+        decided = _by_contacts(context, options, model, mapper)
+        curves = failure_curves(mapper, durations, amplitudes, options.accuracy * GRAVITY, decided)
     result = Result("failure-domain")
     names = {"mode_I": curves.mode_i, "mode_II": curves.mode_ii}
+    conditions, handed = _conditions(model, curves)
     gamma, slender = model.unit_acceleration, model.what != "arch"
     r = out.FailureDomain(
         pulse=options.pulse,
@@ -314,8 +336,9 @@ def run(context: Context, options: FailureDomain) -> Result:
         pocket_begins_g=curves.pocket / GRAVITY,
         sliding_from_g=first_of(curves.rows["slips"], amplitudes) / GRAVITY,
         hinges_elsewhere_from_g=first_of(curves.rows["strays"], amplitudes) / GRAVITY,
-        **of_many(model, Counted.of([curves.rows]), "pulses of the map"),
-        **_by_rule(context, options, model, durations, amplitudes, 40.0 * unit),
+        conditions=conditions,
+        **({"handed_over": handed} if handed else {}),
+        **_by_rule(context, options, model, durations, amplitudes, 40.0 * unit, curves.handed.any(axis=1)),
         uplift_acceleration_g=model.uplift,
         restitution=model.restitution,
         natural_time_s=unit if model.what == "arch" else model.time_unit,
@@ -350,7 +373,49 @@ def run(context: Context, options: FailureDomain) -> Result:
     }
     result.answer = _answer(model, options, durations, curves, r.safe_pockets)
     result.warnings += warned(r)
+    if handed:
+        given = f" at friction {conditions.friction:.2f}" if conditions.friction is not None else ""
+        result.warnings.append(
+            f"Rigid contacts decided {handed} of {curves.codes.size} pulses: joints slide{given} in {conditions.sliding} pulses, and hinges "
+            f"form elsewhere in {conditions.hinges_elsewhere}. The curves at these durations are known to a cell of the map."
+        )
+        if options.at_amplitudes:
+            result.warnings.append(
+                "The shortest failing durations (at_amplitudes) are those of fixed hinges without sliding."
+            )
     return result
+
+
+def _conditions(model: Rocker, curves: Curves) -> tuple[out.Conditions, int]:
+    """The conditions of the map, and how many cells rigid contacts decided; nothing is violated where these decided all that fail."""
+    conditions = of_many(model, Counted.of([curves.rows]), "pulses of the map")["conditions"]
+    handed, failing = int(curves.handed.sum()), int(((curves.rows["slips"] > 0) | (curves.rows["strays"] > 0)).sum())
+    return (conditions.model_copy(update={"violated": []}) if handed and handed == failing else conditions), handed
+
+
+def _by_contacts(
+    context: Context, options: FailureDomain, model: Rocker, mapper: Mapper
+) -> Callable[[np.ndarray, np.ndarray], np.ndarray] | None:
+    """Outcomes on rigid contacts of pulses whose mechanism a condition leaves; None where contacts do not go on."""
+    if not options.hand_over_cells:
+        return None
+
+    def decided(index: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+        if not len(index):
+            return np.zeros(0, dtype=int)
+        contacts = contacts_of(model, context.building, options.form == "linear")
+        if contacts is None or len(index) > options.hand_over_cells:
+            if contacts is not None:
+                context.warnings.append(
+                    f"Joints slide or hinges form elsewhere in {len(index)} pulses of the map; rigid contacts decide up to "
+                    f"hand_over_cells = {options.hand_over_cells}."
+                )
+            return np.full(len(index), UNKNOWN)
+        ends = np.array([m.end for m in mapper.motions]) + mapper.settle
+        grounds = [m.ground for m in mapper.motions]
+        return decide(context, "failure-domain-contacts", contacts, grounds, index, amplitude, ends[index])
+
+    return decided
 
 
 def warned(r: out.FailureDomain | out.FailureCurve) -> list[str]:
@@ -368,9 +433,11 @@ def rule_band(curves: list[out.RuleCurve] | None, ratio: float | None) -> str:
 
 
 def _by_rule(
-    context: Context, options: FailureDomain, model: Rocker, durations: np.ndarray, amplitudes: np.ndarray, settle: float
+    context: Context, options: FailureDomain, model: Rocker, durations: np.ndarray, amplitudes: np.ndarray, settle: float,
+    handed: np.ndarray,
 ) -> dict[str, Any]:  # fmt: skip
-    """The curve by each impact rule, where their c_v differ by more than DIFFER; nothing where they agree."""
+    """The curve by each impact rule, where their c_v differ by more than DIFFER; nothing where they agree. handed (durations): where
+    rigid contacts decided, which have one rule."""
     jobs = {
         rule: (
             c_v,
@@ -386,13 +453,14 @@ def _by_rule(
         )
         for rule, (c_v, body) in model.rivals(DIFFER).items()
     }
-    return curves_by_rule(context, jobs, len(durations))
+    return curves_by_rule(context, jobs, len(durations), handed)
 
 
 def curves_by_rule(
-    context: Context, jobs: dict[str, tuple[float, LowestAmplitudes]], count: int
+    context: Context, jobs: dict[str, tuple[float, LowestAmplitudes]], count: int, without: np.ndarray | None = None
 ) -> dict[str, Any]:  # fmt: skip
-    """Lowest failing amplitudes by each impact rule, and the greatest ratio between two of them at a duration."""
+    """Lowest failing amplitudes by each impact rule, and the greatest ratio between two of them at a duration. without (durations):
+    those that are left out."""
     if not jobs:
         return {}
     found = {
@@ -401,6 +469,8 @@ def curves_by_rule(
         )["amplitude"]
         for rule, (_, job) in jobs.items()
     }
+    if without is not None:
+        found = {rule: np.where(without, np.nan, curve) for rule, curve in found.items()}
     every = np.array(list(found.values()))
     fail = every[:, np.isfinite(every).sum(axis=0) > 1]
     return {

@@ -1,12 +1,15 @@
 """What the rocking of blocks and arches share: running the history, storing it, saying it in words."""
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from extrados.analyses.batches import Unfinished
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.rocking.conditions import of_one, told
-from extrados.analyses.rocking.doubts import Doubts
+from extrados.analyses.rocking.conditions import astray_of, of_one, told
+from extrados.analyses.rocking.doubts import Doubts, doubts, doubts_on_contacts
+from extrados.analyses.rocking.hand_over import contacts_of, follow_contacts, leaving_time, outcome_of, stored
 from extrados.analyses.rocking.tables import Rocking
 from extrados.core.restraints import LENGTH
 from extrados.core.rocking import Body, Response, history
@@ -31,6 +34,54 @@ def rest_time(rocker: Rocker) -> float:
     if isinstance(rocker.model, BlockModel):
         return 30.0 / float(rocker.model.frequency.min())
     return 40.0 * rocker.time_unit
+
+
+@dataclass(frozen=True)
+class Ran:
+    """response: of the mechanism, until contacts go on, where they do; fixed: of the mechanism to its end; hand_over: results of the
+    rest of the motion on contacts, `run` what is stored of it."""
+
+    response: Response
+    fixed: Response
+    conditions: out.Conditions
+    doubt: Doubts
+    hand_over: out.HandOver | None = None
+    run: Result | None = None
+
+
+def rock(context: Context, options: Rocking, rocker: Rocker, end_time: float, width: int) -> Ran:
+    """The response of a rocker, on rigid contacts from where a condition of its mechanism fails; width: see run_history."""
+
+    def until(time: float) -> Response:
+        return run_history(context, options, rocker.body, time, width, rocker.start_rotation)
+
+    fixed = until(end_time)
+    time = (
+        leaving_time(fixed, astray_of(rocker), rocker.time_unit)
+        if options.hand_over and not fixed.interrupted
+        else None
+    )
+    contacts = None
+    if time is not None:
+        contacts = contacts_of(rocker, context.building, options.form == "linear", options.tolerance)
+    if contacts is not None and time is not None:
+        ground = context.motion.ground
+        try:
+            run, result = follow_contacts(
+                context, contacts, contacts.begin(ground, time), options.end_time, options.output_step
+            )
+        except (Refused, Unfinished) as error:
+            context.warnings.append(f"Rigid contacts gave no result from {time:.3f} s: {error}")
+        else:
+            response = until(max(time, 1e-9 * rocker.time_unit))
+            conditions = of_one(rocker, fixed, handed=True)
+            outcome = outcome_of(response.half_cycles > 0, run.outcome)
+            over = out.HandOver(
+                time_s=time, reason=conditions.violated[0], outcome=outcome, fixed_hinges_outcome=fixed.outcome, contacts=run
+            )  # fmt: skip
+            doubt = doubts_on_contacts(context, rocker, contacts, response, over, end_time)
+            return Ran(response, fixed, conditions, doubt, over, result)
+    return Ran(fixed, fixed, of_one(rocker, fixed), doubts(context, options, rocker, fixed, end_time))
 
 
 def run_history(
@@ -62,8 +113,7 @@ def run_history(
 
 def rocking_result(
     context: Context,
-    response: Response,
-    doubt: Doubts,
+    ran: Ran,
     rocker: Rocker,
     of: str,
     friction: np.ndarray,
@@ -73,6 +123,7 @@ def rocking_result(
 
     friction (times, joints): coefficient of friction needed. further: the results that only this structure has.
     """
+    response, doubt, over = ran.response, ran.doubt, ran.hand_over
     impacts = [(t, v) for kind, t, v in response.events if kind == "impact"]
     collapse = response.outcome == "collapse"
     energy = response.kinetic + response.potential + response.stored
@@ -81,16 +132,19 @@ def rocking_result(
     result.reason = f"interrupted at {response.stop_time:.3f} s" if response.interrupted else ""
     if response.events_found > len(response.events):
         result.warnings.append(f"only the first {len(response.events)} of {response.events_found} events are kept")
-    if not response.settled and not response.interrupted:
+    if over is not None and ran.run is not None and ran.run.status != "ok":
+        result.status, result.reason = ran.run.status, f"rigid contacts: {ran.run.reason}"
+    settled = response.settled if over is None else not over.contacts.still_moving
+    if not settled and not response.interrupted:
         result.warnings.append(
             f"it still rocks at the end time of {response.stop_time:g} s: the outcome is open, give a longer end_time"
         )
     r = out.Rocking(
         rotation_of=of,
-        outcome=response.outcome,
-        settled=response.settled,
+        outcome=response.outcome if over is None else over.outcome,
+        settled=settled,
         collapse_half_cycle=response.half_cycles if collapse else None,
-        collapse_time_s=response.stop_time if collapse else None,
+        collapse_time_s=over.contacts.collapse_time_s if over else response.stop_time if collapse else None,
         half_cycles=response.half_cycles,
         impacts=response.impacts,
         impact_times_s=[t for t, _ in impacts],
@@ -104,7 +158,8 @@ def rocking_result(
         rejected_steps=response.rejected,
         decided_by_last_digits=doubt.chaotic,
         perturbation_growth=doubt.growth,
-        **of_one(rocker, response),
+        conditions=ran.conditions,
+        **({} if over is None else {"hand_over": over}),
         violated=doubt.violated,
         **({"outcomes_by_rule": doubt.rules} if doubt.rules else {}),
         **_held(rocker, response),
@@ -112,6 +167,9 @@ def rocking_result(
     )
     result.results = r
     result.warnings += [*told(r.conditions), *r.violated, *doubt.warnings]
+    if over is not None and ran.run is not None:
+        result.warnings.append(f"Rigid contacts follow the blocks from {over.time_s:.3f} s on.")
+        result.warnings += [text for text in ran.run.warnings if text not in result.warnings]
     result.tables["rocking"] = TableData(
         {
             "time": response.time, "rotation": response.rotation, "rotation_rate": response.rate,
@@ -152,6 +210,7 @@ def rocking_result(
         "impact_time": Array(np.array([t for t, _ in impacts]), ("impact",), "s"),
         "required_friction": Array(friction, ("time", "joint"), "", "coefficient of friction needed"),
         **restraint_arrays(rocker, response),
+        **({} if ran.run is None else stored(ran.run)),
     }
     return result
 
@@ -230,6 +289,15 @@ def ordinal(n: int) -> str:
 def count(n: int, thing: str) -> str:
     """1 impact, 2 impacts."""
     return f"{n} {thing}" + ("" if n == 1 else "s")
+
+
+def answer_of(context: Context, ran: Ran, who: str, falls: str, uplift: float) -> str:
+    """The outcome in words, see `answer`; on rigid contacts from where these went on."""
+    response, over = ran.response, ran.hand_over
+    if over is None or ran.run is None:
+        return answer(context, response, who, falls, uplift)
+    before = f"rocks ({count(response.impacts, 'impact')})" if response.half_cycles else "rests"
+    return f"{who} {before} until {over.time_s:.3f} s. {over.reason} Rigid contacts from that state: {ran.run.answer}"
 
 
 def answer(context: Context, response: Response, who: str, falls: str, uplift: float) -> str:

@@ -4,8 +4,7 @@ import numpy as np
 
 from extrados.analyses.context import Context
 from extrados.analyses.limit.common import geometry_arrays
-from extrados.analyses.rocking.doubts import doubts
-from extrados.analyses.rocking.history import answer, rest_time, rocking_result, run_history, snapshot_index
+from extrados.analyses.rocking.history import answer_of, rest_time, rock, rocking_result, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
 from extrados.results.model import Array, Result
 from extrados.results.rocking import RockingHinge
@@ -21,7 +20,8 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     context.warnings += rocker.warnings
     end_time = options.end_time or context.motion.end + rest_time(rocker)
     joints = len(model.assembly.a)
-    response = run_history(context, options, rocker.body, end_time, 8 + joints, rocker.start_rotation)
+    ran = rock(context, options, rocker, end_time, 8 + joints)
+    response = ran.response
 
     forces = model.hinge_forces(
         response.rotation, response.rate, response.acceleration, response.ground, response.vertical,
@@ -32,7 +32,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     known = any(one.determinate for one in model.linkages)
     side = 0 if response.peak >= 0.0 else 1
     result = rocking_result(
-        context, response, doubts(context, options, rocker, response, end_time), rocker, model.driver(side), friction,
+        context, ran, rocker, model.driver(side), friction,
         restitution=model.restitution[0],
         restitution_to_left=model.restitution[1],
         critical_rotation_rad=rocker.critical[0],
@@ -52,7 +52,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
             "x, y, rotation of the stones",
         ),
     }  # fmt: skip
-    result.answer = answer(context, response, f"The {rocker.word}", "comes down", rocker.uplift)
+    result.answer = answer_of(context, ran, f"The {rocker.word}", "comes down", rocker.uplift)
     return result
 
 

@@ -10,6 +10,7 @@ from extrados.analyses.rocking import tables
 from extrados.model.errors import BadGeometry
 from extrados.model.structure import Structure
 from extrados.views.building import Building
+from extrados.views.rockers.stack import rocks_as_stack
 from extrados.views.rockers.words import refuse_words
 
 
@@ -20,7 +21,7 @@ def needs(context: Context, options: tables.RockingTable) -> Iterator[Need]:
         return
     stones = building.pier_blocks if structure.rocks_as == "piers" else building.blocks
     yield lambda: building.refuse_weightless(stones())
-    if structure.rocks_as == "stack" and isinstance(options, tables.Rocking):
+    if isinstance(options, tables.Rocking) and rocks_as_stack(building):
         yield functools.partial(_refuse_stack, building, options)
     elif building.supports.stiffness is not None and options.soft_base:
         yield lambda: _refuse_soft_base(building, options)

@@ -4,8 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from extrados.analyses.limit.common import geometry_arrays
 from extrados.analyses.rocking import arch, block
 from extrados.core import arch as core_arch
+from extrados.model.geometry.assembly import Assembly
 from extrados.results.model import Array, Result
 from extrados.views.rockers.arch import ArchModel
 from extrados.views.rockers.block import BlockModel
@@ -82,3 +84,30 @@ def film_arrays(rocker: Rocker, result: Result) -> dict[str, Array]:
             made.line, ("film", "line_point", "axis"), "m", "line of thrust, or of the ground's force"
         )
     return arrays
+
+
+def on_contacts(assembly: Assembly, result: Result) -> dict[str, Array]:
+    """Shapes of a structure whose blocks rigid contacts took over: six, and the film where the analysis made one of the mechanism."""
+    time, place = result.arrays["contacts_time"].data, result.arrays["contacts_place"].data
+    if not len(time):
+        return {}
+    away = np.abs(place - place[-1]).max(axis=(1, 2))
+    last = int(np.flatnonzero(away >= 0.01 * away.max())[-1])
+    index = np.unique(np.linspace(0, last, 6).round().astype(int))
+    found = {
+        **geometry_arrays(assembly),
+        "snapshot_time": Array(time[index], ("snapshot",), "s"),
+        "snapshot_pose": Array(
+            place[index], ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation of the blocks"
+        ),
+    }
+    if "film_pose" in result.arrays:
+        shown = pictures(time)
+        times, poses = time[shown], place[shown]
+        before = result.arrays["film_pose"].data
+        if before.shape[1] == poses.shape[1]:  # else a column, whose mechanism is one body
+            early = result.arrays["film_time"].data < times[0]
+            times = np.concatenate([result.arrays["film_time"].data[early], times])
+            poses = np.concatenate([before[early], poses])
+        found |= film(times, poses)
+    return found

@@ -71,6 +71,10 @@ class Rocking(RockingTable, Animated):
     end_time: Time | None = key(None, "when to stop; default the end of the motion and some time after", gt=0)
     output_step: Time = key(0.005, "spacing of the history", gt=0)
     tolerance: float = key(1e-8, "relative tolerance of the integrator", ge=1e-13, le=1e-3)
+    hand_over: bool = key(
+        True, "where joints slide or hinges form elsewhere, rigid contacts follow the blocks from that state; false leaves the outcome open",
+        source="Moreau 1988",
+    )  # fmt: skip
     thrust_line_times: list[Annotated[Time, Field(ge=0)]] = key(
         [], "draw the structure and its thrust line at these times", max_length=24
     )
@@ -91,6 +95,10 @@ class FailureDomain(RockingTable):
     amplitudes: int = key(40, "number of amplitudes of the map", ge=2, le=2000)
     max_amplitude: Acceleration = key(1.5 * GRAVITY, "cap of the search", gt=0)
     accuracy: float = key(1e-4, "accuracy of the curves, in g (and of durations in s)", ge=1e-9, le=0.1)
+    hand_over_cells: int = key(
+        100, "rigid contacts decide pulses of the map in which joints slide or hinges form elsewhere, where these are not more; 0: never",
+        ge=0, le=1_000_000, source="Moreau 1988",
+    )  # fmt: skip
     at_amplitudes: list[Annotated[Acceleration, Field(gt=0)]] = key(
         [], "also find the shortest failing durations at these amplitudes", max_length=200
     )

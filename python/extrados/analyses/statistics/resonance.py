@@ -145,7 +145,7 @@ def run(context: Context, options: Resonance) -> Result:
         "energy_supplied_J": r.work,
         "energy_lost_at_impacts_J": r.loss,
         "restitution": model.restitution,
-        **of_one(model, r),
+        "conditions": of_one(model, r),
     }
     keep = slice(None, None, max(1, len(r.time) // 20000))
     result.arrays = {

@@ -6,26 +6,59 @@ from functools import cached_property
 import numpy as np
 
 from extrados.core.stack import Stack
-from extrados.model.geometry.assembly import Assembly
+from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.schema.constants import GRAVITY
+from extrados.views.blocks import Masonry
+
+#: Rounding of lengths, as a share of the size
+SAME = 1e-9
+
+
+def is_stack(assembly: Assembly) -> bool:
+    """Whether two blocks stand upon each other, middle over middle, on level joints: one on the ground, one between."""
+    grounded = (assembly.a == GROUND) | (assembly.b == GROUND)
+    if len(assembly.mass) != 2 or len(grounded) != 2 or grounded.sum() != 1:
+        return False
+    level = np.abs(assembly.p[:, 1] - assembly.q[:, 1])
+    middles = np.concatenate([0.5 * (assembly.p + assembly.q)[:, 0], assembly.centroid[:, 0]])
+    return bool(max(level.max(), np.ptp(middles)) <= SAME * assembly.size)
+
+
+def rocks_as_stack(building: Masonry) -> bool:
+    """Whether a building rocks as two stacked blocks: a stack, and two free blocks that are drawn as one."""
+    structure, joints = building.structure, building.joints
+    if structure is None or structure.rocks_as == "stack":
+        return structure is not None
+    free = not building.restraints and building.supports.abutting_wall is None and building.supports.stiffness is None
+    plastic = joints.energy_ratio is None and isinstance(joints.restitution, str)
+    return structure.kind == "blocks" and free and plastic and is_stack(building.blocks())
 
 
 @dataclass(frozen=True)
 class StackModel:
-    """Two blocks of an assembly of kind `stack`; pairs are (lower, upper). Impacts are without rebound at all edges."""
+    """Two blocks of an assembly, see `is_stack`; pairs are (lower, upper). Impacts are without rebound at all edges."""
 
     assembly: Assembly
+
+    @cached_property
+    def order(self) -> np.ndarray:
+        """Numbers of the lower and of the upper block."""
+        return np.argsort(self.assembly.centroid[:, 1])
+
+    @cached_property
+    def joints(self) -> np.ndarray:
+        """Numbers of the joint on the ground and of that between."""
+        return np.argsort(self.assembly.p[:, 1])
 
     @cached_property
     def core(self) -> Stack:
         """For the core."""
         a = self.assembly
-        (low, high), (inner, outer) = a.mass, a.inertia
-        foot, middle = a.p[0, 1], a.p[1, 1]
+        (low, high), (inner, outer), centre = a.mass[self.order], a.inertia[self.order], a.centroid[self.order, 1]
+        (foot, middle), (base, contact) = a.p[self.joints, 1], a.length[self.joints]
         return Stack(
-            (float(low), float(high)), (float(inner), float(outer)),
-            (float(a.centroid[0, 1] - foot), float(a.centroid[1, 1] - middle)), 0.5 * float(a.length[0]),
-            float(middle - foot), 0.5 * float(a.length[1]),
+            (float(low), float(high)), (float(inner), float(outer)), (float(centre[0] - foot), float(centre[1] - middle)),
+            0.5 * float(base), float(middle - foot), 0.5 * float(contact),
         )  # fmt: skip
 
     @property
@@ -53,7 +86,8 @@ class StackModel:
         return float(np.tan(self.whole[0])), float(np.tan(self.alone[0]))
 
     def pose(self, rotation: np.ndarray, state: np.ndarray) -> np.ndarray:
-        """x, y [m] and counter-clockwise rotation [rad] of both centres (states, 2, 3); rotation, state as StackResponse."""
+        """x, y [m] and counter-clockwise rotation [rad] of both centres (states, 2, 3), in the order of the assembly; rotation, state as
+        StackResponse."""
         s = self.core
         foot, edge = s.half_foot * state[:, 0], s.half_contact * state[:, 1]
 
@@ -65,4 +99,7 @@ class StackModel:
         lower = origin + turned(-foot, s.centre[0], rotation[:, 0])
         corner = origin + turned(edge - foot, s.height, rotation[:, 0])
         upper = corner + turned(-edge, s.centre[1], rotation[:, 1])
-        return np.stack([np.column_stack([lower, -rotation[:, 0]]), np.column_stack([upper, -rotation[:, 1]])], axis=1)
+        at = np.stack([np.column_stack([lower, -rotation[:, 0]]), np.column_stack([upper, -rotation[:, 1]])], axis=1)
+        ground = self.joints[0]
+        at[:, :, :2] += 0.5 * (self.assembly.p[ground] + self.assembly.q[ground])
+        return at[:, np.argsort(self.order)]

@@ -1,0 +1,239 @@
+"""Where joints of a rocking structure slide, or hinges open elsewhere: its blocks go on by rigid contacts, from that state.
+
+The mechanism is right up to the moment at which a condition fails. There the places and velocities of its blocks are handed to
+contacts without springs (Moreau 1988), which open and slide wherever the state requires it, under the rest of the motion.
+"""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from extrados.analyses.batches import sweep
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.dem import history as dem_history
+from extrados.analyses.dem import model as dem_model
+from extrados.analyses.dem.from_deck import joint_values
+from extrados.analyses.dem.job import BODIES_FOR_THREADS
+from extrados.analyses.dem.measures import Collapse
+from extrados.analyses.dem.model import Model
+from extrados.analyses.dem.seen import Seen
+from extrados.analyses.dem.tables import Dem
+from extrados.analyses.dem.trial import Begin, Trial, core_options
+from extrados.analyses.rocking.conditions import astray_of
+from extrados.core import dem
+from extrados.core import mechanism as core_mechanism
+from extrados.core.errors import Cancelled, status_code
+from extrados.core.ground import Ground
+from extrados.core.rocking import OUTCOMES, Body, Response, history
+from extrados.limit.linkage import Linkage
+from extrados.model.errors import BadGeometry
+from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.results.dem import DemRun
+from extrados.results.model import Array, Result
+from extrados.results.rocking import COLLAPSE, NO_HINGING, RECOVERY, WholeOutcome
+from extrados.views.building import Building
+from extrados.views.rockers.rocker import Rocker
+from extrados.views.rockers.watch import LOST
+
+#: Handed over so much before the condition fails, over the time unit of the structure: contacts take an impact themselves
+BEFORE = 1e-3
+#: Spacing of the history of contacts in maps, over the time unit of the structure
+COARSE = 0.02
+#: Heights of joints on the ground that differ by no more than this share of the size are one level
+LEVEL = 1e-6
+#: Outcome of `rocking` for one of contacts; of many runs sliding counts as recovery
+WORDS: dict[str, WholeOutcome] = {
+    "at-rest": "no-hinging", "slid": "slid", "rocked": "recovery", "collapse": "collapse",
+}  # fmt: skip
+CODES = {"no-hinging": NO_HINGING, "slid": RECOVERY, "recovery": RECOVERY, "collapse": COLLAPSE}
+
+
+def leaving_time(response: Response, astray: float, time_unit: float) -> float | None:
+    """When a response leaves its mechanism [s], just before the first condition fails; None where all conditions hold. astray: see
+    rocking.conditions; time_unit: of the structure [s]."""
+    if response.joints is None:
+        return None
+    times = [float(t) for t in (response.joints.slips_at, response.joints.leaves_at) if t >= 0.0]
+    if astray > LOST:
+        times += [t for kind, t, _ in response.events if kind == "impact"][:1]
+    return max(min(times) - BEFORE * time_unit, 0.0) if times else None
+
+
+@dataclass(frozen=True)
+class Leaving:
+    """A rocking structure until one of its conditions fails: body of the core, mechanisms (to +x, to -x) of its blocks, share of
+    energy astray (rocking.conditions), rotation at the start [rad], > 0 to +x, and its time unit [s]."""
+
+    body: Body
+    linkages: tuple[Linkage, Linkage]
+    blocks: Assembly
+    astray: float
+    start: float
+    time_unit: float
+    tolerance: float = 1e-8
+
+    def respond(self, ground: Ground, end_time: float, step: float, scale: float = 1.0) -> Response:
+        """The response of the mechanism."""
+        return history(
+            self.body, ground, end_time, step, scale=scale, tolerance=self.tolerance,
+            start_side=1 if self.start >= 0.0 else -1, start_rotation=abs(self.start),
+        )  # fmt: skip
+
+    def state(self, ground: Ground, time: float, scale: float, bodies: int) -> tuple[np.ndarray, np.ndarray]:
+        """Displacements and velocities (bodies, 3) of blocks and supports at a time [s] under the motion times a factor."""
+        q, v = self.start, 0.0
+        if time > 0.0:
+            reached = self.respond(ground, time, time, scale)
+            q, v = float(reached.rotation[-1]), float(reached.rate[-1])
+        shift, rate = np.zeros((2, bodies, 3))
+        one = self.linkages[0 if q > 0.0 or (q == 0.0 and v >= 0.0) else 1]
+        place, first, _ = core_mechanism.follow(one, [abs(q)])
+        n = len(self.blocks.mass)
+        shift[:n] = one.blocks(self.blocks, place)[0]
+        shift[:n, :2] -= self.blocks.centroid
+        rate[:n] = one.block_rates(self.blocks, place, first * (one.side * v))[0]
+        return shift, rate
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """The blocks of a building on rigid contacts, and the mechanism that they leave; floor: height of the level ground on which they
+    slide [m], None where they stand on footings."""
+
+    leaving: Leaving
+    model: Model
+    floor: float | None
+
+    @cached_property
+    def bodies(self) -> dem.Bodies:
+        """Bodies of the core."""
+        return self.model.bodies()
+
+    def begin(self, ground: Ground, time: float) -> Begin:
+        """The beginning of a run of contacts."""
+        bodies = len(self.model.rigid.mass)
+        return Begin(time, lambda factor: self.leaving.state(ground, time, factor, bodies))
+
+
+def contacts_of(rocker: Rocker, building: Building, linear: bool = False, tolerance: float = 1e-8) -> Contacts | None:
+    """The blocks of a rocking structure on rigid contacts; None where its joints are not watched, where it is not made of blocks,
+    or where the equations are those of slender blocks."""
+    watch = rocker.watch
+    if watch is None or not len(watch.joints) or linear:
+        return None
+    try:
+        blocks = building.blocks()
+        floor = level_of(blocks)
+        rigid = building.rigid((), floor)
+    except BadGeometry:
+        return None
+    linkages = watch.linkages
+    if len(blocks.mass) != len(watch.assembly.mass):  # a wall that rocks as one pier, of all of its bricks
+        if any(len(one.mass) > 1 for one in linkages):
+            return None
+        right, left = (replace(one, part=np.ones(len(blocks.mass), dtype=int)) for one in linkages)
+        linkages = right, left
+    values = joint_values(building, rigid=True)
+    nothing = np.zeros_like(values.cohesion)  # a mechanism has no mortar either
+    model = Model(blocks, rigid, replace(values, cohesion=nothing, tension=nothing))
+    leaving = Leaving(
+        rocker.body, linkages, blocks, astray_of(rocker), rocker.start_rotation, rocker.time_unit, tolerance
+    )
+    return Contacts(leaving, model, floor)
+
+
+def level_of(blocks: Assembly) -> float | None:
+    """Height of the ground [m]; None where joints on it are not level, or not at one height."""
+    grounded = (blocks.a == GROUND) | (blocks.b == GROUND)
+    heights = np.concatenate([blocks.p[grounded, 1], blocks.q[grounded, 1]])
+    return float(heights[0]) if np.ptp(heights) <= LEVEL * blocks.size else None
+
+
+def follow_contacts(
+    context: Context, contacts: Contacts, begin: Begin, end_time: float | None, output_step: float
+) -> tuple[DemRun, Result]:  # fmt: skip
+    """The run of contacts from a state, and what is stored of it. Refused where it has no result."""
+    options = Dem(kind="dem", solver="nonsmooth", end_time=end_time, output_step=output_step, floor=contacts.floor)
+    context.warnings += dem_model.adjusted(contacts.model)
+    trial = Trial(context, options, contacts.model, begin)
+    result = dem_history.follow(context, options, trial, "rocking-contacts")
+    assert isinstance(result.results, DemRun)
+    return result.results, result
+
+
+def outcome_of(rocked: bool, outcome: str) -> WholeOutcome:
+    """The outcome of the whole motion: contacts that did not open any more leave what rocked before as recovered."""
+    return "recovery" if rocked and outcome != "collapse" else WORDS[outcome]
+
+
+def stored(result: Result) -> dict[str, Array]:
+    """Histories of the blocks on contacts, by names of their own."""
+    get = result.arrays
+    axes = {"time": "contacts_time"}
+    kept = ("time", "place", "rotation", "slip", "ground", "kinetic_energy", "friction_energy", "damping_energy")
+    return {
+        f"contacts_{name}": Array(get[name].data, tuple(axes.get(d, d) for d in get[name].dims), get[name].unit, get[name].about)
+        for name in kept
+    }  # fmt: skip
+
+
+@dataclass(frozen=True)
+class ContactRuns:
+    """Member k: motion[k] times scale[k] until end[k] [s], whose mechanism a condition leaves: its outcome on contacts.
+
+    options: of contacts; their end_time [s] counts from the end of each motion.
+    """
+
+    contacts: Contacts
+    grounds: list[Ground]
+    motion: np.ndarray
+    scale: np.ndarray
+    end: np.ndarray
+    options: dem.Options
+    collapse: Collapse
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        members = range(first, first + count)
+        found = [self.member(k, threads) for k in members]
+        return {"outcome": np.array(found, dtype=np.int8)}
+
+    def member(self, k: int, threads: int) -> int:
+        """Outcome of one run; FAILED where contacts have no result."""
+        c, ground, scale = self.contacts, self.grounds[self.motion[k]], float(self.scale[k])
+        end = float(self.end[k])
+        response = c.leaving.respond(ground, end, end, scale)
+        time = leaving_time(response, c.leaving.astray, c.leaving.time_unit)
+        if time is None:  # at the edge of its tolerance
+            return OUTCOMES.index(response.outcome)
+        shift, rate = c.begin(ground, time).state(scale)
+        many = len(c.bodies.mass) >= BODIES_FOR_THREADS
+        left = ground.end + self.options.end_time - time
+        options = replace(self.options, end_time=left, threads=threads if many else 1)
+        run = dem.run(c.bodies, options, ground.seen_from(time), scale=scale, shift=shift, rate=rate)
+        if run.interrupted:
+            raise Cancelled(status_code("cancelled"), "rigid contacts interrupted")
+        try:
+            dem_model.checked(run, c.model)
+        except Refused:
+            return UNKNOWN
+        fate = Seen.of(c.model, run, c.floor is not None).fate(self.collapse)
+        return CODES[outcome_of(bool(response.half_cycles), fate.outcome)]
+
+
+#: Outcome of a member whose contacts gave no result
+UNKNOWN = -2
+
+
+def decide(
+    context: Context, name: str, contacts: Contacts, grounds: list[Ground], motion: np.ndarray, scale: np.ndarray, end: np.ndarray
+) -> np.ndarray:  # fmt: skip
+    """Outcomes (runs) on contacts of runs whose mechanism a condition leaves, UNKNOWN where contacts gave no result; see
+    ContactRuns."""
+    options, model = Dem(kind="dem", solver="nonsmooth", floor=contacts.floor), contacts.model
+    step = COARSE * contacts.leaving.time_unit
+    asked = core_options(context, options, model)
+    collapse = Collapse.of(0.2 * model.size, model.size)
+    brief = replace(asked, end_time=dem_model.settle_time(model), output_step=step, stop_at_rest=True)
+    job = ContactRuns(contacts, grounds, motion, scale, end, brief, collapse)
+    return sweep(context, name, job, len(motion), "rigid contacts", slow=True, parallel=True).whole()["outcome"]
