@@ -7,6 +7,7 @@ import numpy as np
 from extrados.limit.loads import Loads
 from extrados.limit.states import NO_WORK, Mechanism, State
 from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.solids.assembly import SolidAssembly
 
 ROUNDING, CLOSING, GAP = 1e-7, 1e-6, 1e-4  # of the total load, of the fastest joint, of gamma: more certifies nothing
 
@@ -89,4 +90,53 @@ def certify(
         max(0.0, float((bound - np.minimum(at_p, at_q)).max())) / scale,
         max(0.0, float(overlap.max())) / fastest,
         gap,
+    )
+
+
+def certify_solids(
+    assembly: SolidAssembly, friction: np.ndarray, dead: np.ndarray, live: np.ndarray, gamma: float, force: np.ndarray, keyed: np.ndarray, motion: np.ndarray
+) -> Certificate:  # fmt: skip
+    """The same of solids, from their geometry.
+
+    friction (corners); dead, live (nb, 6): forces [N] and moments about the centroids [N m]; force (corners, 3): compression
+    and both shears [N]; keyed (keys, 2): shears of the dowels [N]; motion (nb, 6): velocities of the centroids and spins.
+    """
+    joint, normal = assembly.corner_joint, assembly.normal
+    frames = np.stack([normal, *assembly.tangents], axis=1)
+    places, vectors, joints = [assembly.corner], [np.einsum("vk,vkx->vx", force, frames[joint])], [joint]
+    if assembly.keys is not None:
+        places.append(assembly.keys.point)
+        vectors.append(np.einsum("vk,vkx->vx", keyed, frames[assembly.keys.joint, 1:]))
+        joints.append(assembly.keys.joint)
+    left = dead + gamma * live
+    relative = []
+    for at, vector, j in zip(places, vectors, joints, strict=True):
+        moved = np.zeros_like(at)
+        for blocks, sign in ((assembly.a[j], 1.0), (assembly.b[j], -1.0)):
+            on = blocks != GROUND
+            arm = at[on] - assembly.centroid[blocks[on]]
+            np.add.at(left, blocks[on], sign * np.concatenate([vector[on], np.cross(arm, vector[on])], axis=1))
+            moved[on] += sign * (motion[blocks[on], :3] + np.cross(motion[blocks[on], 3:], arm))
+        relative.append(np.einsum("vx,vkx->vk", moved, frames[j]))
+    rate = relative[0]
+    slip, shear = np.hypot(*rate[:, 1:].T), np.hypot(*force[:, 1:].T)
+    with np.errstate(invalid="ignore"):
+        limit = np.where(force[:, 0] > 0.0, friction * force[:, 0], 0.0)
+        taken = float(np.where(slip > 0.0, np.where(np.isfinite(limit), limit, 0.0) * slip, 0.0).sum())
+    stuck = np.where(np.isfinite(limit), 0.0, slip)
+    beyond = 0.0
+    if assembly.keys is not None:
+        weak, strength = np.isfinite(assembly.keys.strength), assembly.keys.strength
+        taken += float((strength[weak] * np.hypot(*relative[1][weak, 1:].T)).sum())
+        beyond = float((np.hypot(*keyed.T) - strength).max(initial=0.0))
+        stuck = np.append(stuck, np.hypot(*relative[1][~weak, 1:].T))
+    scale = float(np.abs(dead[:, :3]).sum())
+    fastest = max(float(np.abs(rate).max()), 1e-300)
+    power, weights = float((live * motion).sum()), float((dead * motion).sum())
+    return Certificate(
+        float(np.abs(left / np.array([1.0, 1.0, 1.0, *[assembly.size] * 3])).max()) / scale,
+        max(0.0, float(np.where(np.isfinite(limit), shear - limit, 0.0).max()), beyond) / scale,
+        max(0.0, -float(force[:, 0].min())) / scale,
+        max(0.0, -float(rate[:, 0].min()), float(stuck.max())) / fastest,
+        abs(gamma * power - (taken - weights)) / abs(power),
     )

@@ -7,6 +7,7 @@ import numpy as np
 from scipy import sparse
 
 from extrados.limit.conic import collapse_of_crushing
+from extrados.limit.contact_points import ContactPoints
 from extrados.limit.coulomb import CoulombProblem, CoulombState
 from extrados.limit.equilibrium import hanging_stones, spanning_tree
 from extrados.limit.graphic import senses, thrust_joint
@@ -256,7 +257,7 @@ class LimitAnalysis:
         motion = problem.motion(point.u)
         # No forces the joints bear take more work than these and what is left of the gap (weak duality).
         taken = point.gap_of_joints - float((point.corners * motion).sum())
-        state, mechanism = self._read(
+        state, mechanism = self.read_collapse(
             direction * point.gamma, point.corners, point.share, point.u.reshape(-1, 3), motion, taken
         )
         apart = abs(state.gamma - mechanism.upper_bound)
@@ -279,7 +280,21 @@ class LimitAnalysis:
             )
         self.coulomb[direction] = found
         taken = -float((found.corners * found.motion).sum())
-        return self._read(found.gamma, found.corners, found.share, found.twist, found.motion, taken)
+        return self.read_collapse(found.gamma, found.corners, found.share, found.twist, found.motion, taken)
+
+    def contact_points(self, direction: int) -> ContactPoints:
+        """The ends of the joints as points of contact, each with a shear along the joint; forces over the total load."""
+        system, m = self._equations, len(self._joints)
+        columns = 3 * np.repeat(self._joints, 4) + np.tile([0, 2, 1, 2], m)  # n_p, s, n_q, s
+        length = self.assembly.length / self.assembly.length.mean()
+        nothing = np.empty((2, 0))
+        answers = self.loads.resistance
+        return ContactPoints(
+            sparse.csr_array(system.corner_matrix.tocsc()[:, columns]), -system.right,
+            direction * (self.loads.live / system.unit).ravel(), np.repeat(self._mu, 2), np.zeros(2 * m),
+            np.repeat(length, 2), sparse.csr_array(system.matrix.tocsc()[:, np.arange(system.shares.start, system.shares.stop)]),
+            nothing if answers is None else np.stack([answers.low, answers.high]), 1.0,
+        )  # fmt: skip
 
     def dilating(self, mechanism: Mechanism) -> list[int]:
         """Joints that press and slide in a mechanism of associated friction: they open by the friction times the slip, so that
@@ -324,7 +339,7 @@ class LimitAnalysis:
         if self._certificate(direction * self.loads.live, np.zeros(len(self._mu)), taking=False) is None:
             raise Immovable("no such load causes collapse: the joints restrain the blocks from all sides")
 
-    def _read(
+    def read_collapse(
         self, gamma: float, corners: np.ndarray, share: np.ndarray, twist: np.ndarray, motion: np.ndarray, taken: float
     ) -> tuple[State, Mechanism]:
         """State and mechanism of a collapse whose forces and motion were found together; taken: work of the joints."""

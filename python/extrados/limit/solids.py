@@ -18,6 +18,8 @@ import numpy as np
 from scipy import sparse
 
 from extrados.core.threads import Worker
+from extrados.limit.certificate import Certificate, certify_solids
+from extrados.limit.contact_points import ContactPoints, SlidingState
 from extrados.limit.errors import Immovable, NoAnswer
 from extrados.model.geometry.assembly import GROUND
 from extrados.model.geometry.solids.assembly import SolidAssembly
@@ -163,6 +165,41 @@ class SolidLimit:
 
         _waited(*[work] * min(threads, len(directions)), told=lambda: told(len(found)))
         return [found[k] for k in range(len(directions))]
+
+    def contact_points(self, direction: float) -> ContactPoints:
+        """Corners of the contacts and dowels as points of contact under a push along a direction [deg]."""
+        dead, live = self._ways(direction)
+        corners, keys = len(self.mu), self.assembly.keys
+        count = np.bincount(self.assembly.corner_joint)[self.assembly.corner_joint]
+        area = self.assembly.area[self.assembly.corner_joint] / count
+        matrix, dowels = self.matrix, 0 if keys is None else len(keys.joint)
+        if dowels:  # a compression of dowels is none
+            own = matrix[:, 3 * corners :]
+            nothing = sparse.csc_array((matrix.shape[0], dowels))
+            order = np.column_stack(
+                [2 * dowels + np.arange(dowels), np.arange(0, 2 * dowels, 2), np.arange(1, 2 * dowels, 2)]
+            )
+            own = sparse.hstack([own, nothing]).tocsc()[:, order.ravel()]
+            matrix = sparse.hstack([matrix[:, : 3 * corners], own])
+        return ContactPoints(
+            sparse.csr_array(matrix), dead, live, np.append(self.mu, np.zeros(dowels)),
+            np.append(np.zeros(corners), [] if keys is None else keys.strength / self.scale),
+            np.append(area / area.mean(), np.zeros(dowels)), sparse.csr_array((len(dead), 0)), np.empty((2, 0)),
+            float(self.weight.sum() + self.assembly.fill[:, 1].sum() * GRAVITY) / self.scale,
+        )  # fmt: skip
+
+    def certify(self, direction: float, state: SlidingState) -> tuple[Programme, Certificate]:
+        """A state without dilatancy in N, and its certificate, which the geometry alone gives."""
+        corners, size = len(self.mu), self.assembly.size
+        force, keyed = state.force[:corners] * self.scale, state.force[corners:, 1:] * self.scale
+        motion = self._rates(state.motion)
+        unit = self.scale * np.array([1.0, 1.0, 1.0, size, size, size])
+        dead, live = (load.reshape(-1, 6) * unit for load in self._ways(direction))
+        proof = certify_solids(self.assembly, self.mu, dead, live, state.gamma, force, keyed, motion)
+        upper = state.gamma + proof.zero_gap
+        return Programme(
+            state.gamma, upper, force, keyed, motion, proof.equilibrium, max(proof.friction, proof.tension), proof.closing
+        ), proof  # fmt: skip
 
     def falls(self) -> Falls | None:
         """The proof that it cannot stand without a push; None where no motion proves that."""

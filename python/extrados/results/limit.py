@@ -87,6 +87,29 @@ DILATANT = "upper bound (dilatant friction)"
 SAME = 1e-6
 
 
+class LoadPath(ResultModel):
+    """Collapse at the end of a load path: elastic joints, self-weight first, then the push, sliding without dilatancy."""
+
+    shear_stiffness_ratio: float = fact("shear stiffness over normal stiffness of the joints")
+    collapse_acceleration_g: float | None = fact(
+        "collapse acceleration; null where the path did not end in a collapse", "g"
+    )
+    certified: bool = fact(
+        "whether the certificate holds: equilibrium, |s| <= mu N and zero gap, recomputed apart from the solver"
+    )
+    zero_gap_g: float | None = fact("as in non_dilatant", "g")
+    equilibrium_residual: float | None = fact("as in non_dilatant")
+    friction_residual: float | None = fact("as in non_dilatant")
+    overlap_residual: float | None = fact("as in non_dilatant")
+    reason: str = maybe("reason for a missing value")
+
+
+def design_value(paths: Sequence[LoadPath] | None) -> float | None:
+    """The least of the certified load paths [g]; None without any."""
+    found = [p.collapse_acceleration_g for p in paths or () if p.certified and p.collapse_acceleration_g is not None]
+    return min(found, default=None)
+
+
 class NonDilatant(ResultModel):
     """Collapse to one side by sliding that does not dilate: the least state found, its bounds and its certificate.
 
@@ -144,6 +167,13 @@ class Tilt(KindResults):
         "associated value", "g", source="Ferris and Tin-Loi 2001",
     )  # fmt: skip
     collapse_acceleration_non_associated_opposite_g: float = maybe("the same to -x", "g")
+    collapse_acceleration_load_path_g: float = maybe(
+        "design value where joints slide, to +x: least of the load paths of elastic joints with three ratios of stiffness", "g",
+        source="elastic-frictional joints without dilatancy, incremental return; certificate as in non_dilatant",
+    )  # fmt: skip
+    collapse_acceleration_load_path_opposite_g: float = maybe("the same to -x", "g")
+    load_paths: list[LoadPath] = maybe("load paths to +x, one a ratio of joint stiffness")
+    load_paths_opposite: list[LoadPath] = maybe("load paths to -x")
     non_associated_reason: str = maybe("why no state without dilatancy is given beside an upper bound")
     touching_joints: list[int] = fact("joints whose end the thrust line touches without a hinge")
     required_friction: float | None = fact("greatest coefficient of friction that the thrust line at collapse needs")
@@ -193,6 +223,16 @@ class Tilt(KindResults):
             return least, inf if found.associated_g is None else found.associated_g
         return (None if dilating else own), own
 
+    def _state(self, opposite: bool) -> NonDilatant | None:
+        return self.non_dilatant_opposite if opposite else self.non_dilatant
+
+    def capacity(self, opposite: bool = False) -> float:
+        """Capacity [g] to +x, or to -x, by which the verdict decides: the design value where joints slide, else the least state,
+        else the upper bound."""
+        design = self.collapse_acceleration_load_path_opposite_g if opposite else self.collapse_acceleration_load_path_g
+        least, most = self.interval(opposite)
+        return design if design is not None else most if least is None else least
+
     def judged(self, demand: Demand) -> Verdict:
         """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
         return self.judged_towards(demand, (False, True))
@@ -201,19 +241,30 @@ class Tilt(KindResults):
         """The verdict by pushes to +x (False) or to -x (True), or the lesser of both.
 
         Where pressed joints slide the collapse acceleration lies in an interval: from its upper end on the structure
-        collapses, within it collapse is possible and the outcome open. The capacity is the least state found, which is no
-        lower bound: within the spread of the states found below it the outcome is open too. Without such a state the
-        upper end is a bound, and no outcome but collapse follows from it.
+        collapses. The capacity is the design value, the least of the load paths; from it to the upper end the outcome is
+        open, and above the least state found the verdict warns. Without a load path the capacity is the least state found,
+        which is no lower bound: within the spread of the states found below it the outcome is open too. Without such a
+        state the upper end is a bound, and no outcome but collapse follows from it.
         """
         intervals = [self.interval(one) for one in opposite]
         high = min(most for _, most in intervals)
+        designs = [
+            self.collapse_acceleration_load_path_opposite_g if one else self.collapse_acceleration_load_path_g
+            for one in opposite
+        ]
+        slides = [
+            least is None or self._state(one) is not None for one, (least, _) in zip(opposite, intervals, strict=True)
+        ]
+        if any(slides) and all(d is not None for d, slide in zip(designs, slides, strict=True) if slide):
+            known = [least for least, _ in intervals if least is not None]
+            return judge_design(min(self.capacity(one) for one in opposite), min(known, default=None), high, demand)
         if any(least is None for least, _ in intervals):
             least = min(most if least is None else least for least, most in intervals)
             return judge_dilatant(least, demand, self.non_associated_reason)
         least = min(least for least, _ in intervals if least is not None)
         if least >= high - SAME * max(1.0, high):
             return judge_acceleration(least, demand)
-        found = [self.non_dilatant_opposite if one else self.non_dilatant for one in opposite]
+        found = [self._state(one) for one in opposite]
         return judge_interval(least, high, max((one.spread_g for one in found if one is not None), default=0.0), demand)
 
 
@@ -222,6 +273,27 @@ def judge_dilatant(capacity: float, demand: Demand, reason: str | None = None) -
     found = judge_acceleration(capacity, demand, "upper")
     why = f" A state without dilatancy is not given: {reason}." if reason else ""
     return found.model_copy(update={"statement": f"{found.statement} Joints slide: {DILATANT}.{why}"})
+
+
+def judge_design(design: float, least: float | None, most: float, demand: Demand) -> Verdict:
+    """The least of the load paths [g], between the least state found (None: none was sought) and the upper bound, against the
+    peak of the motion."""
+    peak = demand.peak_g
+    upper = f"the {DILATANT} is {most:.3g} g" if most < inf else "with dilatant friction no collapse mechanism exists"
+    lower = "no lesser state was sought" if least is None else f"the least state found {least:.3g} g"
+    text = f"Joints slide: design value of the collapse acceleration (horizontal, constant) {design:.3g} g, by load paths; {lower}; {upper}"
+    if peak is None:
+        return judge(f"{text}; the deck holds no single motion to compare with.", None, design, "g")
+    outcome: Outcome = "collapses" if peak >= most else "open" if peak >= design else "stands"
+    place = {
+        "collapses": "at or above the upper bound",
+        "open": "between design value and upper bound",
+        "stands": "below the design value",
+    }
+    text = f"{text}; the peak of the motion, {peak:.3g} g, applied as a sustained load, is {place[outcome]}."
+    if outcome == "stands" and least is not None and peak >= least:
+        text += " Warning: in another state of stress at rest collapse is possible at this peak. Settlements or loads of the past may have caused it."
+    return judge(text, peak, design, "g", outcome)
 
 
 def judge_interval(least: float, most: float, spread: float, demand: Demand) -> Verdict:

@@ -1,8 +1,10 @@
 """Results of `tilt` on solid blocks; of a plane section they are those of results.limit."""
 
+from math import inf
+
 from extrados.results.fields import ResultModel, fact, maybe
+from extrados.results.limit import LoadPath, judge_design, judge_dilatant
 from extrados.results.limit import Tilt as SectionTilt
-from extrados.results.limit import judge_dilatant
 from extrados.results.verdict import Demand, KindResults, Verdict, judge_acceleration
 
 
@@ -28,6 +30,31 @@ class Pyramids(ResultModel):
     upper_g: float | None = fact(
         "with pyramids around the cones: a bound from above; null without a collapse mechanism", "g"
     )
+
+
+class SolidNonDilatant(ResultModel):
+    """Collapse along one direction by sliding that does not dilate: an interval of certified states.
+
+    A certificate proves that collapse is possible at its load, not that less is safe.
+    """
+
+    direction_deg: float = fact("direction in plan of the push", "deg")
+    associated_g: float | None = fact("upper bound: sliding that dilates; null without a collapse mechanism", "g")
+    load_path_g: float | None = fact("design value: least of the certified load paths; null without one", "g")
+    load_paths: list[LoadPath] = fact("load paths of elastic joints, one a ratio of stiffness")
+    least_g: float | None = fact(
+        "least certified state found, from any state of stress at rest (a warning); null without one", "g"
+    )
+    starts_g: list[float] = fact("loads of the certified states to which the starts led; the least counts", "g")
+    spread_g: float | None = fact("greatest less least of them", "g")
+    zero_gap_g: float | None = fact(
+        "|gamma - (work of friction - work of the weight)| per unit of work of the load, of the least state", "g"
+    )
+    equilibrium_residual: float | None = fact(
+        "greatest force, or moment over the size, left over at a block, over the weight, of the least state"
+    )
+    friction_residual: float | None = fact("greatest excess of shear over friction, or tension, over the weight")
+    overlap_residual: float | None = fact("greatest overlap of the motion, over the fastest contact")
 
 
 class SolidTilt(KindResults):
@@ -59,12 +86,35 @@ class SolidTilt(KindResults):
         "contacts that press and slide in the mechanisms along the direction, back, and of the least capacity; with any the "
         "capacity is an upper bound (dilatant friction)"
     )
+    collapse_acceleration_load_path_g: float = maybe(
+        "design value where contacts slide: least of the load paths of elastic joints along the direction", "g"
+    )
+    collapse_acceleration_load_path_opposite_g: float = maybe("the same, pushed the opposite way", "g")
+    collapse_acceleration_non_associated_g: float = maybe(
+        "sliding without dilatancy along the direction: the least certified state found", "g"
+    )
+    collapse_acceleration_non_associated_opposite_g: float = maybe("the same, pushed the opposite way", "g")
+    non_dilatant: list[SolidNonDilatant] = maybe(
+        "sliding without dilatancy, direction by direction: along, opposite, the least of the rose; all with "
+        'friction_rule = "non-associated"'
+    )
+    non_associated_reason: str = maybe("why no state without dilatancy is given beside an upper bound")
     pyramids: Pyramids = maybe("bounds by another method and another solver")
 
     def judged(self, demand: Demand) -> Verdict:
-        """The least capacity of all directions sought against the peak ground acceleration of the motion [g]."""
+        """The least capacity of all directions sought against the peak ground acceleration of the motion [g]; where contacts slide
+        the least design value."""
         least = min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g, self.least_acceleration_g)
-        return (judge_dilatant if self.dilating_contacts else judge_acceleration)(least, demand)
+        if not self.dilating_contacts:
+            return judge_acceleration(least, demand)
+        rows = self.non_dilatant or []
+        designs = [row.load_path_g for row in rows if row.load_path_g is not None]
+        if not rows or len(designs) < len(rows):
+            associated = min([inf if row.associated_g is None else row.associated_g for row in rows], default=least)
+            return judge_dilatant(associated, demand, self.non_associated_reason)
+        most = min(inf if row.associated_g is None else row.associated_g for row in rows)
+        found = min((row.least_g for row in rows if row.least_g is not None), default=None)
+        return judge_design(min(designs), found, most, demand)
 
 
 #: What `tilt` gives: of a plane section, or of solids

@@ -43,8 +43,16 @@ def faces_of(run: Stored, name: str, pose: np.ndarray | None = None) -> scene.Fa
 
 def _title(r: SolidTilt) -> str:
     """The collapse acceleration along the direction, an upper bound where contacts slide."""
-    bound = f",\n{DILATANT}" if r.dilating_contacts else ""
+    bound = f",\n{DILATANT}" if r.dilating_contacts and not _least_drawn(r) else ""
+    design, least = r.collapse_acceleration_load_path_g, r.collapse_acceleration_non_associated_g
+    if design is not None and least is not None:
+        bound += f"\nwithout dilatancy {design:.4f} g (design value), {least:.4f} g (least found)"
     return f"Mechanism at {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} deg{bound}"
+
+
+def _least_drawn(r: SolidTilt) -> bool:
+    """Whether the mechanism is that of the least state without dilatancy, as friction_rule asks."""
+    return r.collapse_acceleration_g == r.collapse_acceleration_non_associated_g
 
 
 def _draw_solids(run: Stored, name: str, folder: Path, r: SolidTilt) -> list[tuple[str, str]]:
@@ -159,6 +167,19 @@ def _draw_rose(folder: Path, name: str, r: SolidTilt, angles: np.ndarray, capaci
         ax.plot(turn, radius, "o-", color=style.SAFE, markersize=3)
         worst = np.radians(r.least_direction_deg)
         ax.plot([worst], [r.least_acceleration_g], "o", color=style.THRUST, markersize=6, zorder=4)
+        rows = [row for row in r.non_dilatant or [] if row.load_path_g is not None]
+        if rows:
+            way = np.radians([row.direction_deg for row in rows])
+            ax.plot(
+                way,
+                [row.load_path_g for row in rows],
+                "s",
+                color=style.HINGE,
+                markersize=5,
+                label="design value by load paths",
+            )
+            ax.plot(way, [row.least_g for row in rows], "_", color=style.HINGE, markersize=9, label="least state found")
+            ax.legend(loc="lower left", bbox_to_anchor=(-0.17, -0.07), fontsize=7)
         ax.set_ylim(0.0, 1.15 * float(np.nanmax(radius)))
         ax.set_rlabel_position(100.0)
         ax.tick_params(axis="y", labelsize=7)
@@ -167,4 +188,7 @@ def _draw_rose(folder: Path, name: str, r: SolidTilt, angles: np.ndarray, capaci
             "Capacity over the direction of the push\n"
             f"least {r.least_acceleration_g:.4f} g along {r.least_direction_deg % 360.0:g} deg (red)"
         )
-        return style.save(fig, folder, f"{name}-rose"), "Capacity over the direction in plan of the push."
+        return style.save(fig, folder, f"{name}-rose"), (
+            "Capacity over the direction in plan of the push."
+            + (" The line is the upper bound by dilatant friction." if rows else "")
+        )

@@ -212,9 +212,9 @@ def _by_passages(
 
 
 def _unstopped(facts: Facts, r: Tilt) -> float:
-    """Collapse acceleration by limit analysis [g] in the weaker of the senses that no wall stops; the least state found where joints
+    """Collapse acceleration by limit analysis [g] in the weaker of the senses that no wall stops; the design value where joints
     slide, as in the row of `tilt`."""
-    right, left = (most if least is None else least for least, most in (r.interval(), r.interval(opposite=True)))
+    right, left = r.capacity(), r.capacity(opposite=True)
     return {"left": right, "right": left}.get(facts.building.supports.abutting_wall or "", min(right, left))
 
 
@@ -414,7 +414,7 @@ def sliding_as_collapse(facts: Facts, pairs: list[Pair]) -> Reason | None:
         return None
     least = _unstopped(facts, tilt)
     forth, back = (
-        (tilt.interval(way)[0], joints)
+        (tilt.capacity(way), joints)
         for way, joints in ((False, tilt.dilating_joints), (True, tilt.dilating_joints_opposite))
     )
     slides = any(capacity == least and joints for capacity, joints in (forth, back))

@@ -56,7 +56,6 @@ def _refuse_of_sections(building: Building, options: tables.BuildingAnalysis) ->
         "[[ties]]": (bool(building.ties), ("ties", 0)),
         "loads": (bool(options.load), ("analysis", "load", 0)),
         "fracture": (options.fracture, ("analysis", "fracture")),
-        'friction_rule = "non-associated"': (options.friction_rule != "associated", ("analysis", "friction_rule")),
         "crushing": (building.material.compressive_strength is not None, ("material", "compressive_strength")),
     }
     for what, (there, key) in asked.items():

@@ -4,6 +4,8 @@ import numpy as np
 
 from extrados.analyses.context import Context
 from extrados.analyses.limit.common import named_places
+from extrados.analyses.limit.paths import doubt
+from extrados.analyses.limit.solid_sliding import slide
 from extrados.analyses.limit.tables import Tilt
 from extrados.limit.errors import CannotStand, Immovable
 from extrados.limit.solids import Falls, Programme, SolidLimit
@@ -15,6 +17,7 @@ from extrados.results.model import Array, Result
 from extrados.results.solid_files import scene_files
 from extrados.schema.constants import GRAVITY
 
+MOST_BESIDE = 200  # contacts up to which sliding without dilatancy is followed beside an upper bound: half a minute
 FEW = 300  # stones: of more the rose is drawn on request alone
 DIRECTIONS = 16
 SHOWN = 0.08  # of the size: how far the fastest point goes in pictures of a mechanism
@@ -31,13 +34,13 @@ def run(context: Context, options: Tilt) -> Result:
     assembly = building.solids()
     limit = SolidLimit(assembly, building.friction(assembly))
     word = building.structure.word  # type: ignore[union-attr]
-    first = 0.0 if options.direction is None else options.direction
+    first, opposite = _ends(options)
     count = options.rose or (DIRECTIONS if len(assembly.mass) <= FEW else 0)
-    angles = first + 360.0 * np.arange(count) / count if count else np.array([first, first + 180.0])
-    asked = np.unique(np.round(np.concatenate([[first, first + 180.0], angles]), 9))
+    angles = first + 360.0 * np.arange(count) / count if count else np.array([first, opposite])
+    asked = np.unique(np.round(np.concatenate([[first, opposite], angles]), 9))
     given = limit.pushes(asked.tolist(), context.threads, lambda done: context.progress(done, len(asked), "directions"))
     found_at = dict(zip(asked.tolist(), given, strict=True))
-    there, back = (_stands(found_at[round(d, 9)], assembly) for d in (first, first + 180.0))
+    there, back = (_stands(found_at[round(d, 9)], assembly) for d in (first, opposite))
     if there.gamma < 0.0 or back.gamma < 0.0:
         low, high = sorted((there.gamma, -back.gamma))
         raise CannotStand(
@@ -48,6 +51,24 @@ def run(context: Context, options: Tilt) -> Result:
     capacity = np.array([np.inf if one is None else _stands(one, assembly).gamma for one in rose])
     result = Result("tilt")
     least = int(np.flatnonzero(capacity <= capacity.min() + SAME)[0])  # of equals the first
+    slides = max(
+        _dilating(assembly, limit, one)
+        for one in (there, back, rose[least] if rose else there)
+        if isinstance(one, Programme)
+    )
+    sliding: dict[str, object] = {}
+    if slides:
+        sought = asked.tolist() if options.friction_rule != "associated" else [first, opposite, float(angles[least])]
+        sliding, states = _without_dilatancy(context, options, limit, [round(d, 9) for d in sought], found_at, result)
+        if options.friction_rule != "associated":
+            there, back = (states.get(round(d, 9), one) for d, one in ((first, there), (opposite, back)))
+            capacity = np.array(
+                [
+                    c if (one := states.get(round(d, 9))) is None else one.gamma
+                    for d, c in zip(angles.tolist(), capacity.tolist(), strict=True)
+                ]
+            )
+            least = int(np.flatnonzero(capacity <= capacity.min() + SAME)[0])
     opens = _openings(assembly, there)
     speed = np.linalg.norm(there.motion[:, :3], axis=1)
     pose = _pose(assembly, there.motion)
@@ -60,7 +81,7 @@ def run(context: Context, options: Tilt) -> Result:
         weight_N=float(limit.weight.sum() + GRAVITY * assembly.fill[:, 1].sum()), upper_bound_g=there.upper,
         duality_gap=max(there.gap, back.gap), equilibrium_residual=max(there.equilibrium, back.equilibrium),
         friction_residual=max(there.cone, back.cone), overlap_residual=max(there.overlap, back.overlap),
-        dilating_contacts=max(_dilating(assembly, limit, one) for one in (there, back, rose[least] if rose else there) if one),
+        dilating_contacts=slides, **sliding,
         **({} if options.pyramids is None else {"pyramids": _pyramids(limit, first, options.pyramids)}),
     )  # fmt: skip
     result.results = found
@@ -80,6 +101,45 @@ def run(context: Context, options: Tilt) -> Result:
     result.files |= scene_files(assembly.parts, assembly.owner, assembly.centroid, assembly.block_names, pose)
     result.answer = _words(word, found, count)
     return result
+
+
+def _without_dilatancy(
+    context: Context, options: Tilt, limit: SolidLimit, directions: list[float], found_at: dict[float, Programme | Falls | None], result: Result
+) -> tuple[dict[str, object], dict[float, Programme]]:  # fmt: skip
+    """Keys of the results on sliding without dilatancy, and the least states by direction: along the push, opposite, and further
+    directions [deg]."""
+    contacts = len(limit.assembly.a)
+    if options.friction_rule == "associated" and contacts > MOST_BESIDE:
+        why = f'of more than {MOST_BESIDE} contacts it is sought on request alone, by friction_rule = "non-associated"'
+        return {"non_associated_reason": why}, {}
+    rows, states = [], {}
+    sought = list(dict.fromkeys(directions))
+    for done, direction in enumerate(sought):
+        context.progress(done, len(sought), "directions without dilatancy")
+        associated = found_at[direction]
+        if not isinstance(associated, Programme):
+            continue
+        row, state = slide(limit, direction, associated.gamma, options.starts)
+        rows.append(row)
+        if state is not None:
+            states[direction] = state
+        if told := doubt(row.load_paths, f"along {direction:g} degrees"):
+            result.warnings.append(told)
+    told: dict[str, object] = {"non_dilatant": rows}
+    by_direction = {row.direction_deg: row for row in rows}
+    for direction, end in zip(_ends(options), ("", "_opposite"), strict=True):
+        row = by_direction.get(round(direction, 9))
+        if row is not None and row.load_path_g is not None:
+            told[f"collapse_acceleration_load_path{end}_g"] = row.load_path_g
+        if row is not None and row.least_g is not None:
+            told[f"collapse_acceleration_non_associated{end}_g"] = row.least_g
+    return told, states
+
+
+def _ends(options: Tilt) -> tuple[float, float]:
+    """The direction of the push and the opposite one [deg]."""
+    first = 0.0 if options.direction is None else options.direction
+    return first, first + 180.0
 
 
 def scene_arrays(assembly: SolidAssembly) -> dict[str, Array]:
@@ -203,6 +263,22 @@ def _dilating(assembly: SolidAssembly, limit: SolidLimit, found: Programme) -> i
     return len(np.unique(joint[slides]))
 
 
+def _told(r: out.SolidTilt) -> str:
+    """The interval without dilatancy in words."""
+    text = ""
+    for row in (r.non_dilatant or [])[:MOST_NAMED]:
+        design = "not certified" if row.load_path_g is None else f"{row.load_path_g:.4f} g"
+        least = "none" if row.least_g is None else f"{row.least_g:.4f} g"
+        most = "none" if row.associated_g is None else f"{row.associated_g:.4f} g"
+        text += (
+            f"Without dilatancy along {row.direction_deg % 360.0:g} degrees: design value {design}, the least of {len(row.load_paths)} "
+            f"load paths of elastic joints; least state found {least}; upper bound {most}. "
+        )
+    if r.non_associated_reason:
+        text += f"A state without dilatancy is not given: {r.non_associated_reason}. "
+    return text
+
+
 def _words(word: str, r: out.SolidTilt, count: int) -> str:
     along = f"along {r.load_direction_deg:g} degrees in plan"
     text = (
@@ -218,7 +294,7 @@ def _words(word: str, r: out.SolidTilt, count: int) -> str:
     if count:
         text += f"Of {count} directions the least is along {r.least_direction_deg % 360.0:g} degrees: {r.least_acceleration_g:.4f} g. "
     if r.dilating_contacts:
-        text += f"Contacts slide: {DILATANT}. "
+        text += f"Contacts slide: {DILATANT}. " + _told(r)
     text += f"The bounds from equilibrium and from the mechanism differ by {r.duality_gap:.1e} g."
     if r.pyramids is not None:
         low, high = ("none" if g is None else f"{g:.4f} g" for g in (r.pyramids.lower_g, r.pyramids.upper_g))

@@ -21,13 +21,15 @@ from extrados.analyses.limit.common import (
     tie_arrays,
     tie_rows,
 )  # fmt: skip
+from extrados.analyses.limit.paths import doubt, follow_paths
 from extrados.analyses.limit.tables import Tilt
 from extrados.limit.answer import CENTRAL, Answer
-from extrados.limit.certificate import certify
+from extrados.limit.certificate import Certificate, certify
 from extrados.limit.finite_motion import finite_motion
 from extrados.limit.fracture import Fracture
 from extrados.limit.graphic import thrust_joint, thrust_of
-from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium
+from extrados.limit.plane_path import collapse_along_path
+from extrados.limit.programme import LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State
 from extrados.model.errors import NoView
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.results import limit as out
@@ -214,6 +216,18 @@ def _without_dilatancy(
         except (NoAnswer, NoEquilibrium) as error:
             told["non_associated_reason"] = str(error)
             continue
+        way = "to +x" if direction > 0 else "to -x"
+        if beside.coulomb[direction].falling is None:
+            paths, ends = _paths(beside, direction)
+            lowest = min(ends, key=lambda one: direction * one[0].gamma, default=pair)
+            if direction * (pair[0].gamma - lowest[0].gamma) > out.SAME:
+                pair = lowest  # below the states that the programmes found
+            told[f"load_paths{end}"] = paths
+            design = out.design_value(paths)
+            if design is not None:
+                told[f"collapse_acceleration_load_path{end}_g"] = design
+            if told_doubt := doubt(paths, way):
+                result.warnings.append(told_doubt)
         found = beside.coulomb[direction]
         bounds = beside.without_dilatancy_between(direction)
         lower, upper = (None if g is None else direction * g for g in bounds)
@@ -229,7 +243,6 @@ def _without_dilatancy(
                 friction_residual=proof.friction, tension_residual=proof.tension, overlap_residual=proof.closing,
                 complementarity_residual=r.complementarity, work_residual=r.work,
             )  # fmt: skip
-        way = "to +x" if direction > 0 else "to -x"
         if found.falling is not None:
             stone = limit.assembly.block_names[found.falling]
             result.warnings.append(
@@ -242,6 +255,20 @@ def _without_dilatancy(
                 f"the state without dilatancy {way} is not certified: its zero gap is {proof.zero_gap:.1e} g"
             )
     return told
+
+
+def _paths(limit: LimitAnalysis, direction: int) -> tuple[list[out.LoadPath], list[tuple[State, Mechanism]]]:
+    """The load paths to +x (1) or to -x (-1), and the certified collapses at their ends."""
+    ends = []
+
+    def follow(ratio: float) -> tuple[float, Certificate]:
+        state, mechanism = collapse_along_path(limit, direction, ratio)
+        proof = certify(limit.assembly, limit.loads, limit.friction, state, mechanism, None)
+        if proof.holds(state.gamma):
+            ends.append((state, mechanism))
+        return direction * state.gamma, proof
+
+    return follow_paths(follow), ends
 
 
 def _fracture(building: Building, options: Tilt, answer: Answer, result: Result) -> dict[str, out.Fracture]:
@@ -293,21 +320,25 @@ def _fracture(building: Building, options: Tilt, answer: Answer, result: Result)
 def _told(found: out.Tilt) -> str:
     """In words: where capacities are upper bounds by dilatant friction, and the least states without dilatancy."""
     ends = (
-        ("to +x", found.dilating_joints, found.non_dilatant, found.collapse_acceleration_non_associated_g),
+        ("to +x", found.dilating_joints, found.non_dilatant, found.collapse_acceleration_non_associated_g,
+         found.collapse_acceleration_load_path_g, found.load_paths),
         (
             "to -x", found.dilating_joints_opposite, found.non_dilatant_opposite,
-            found.collapse_acceleration_non_associated_opposite_g,
+            found.collapse_acceleration_non_associated_opposite_g, found.collapse_acceleration_load_path_opposite_g,
+            found.load_paths_opposite,
         ),
     )  # fmt: skip
     bounds = [way for way, dilating, *_ in ends if dilating]
     text = f"Pushed {' and '.join(bounds)} joints slide: {out.DILATANT}. " if bounds else ""
-    for way, _, r, least in ends:
+    for way, _, r, least, design, paths in ends:
         if r is None or least is None:
             continue
         upper = "none" if r.associated_g is None else f"{r.associated_g:.4f} g"
         lower = "nothing stands" if r.frictionless_g is None else f"{r.frictionless_g:z.4f} g"
+        if design is not None:
+            text += f"Without dilatancy {way}: design value {design:.4f} g, the least of {len(paths)} load paths of elastic joints. "
         text += (
-            f"Without dilatancy {way}: {least:.4f} g, the least of {len(r.starts_g)} states found (spread {r.spread_g:.4f} g); "
+            f"Least state found {way}: {least:.4f} g, the least of {len(r.starts_g)} states found (spread {r.spread_g:.4f} g); "
             f"bounds: {lower} without friction, {upper} with dilatancy. "
         )
     if found.non_associated_reason:

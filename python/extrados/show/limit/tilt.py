@@ -86,6 +86,8 @@ def _caption(r: Tilt) -> str:
     least = r.collapse_acceleration_non_associated_g if r.dilating_joints else None
     if least is not None:
         slides += f" Without dilatancy collapse is possible at {least:.4f} g (not drawn)."
+        if r.collapse_acceleration_load_path_g is not None:
+            slides += f" Load paths give the design value {r.collapse_acceleration_load_path_g:.4f} g."
     return (
         f"Thrust line, hinges and mechanism under the greatest constant acceleration. Hinges: {letters}.{free}{slides}"
     )
@@ -96,7 +98,9 @@ def _title(r: Tilt) -> str:
     if not r.dilating_joints:
         return f"Collapse at {r.collapse_acceleration_g:.4f} g to +x (tilt {r.tilt_angle_deg:.2f} deg)"
     least = r.collapse_acceleration_non_associated_g
-    without = "" if least is None else f"\nwithout dilatancy {least:.4f} g (least found)"
+    design = r.collapse_acceleration_load_path_g
+    value = "" if design is None else f"{design:.4f} g (design value), "
+    without = "" if least is None else f"\nwithout dilatancy {value}{least:.4f} g (least found)"
     return f"Collapse to +x at {r.collapse_acceleration_g:.4f} g at most (dilatant friction){without}"
 
 

@@ -1,0 +1,43 @@
+"""Load paths of elastic joints as results: one a ratio of joint stiffness, each with its certificate."""
+
+from collections.abc import Callable
+
+from extrados.limit.certificate import Certificate
+from extrados.limit.errors import NoAnswer
+from extrados.limit.load_path import RATIOS
+from extrados.results.limit import LoadPath
+
+
+def follow_paths(follow: Callable[[float], tuple[float, Certificate]]) -> list[LoadPath]:
+    """The load paths of one push; follow(ratio): collapse acceleration along the push [g] and its certificate."""
+    rows = []
+    for ratio in RATIOS:
+        try:
+            gamma, proof = follow(ratio)
+        except NoAnswer as error:
+            rows.append(
+                LoadPath(
+                    shear_stiffness_ratio=ratio, collapse_acceleration_g=None, certified=False, zero_gap_g=None,
+                    equilibrium_residual=None, friction_residual=None, overlap_residual=None, reason=str(error),
+                )
+            )  # fmt: skip
+            continue
+        rows.append(
+            LoadPath(
+                shear_stiffness_ratio=ratio, collapse_acceleration_g=gamma, certified=proof.holds(gamma),
+                zero_gap_g=proof.zero_gap, equilibrium_residual=proof.equilibrium,
+                friction_residual=max(proof.friction, proof.tension), overlap_residual=proof.closing,
+            )
+        )  # fmt: skip
+    return rows
+
+
+def doubt(paths: list[LoadPath], way: str) -> str | None:
+    """A warning where some of the load paths of a push are not certified."""
+    wrong = [f"{p.shear_stiffness_ratio:g}" for p in paths if not p.certified]
+    if not wrong:
+        return None
+    text = f"The load path {way} is not certified for a ratio of joint stiffness of {' and '.join(wrong)}"
+    if len(wrong) == len(paths):
+        return f"{text}: no design value is given, and the upper bound alone holds"
+    return f"{text}: the design value is the least of the others"

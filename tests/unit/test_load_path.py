@@ -1,0 +1,200 @@
+"""Sliding without dilatancy as an interval, in space and in the plane: load paths, least states, their certificates."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from test_dilatancy import coursed
+from test_noisy_solids import corner
+
+from extrados.analyses.assess.hazard import Demanded
+from extrados.analyses.context import Context
+from extrados.analyses.limit import solids as driver
+from extrados.analyses.limit.solid_sliding import slide
+from extrados.analyses.sequence import run_analyses
+from extrados.decks.reader import make_deck
+from extrados.limit.certificate import certify
+from extrados.limit.errors import NoAnswer
+from extrados.limit.least_load import LeastLoad
+from extrados.limit.load_path import RATIOS, LoadPath
+from extrados.limit.plane_path import collapse_along_path
+from extrados.limit.programme import LimitAnalysis
+from extrados.limit.solids import Programme, SolidLimit
+from extrados.model.geometry.solids.assembly import assemble
+from extrados.model.structures.dome import make_dome
+from extrados.results.limit import judge_design
+from extrados.results.model import Result
+
+WALL = {"kind": "brickwork", "units": 5, "courses": 6, "unit_length": 0.4, "unit_height": 0.175, "begins": "half"}
+#: Ferris and Tin-Loi 2001, wall 3: printed .40369 associated, .35582 without dilatancy
+OPENING = {
+    "kind": "brickwork", "unit_length": 0.4, "unit_height": 0.175, "units": 4, "courses": 11, "lintels": False,
+    "openings": [{"x": [0.6, 1.0], "y": [0.525, 1.4]}],
+}  # fmt: skip
+
+
+def run(structure: dict[str, Any], friction: Any = 0.65, **keys: Any) -> Result:
+    tables = {"structure": structure, "joints": {"friction": friction}, "analysis": {"kind": "tilt", **keys}}
+    return run_analyses(Context(make_deck(tables), threads=1))[0]
+
+
+def asked(peak_g: float) -> Demanded:
+    return Demanded(peak_g, "", 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("direction", "associated", "paths", "least"), [(90.0, 0.4532, (0.2535, 0.2595), 0.25), (270.0, 0.3419, (0.2499, 0.2503), 0.25)]
+)  # fmt: skip
+def test_the_corner_of_the_reference(
+    direction: float, associated: float, paths: tuple[float, float], least: float
+) -> None:
+    """Another program: paths .254 to .259 and .2500 to .2502 g, least .2500, where an iteration to the greatest ends at .3562."""
+    limit = SolidLimit(assemble(corner()), 0.65)
+    row, state = slide(limit, direction, None, 2)
+    found = [p.collapse_acceleration_g for p in row.load_paths]
+    assert all(p.certified for p in row.load_paths) and all(paths[0] < g < paths[1] for g in found if g is not None)
+    assert row.load_path_g == min(g for g in found if g is not None)
+    assert row.least_g == pytest.approx(least, abs=1e-5) and state is not None
+    assert len(row.starts_g) == len(RATIOS) + 2, "random compressions lead to certified states too"
+    upper = limit.push(direction)
+    assert isinstance(upper, Programme) and upper.gamma == pytest.approx(associated, abs=5e-5)
+
+
+def test_a_dome_of_the_reference() -> None:
+    """Another program: associated .497, load path .364 (12 lunes, t/R .1)."""
+    limit = SolidLimit(make_dome(10.0, 1.0, 180.0, 8, 8), 0.7)
+    upper = limit.push(0.0)
+    row, _ = slide(limit, 0.0, None, 0)
+    assert isinstance(upper, Programme) and row.load_path_g is not None and row.least_g is not None
+    assert row.least_g <= row.load_path_g < upper.gamma - 0.05
+    assert np.ptp([p.collapse_acceleration_g for p in row.load_paths]) < 0.01
+
+
+@pytest.mark.parametrize("direction", [0.0, 30.0])
+def test_a_block_that_slides_has_no_interval(direction: float) -> None:
+    """Coulomb: the friction, by any flow rule."""
+    block = {"kind": "column", "width": 2.0, "height": 0.5, "drums": 1}
+    limit = SolidLimit(make_deck({"structure": block, "analysis": {"kind": "tilt"}}).building.solids(), 0.4)
+    row, _ = slide(limit, direction, None, 1)
+    assert [p.collapse_acceleration_g for p in row.load_paths] == pytest.approx([0.4] * 3, abs=1e-6)
+    assert row.least_g == pytest.approx(0.4, abs=1e-6)
+
+
+def test_dowels_along_a_path() -> None:
+    """Friction plus the strength over the weight of the upper drum, as with dilatancy."""
+    drums = {
+        "kind": "column",
+        "width": 1.0,
+        "height": 1.0,
+        "drums": 2,
+        "section": "round",
+        "sides": 20,
+        "dowels": 2000.0,
+    }
+    tables = {
+        "structure": drums,
+        "joints": {"friction": 0.2, "types": [{"joints": ["ground"], "friction": 5.0}]},
+        "analysis": {"kind": "tilt"},
+    }
+    building = make_deck(tables).building
+    solids = building.solids()
+    limit = SolidLimit(solids, building.friction(solids))
+    upper = limit.push(20.0)
+    end = LoadPath(limit.contact_points(20.0), 0.5).follow()
+    assert isinstance(upper, Programme) and end.gamma == pytest.approx(upper.gamma, abs=1e-5)
+    assert limit.certify(20.0, end)[1].holds(end.gamma)
+
+
+def test_paths_in_the_plane_end_at_printed_states() -> None:
+    limit = LimitAnalysis(
+        make_deck({"structure": OPENING, "analysis": {"kind": "tilt"}}).building.blocks(), 0.65, associated=False
+    )
+    for direction in (1, -1):
+        state, mechanism = collapse_along_path(limit, direction, 0.5)
+        assert direction * state.gamma == pytest.approx(0.35582, abs=1e-5)
+        assert certify(limit.assembly, limit.loads, 0.65, state, mechanism, None).holds(state.gamma)
+
+
+def test_plane_and_space_have_one_path() -> None:
+    """A plane wall in space, whose corners share what the ends of its joints carry."""
+    plane = run(coursed(2))
+    space = run(coursed(2), direction=0.0, rose=4, starts=1)
+    assert space.results.collapse_acceleration_load_path_g == pytest.approx(
+        plane.results.collapse_acceleration_load_path_g, abs=2e-3
+    )
+    for r in (plane.results, space.results):
+        least, design, most = (
+            r.collapse_acceleration_non_associated_g, r.collapse_acceleration_load_path_g, r.collapse_acceleration_g,
+        )  # fmt: skip
+        assert least <= design + 1e-6 and design < most
+    r = plane.results
+    verdict = r.judged(asked(0.5 * (design + most)))
+    assert (verdict.outcome, verdict.capacity) == ("open", pytest.approx(r.capacity(), abs=1e-9))
+    assert r.judged(asked(0.9 * least)).outcome == "stands" and r.judged(asked(1.01 * most)).outcome == "collapses"
+
+
+def test_the_rule_of_a_deck_of_solids_gives_the_least_state() -> None:
+    result = run(coursed(2), direction=0.0, rose=4, starts=1, friction_rule="non-associated")
+    r = result.results
+    assert r.collapse_acceleration_g == r.collapse_acceleration_non_associated_g < r.non_dilatant[0].associated_g
+    assert [row.direction_deg for row in r.non_dilatant] == [0.0, 90.0, 180.0, 270.0]
+    assert "design value" in result.answer
+
+
+def test_large_structures_are_followed_on_request(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(driver, "MOST_BESIDE", 10)
+    r = run(coursed(2), direction=0.0, rose=4).results
+    assert r.non_dilatant is None and "on request" in r.non_associated_reason
+    assert r.judged(asked(0.1)).outcome == "open"
+
+
+def test_the_certificate_of_solids_sees_what_is_wrong() -> None:
+    limit = SolidLimit(assemble(corner()), 0.65)
+    points = limit.contact_points(90.0)
+    end = LoadPath(points, 0.5).follow()
+
+    def proof(state):
+        return limit.certify(90.0, state)[1]
+
+    assert proof(end).holds(end.gamma)
+    assert proof(replace(end, gamma=end.gamma + 1e-3)).zero_gap == pytest.approx(1e-3, rel=1e-2)
+    force = end.force.copy()
+    force[5, 0] += 0.1
+    assert proof(replace(end, force=force)).equilibrium > 1e-4
+    force = end.force.copy()
+    force[:, 1:] *= 1.1
+    assert proof(replace(end, force=force)).friction > 1e-5
+    assert proof(replace(end, motion=-end.motion)).closing > 0.1
+    upper = limit.push(90.0)
+    assert isinstance(upper, Programme)
+    motion = upper.motion.copy()
+    motion[:, 3:] *= limit.assembly.size
+    dilatant = replace(end, gamma=upper.gamma, force=upper.force / limit.scale, motion=motion.ravel())
+    assert not proof(dilatant).holds(upper.gamma) and proof(dilatant).equilibrium < 1e-8
+
+
+def test_a_descent_never_rises() -> None:
+    limit = SolidLimit(assemble(corner()), 0.65)
+    points = limit.contact_points(90.0)
+    end = LoadPath(points, 1.0).follow()
+    lower = LeastLoad(points).descended(end)
+    assert lower.gamma < end.gamma - 1e-3 and limit.certify(90.0, lower)[1].holds(lower.gamma)
+
+
+def test_no_path_under_crushing() -> None:
+    limit = LimitAnalysis(
+        make_deck({"structure": WALL, "analysis": {"kind": "tilt"}}).building.blocks(),
+        0.65,
+        strength=2e6,
+        associated=False,
+    )
+    with pytest.raises(NoAnswer, match="crushing"):
+        collapse_along_path(limit, 1, 0.5)
+
+
+def test_the_verdict_warns_above_the_least_state() -> None:
+    verdicts = [judge_design(0.3, 0.2, 0.5, asked(peak)) for peak in (0.1, 0.25, 0.4, 0.5)]
+    assert [v.outcome for v in verdicts] == ["stands", "stands", "open", "collapses"]
+    assert [("Warning" in v.statement) for v in verdicts] == [False, True, False, False]
+    assert all(v.capacity == 0.3 for v in verdicts)
