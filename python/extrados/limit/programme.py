@@ -145,11 +145,13 @@ class LimitAnalysis:
             np.zeros(2 * len(slope)),
         )
 
+    @property
+    def laws(self) -> Constraints:
+        """The laws of the joints but for crushing: pressure at both ends, and friction."""
+        return self._base if self._cone is None else self._base + self._cone
+
     def _whole(self) -> Constraints:
-        whole = self._base
-        for part in (self._cone, self._cuts):
-            whole = whole if part is None else whole + part
-        return whole
+        return self.laws if self._cuts is None else self.laws + self._cuts
 
     def optimise(self, cost: np.ndarray, gamma: tuple[float, float]) -> tuple[Solution, Constraints, np.ndarray]:
         """Minimise over the forces that obey all laws of the joints: solution, its rows, and the scaled corner forces.
@@ -160,22 +162,28 @@ class LimitAnalysis:
         for _ in range(ROUNDS_SPARSE if isinstance(self.system, Sparse) else ROUNDS):
             solution = programme.minimise(cost, gamma)
             corners = self.system.corners(solution.x)
-            if self._crush is None:
+            cuts = self.crushing_cuts(corners, LAW)
+            if cuts is None:
                 return solution, programme.constraints, corners
-            normal = corners[:, 0] + corners[:, 1]
-            need = self._crush * normal**2
-            weak = np.flatnonzero(need - corners[:, :2].min(axis=1) > LAW)
-            if not len(weak):
-                return solution, programme.constraints, corners
-            # Tangent planes of min(n_p, n_q) >= N^2 / (2 f L) where the solution breaks it.
-            slope, lower = 2.0 * (self._crush * normal)[weak], -need[weak]
-            zero = np.zeros(len(weak))
-            cuts = Constraints(weak, np.column_stack([1.0 - slope, -slope, zero]), lower) + Constraints(
-                weak, np.column_stack([-slope, 1.0 - slope, zero]), lower
-            )
             self._cuts = cuts if self._cuts is None else self._cuts + cuts
             programme = self._programme = Programme(self.system, self._whole())
         raise NoAnswer("the crushing of the joints did not settle")
+
+    def crushing_cuts(self, corners: np.ndarray, law: float) -> Constraints | None:
+        """Tangent planes of min(n_p, n_q) >= N^2 / (2 f L) where scaled corner forces (joints, 3) break it by more than `law` of
+        the total load; None where they keep it, or nothing crushes."""
+        if self._crush is None:
+            return None
+        normal = corners[:, 0] + corners[:, 1]
+        need = self._crush * normal**2
+        weak = np.flatnonzero(need - corners[:, :2].min(axis=1) > law)
+        if not len(weak):
+            return None
+        slope, lower = 2.0 * (self._crush * normal)[weak], -need[weak]
+        zero = np.zeros(len(weak))
+        return Constraints(weak, np.column_stack([1.0 - slope, -slope, zero]), lower) + Constraints(
+            weak, np.column_stack([-slope, 1.0 - slope, zero]), lower
+        )
 
     def _own_programme(self) -> Programme:
         """The programme of the laws themselves, kept: other loads change its costs only."""
@@ -227,7 +235,7 @@ class LimitAnalysis:
         return self._state(solution, corners), mechanism
 
     @cached_property
-    def _equations(self) -> Sparse:
+    def equations(self) -> Sparse:
         """The system with three equations per block."""
         if isinstance(self.system, Sparse):
             return self.system
@@ -235,7 +243,7 @@ class LimitAnalysis:
 
     def _interior(self, direction: int) -> tuple[State, Mechanism] | None:
         """Collapse by the interior-point method; None where it does not settle."""
-        problem = CollapseProblem(self._equations, self._mu, direction, self._crush, dilates=True)
+        problem = CollapseProblem(self.equations, self._mu, direction, self._crush, dilates=True)
         allowed = RESIDUAL if problem.joints < MANY else 10.0 * RESIDUAL * np.sqrt(problem.joints / MANY)
         point, misfit = problem.state()
         # Another start is another way. A linear programme of a large wall takes ten times as long, and the tangent planes of
@@ -260,7 +268,7 @@ class LimitAnalysis:
         """The least collapse load found without dilatancy, from rest on; its residuals stay in `coulomb`."""
         if self.strength is None and self.certificate() is not None:
             raise NoEquilibrium("no admissible thrust line")
-        problem = CoulombProblem(self._equations, self._mu, direction, self._crush)
+        problem = CoulombProblem(self.equations, self._mu, direction, self._crush)
         found = problem.least(self.starts, 0.0) or self._neutral(problem)
         if found is None:
             self._refuse_immovable(direction)
@@ -323,7 +331,7 @@ class LimitAnalysis:
     ) -> tuple[State, Mechanism]:
         """State and mechanism of a collapse whose forces and motion were found together; taken: work of the joints."""
         nothing = Constraints(np.empty(0, dtype=int), np.empty((0, 3)), np.empty(0))
-        _, defect = self._equations.velocities(motion, -twist.ravel())
+        _, defect = self.equations.velocities(motion, -twist.ravel())
         mechanism = read_mechanism(
             self.assembly, self.loads, nothing, np.empty(0), motion, twist, defect, INNER_REST, taken
         )  # fmt: skip
@@ -344,7 +352,7 @@ class LimitAnalysis:
 
         taking: what soil and ties that yield take of the work counts.
         """
-        system = self._equations
+        system = self.equations
         m, n = len(self._joints), system.equations
         turned = sparse.csr_array(system.corner_matrix.T)
         unit = self.loads.scale * np.array([1.0, 1.0, self.assembly.size])
