@@ -7,6 +7,7 @@ extension of the tie in it.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy import sparse
@@ -119,7 +120,7 @@ def pieces_of(points: list[Point]) -> list[Piece]:
         while hull and meet(hull[-1], point) <= (meet(hull[-2], hull[-1]) if len(hull) > 1 else first):
             hull.pop()
         hull.append(point)
-    ends = [first, *(min(max(meet(a, b), first), last) for a, b in zip(hull[:-1], hull[1:], strict=True)), last]
+    ends = [first, *(min(max(meet(a, b), first), last) for a, b in pairwise(hull)), last]
     return [
         Piece(a, b, point.line(a), point.line(b), point)
         for point, a, b in zip(hull, ends[:-1], ends[1:], strict=True)

@@ -65,6 +65,11 @@ def _mechanisms(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[st
                 _tie(ax, one)
                 ax.set_title("\n".join(textwrap.wrap(f"{one.name}: {_told(one)}", WIDE)))
             style.section_axes(ax)
+        every = np.concatenate([points, *moved.values()])
+        room = 0.05 * float(np.ptp(every, axis=0).max())
+        for ax in axes:
+            ax.set_xlim(every[:, 0].min() - room, every[:, 0].max() + room)
+            ax.set_ylim(every[:, 1].min() - room, every[:, 1].max() + room)
         saved = style.save(fig, folder, f"{name}-mechanisms")
     return saved, (
         "Collapse mechanisms that govern, exaggerated: the building as it is, and with interventions of the size that meets the target "
@@ -110,8 +115,9 @@ def _curves(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[str, s
                     ax.plot(one.required_size * factor, one.capacity_after, "*", color=colour, markersize=10, zorder=4)
             ax.axhline(r.target, color=style.EDGE, linewidth=1.0, linestyle="--", label="target")
             ax.set_xlabel(f"{key.rpartition('.')[2].replace('_', ' ')} [{shown}]" if shown else key)
-            ax.set_ylim(bottom=0.0)
             ax.legend(loc="best")
+        known = [v for one in rows for v in curves[one.name][:, 1] if np.isfinite(v)]
+        axes[0].set_ylim(0.0, 1.1 * max([r.target, *known]))
         axes[0].set_ylabel(_axis(r))
         saved = style.save(fig, folder, f"{name}-curves")
     return saved, (

@@ -20,6 +20,8 @@ from extrados.views.building import Building
 HEIGHTS, BEHIND = (0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.98), 0.5
 #: Greatest size tried of a key that the deck does not name, over its value
 GREATEST = 3.0
+#: Modulus of elasticity of a steel bar, and its yield strength where the deck gives none [Pa]: defaults of this program
+YOUNG, STEEL = 210e9, 235e6
 #: Of the size of the assembly: gaps between stones that no tie spans; how far within a stone a tie ends
 GAP, INSIDE = 0.02, 1e-3
 
@@ -40,12 +42,21 @@ class TieAlternative:
         return building.having(ties=(*building.ties, self.places[place].model_copy(update={"yield_force": force})))
 
     def data(self, data: dict[str, Any], place: int, force: float) -> dict[str, Any]:
-        """The deck with the tie."""
+        """The deck with the tie, as elastic as runs need it."""
         if force == 0.0:
             return data
-        tie = self.places[place].model_copy(update={"yield_force": force})
+        tie = self.places[place].model_copy(update={"yield_force": force, "stiffness": self.stiffness(place, force)})
         table = {k: v for k, v in tie.model_dump(exclude_unset=True).items() if v is not None}
         return {**data, "ties": [*data.get("ties", []), table]}
+
+    def stiffness(self, place: int, force: float) -> float:
+        """EA/L [N/m]: that of the deck, else of a steel bar whose section is no larger than the force needs."""
+        tie = self.places[place]
+        if tie.stiffness is not None:
+            return tie.stiffness
+        strength = STEEL if self.anchorage is None else self.anchorage.steel_strength or STEEL
+        length = float(np.hypot(tie.far[0] - tie.start[0], tie.far[1] - tie.start[1]))
+        return YOUNG * force / strength / length
 
 
 @dataclass(frozen=True)

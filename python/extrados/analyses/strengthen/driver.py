@@ -188,7 +188,7 @@ class _Work:
         row = self._row(
             name=one.name, kind=word_of(tie), place=_placed(tie), unit="N", required=required, greatest=greatest,
             worth=worth, ranges=ranges, length=_length(tie), force=required or 0.0, volume=0.0, reason=reason,
-            tie=tie, anchorage=one.anchorage, locked=locked,
+            tie=tie, stiffness=one.stiffness(place, required or 0.0), anchorage=one.anchorage, locked=locked,
         )  # fmt: skip
         middles = [(0.5 * (t.start[0] + t.far[0]), 0.5 * (t.start[1] + t.far[1])) for t in one.places]
         data = None if required is None else one.data(plain_data(self.context), place, required)
@@ -296,7 +296,7 @@ class _Work:
             name=one.name, kind=word_of(tie), place=_placed(tie), unit="N", required=required, greatest=_safest(runs, curve[1]),
             worth=worth, ranges=[], length=_length(tie), force=required or 0.0, volume=0.0,
             reason="" if required is not None else worth.reason or "no force up to the greatest one considered suffices",
-            tie=tie, anchorage=one.anchorage,
+            tie=tie, stiffness=one.stiffness(0, required or 0.0), anchorage=one.anchorage,
         )  # fmt: skip
         sized = _Sized(row, curve, None, None if required is None else one.data(data, 0, required), None, worth, tie)
         sized.costs = [self._cost(_length(tie), force, 0.0) if force else 0.0 for force in curve[0]]
@@ -421,12 +421,14 @@ class _Work:
 
     def _row(
         self, *, name: str, kind: Any, place: str, unit: str, required: float | None, greatest: float | None, worth: Worth | None,
-        ranges: list[out.GoverningRange], length: float, force: float, volume: float, reason: str, tie: Tie | None = None,
+        ranges: list[out.GoverningRange], length: float, force: float, volume: float, reason: str, tie: Tie | None = None, stiffness: float = 0.0,
         anchorage: Any = None, key: str = "", locked: bool = False, priced: bool = True,
     ) -> out.Intervention:  # fmt: skip
         worth = worth or Worth(None)
         met = required is not None
         more: dict[str, Any] = {"key": key} if key else {}
+        if tie is not None and required is not None:
+            more["stiffness_N_m"] = stiffness
         if tie is not None:
             more |= {"start_m": list(tie.start), "end_m": list(tie.far), "required_N": required}
         adverse = self._adverse(worth, volume, met)
