@@ -47,7 +47,8 @@ class Intervention(ResultModel):
     place: str = fact("where it is, or from which value the key is changed")
     start_m: list[float] = maybe("[x, y] of the first end of a tie", "m")
     stiffness_N_m: float = maybe(
-        "axial stiffness EA/L that runs take for a tie: that of the deck, else of a steel bar of the least section", "N/m"
+        "axial stiffness EA/L that runs take for a tie: that of the deck, else of a steel bar of the least section",
+        "N/m",
     )
     end_m: list[float] = maybe("[x, y] of its other end", "m")
     unit: str = fact("unit of the sizes")

@@ -35,7 +35,13 @@ def _rocks(asker: Asker, one: Intervention) -> str:
         changes = {one.key: one.required_size}
     else:
         far = "ground" if "ground" in one.place else "end"
-        tie = {"name": "strengthening", "start": one.start_m, far: one.end_m, "yield_force": one.required_N, "stiffness": one.stiffness_N_m}
+        tie = {
+            "name": "strengthening",
+            "start": one.start_m,
+            far: one.end_m,
+            "yield_force": one.required_N,
+            "stiffness": one.stiffness_N_m,
+        }
         works = {"tie": "tension", "strut": "compression"}.get(one.kind, "both")
         changes = {"ties": [*asker.context.deck.data.get("ties", []), {**tie, "works_in": works}]}
     try:
@@ -50,7 +56,9 @@ def _rocks(asker: Asker, one: Intervention) -> str:
 def _statement(r: Strengthen, rocking: dict[str, str]) -> str:
     """The mechanism, the least interventions, and what governs then."""
     now = "no capacity" if r.value_before is None else f"a capacity of {r.value_before:.3g} g"
-    said = [f"The building as it is has {now}; {r.mechanism_before}. The peak of the hazard, {r.target:.3g} g, as a sustained load needs:"]
+    said = [
+        f"The building as it is has {now}; {r.mechanism_before}. The peak of the hazard, {r.target:.3g} g, as a sustained load needs:"
+    ]
     met = [one for one in r.interventions if one.meets_target]
     for one in met:
         then = f", then {one.next_mechanism}" if one.next_mechanism else ""

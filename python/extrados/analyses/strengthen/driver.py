@@ -44,8 +44,8 @@ from extrados.results.statistics import OverLevels
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 
-#: Relative precision of the target that a tie force meets
-MET = 1e-6
+#: Relative excess of the load for which a tie is sized, so that rounding leaves it sufficient
+EXCESS = 1e-7
 #: Of the greatest capacity: where a tie that never yields is taken to have reached it
 REACHED = 1e-6
 #: How far beyond the force of the greatest capacity, or beyond the required one, a curve goes
@@ -109,6 +109,8 @@ def run(context: Context, options: Strengthen) -> Result:
         result.warnings.append(
             "Pressed joints slide in the mechanism of the building as it is: its capacity is an upper bound, or the least of the states found without dilatancy."
         )
+    if isinstance(measure, Statics) and len(measure.senses) == 1 and building.supports.abutting_wall is None:
+        result.warnings.append(measure.other_sense_told(building))
     result.arrays = _arrays(context, before, sized)
     result.tables = {"strengthen": _table(sized)}
     result.answer = _words(result.results)
@@ -133,9 +135,7 @@ def _reached(measure: Measure, worth: Worth) -> bool:
     """Whether a value meets the target."""
     if worth.value is None:
         return False
-    if measure.higher_is_safer:
-        return worth.value >= measure.target * (1.0 - MET)
-    return worth.value <= measure.target * (1.0 + MET)
+    return worth.value >= measure.target if measure.higher_is_safer else worth.value <= measure.target
 
 
 def _over(value: float | None, demand: float | None) -> float | None:
@@ -161,7 +161,7 @@ class _Work:
         forces, reasons = [], []
         for place in range(len(one.places)):
             try:
-                forces.append(float(statics.forces([(one, place)], statics.target)[0]))
+                forces.append(float(statics.forces([(one, place)], statics.target * (1.0 + EXCESS))[0]))
                 reasons.append("")
             except NoEquilibrium:
                 forces.append(np.inf)
@@ -482,7 +482,7 @@ class _Work:
         assert isinstance(statics, Statics)
         columns = [(one, place) for one in ties for place in range(len(one.places))]
         try:
-            forces = statics.forces(columns, statics.target)
+            forces = statics.forces(columns, statics.target * (1.0 + EXCESS))
         except (NoEquilibrium, NoAnswer):
             return {}
         carry = [k for k, f in enumerate(forces) if f > 1e-6 * float(forces.max())]

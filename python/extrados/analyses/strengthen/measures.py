@@ -103,6 +103,20 @@ class Statics:
         shape = () if chosen is None else unmirrored(signature(limit.assembly, chosen))
         return Worth(float(values[k]), told[k], shape, bounds[k], by_sense=tuple(values), moved=moved)
 
+    def other_sense_told(self, building: Building) -> str:
+        """What the building as it is carries in the sense that the deck leaves out."""
+        sense = -self.senses[0]
+        try:
+            carried = f"{sense * self.collapse(limit_of(building, self.options), sense)[0].gamma:.3g} g"
+        except Immovable:
+            carried = "any load"
+        except (NoEquilibrium, NoAnswer) as error:
+            carried = f"no load: {error}"
+        return (
+            f"The target is sought for a load to {_word(self.senses[0])} alone. To {_word(sense)} the building as it is carries {carried}. "
+            'An earthquake acts both ways: take direction = "both", unless something else holds that side.'
+        )
+
     def _least(self, limit: LimitAnalysis, mechanism: Mechanism, sense: int, value: float) -> tuple[float, Bound]:
         """The capacity, and as a bound; where pressed joints slide the least state found without dilatancy."""
         if not limit.dilating(mechanism):
