@@ -208,7 +208,7 @@ def test_without_ties_and_changes_usual_ones_are_taken():
     }).results  # fmt: skip
     assert {one.name for one in r.interventions} == {"horizontal tie", "greater thickness", "greater buttress width"}
     wall = run({"structure": WALL, "analysis": [{"kind": "strengthen", "acceleration": "0.3 g"}]}).results
-    assert {one.name for one in wall.interventions} == {"anchor to what stands behind", "greater width"}
+    assert {one.name for one in wall.interventions} == {"anchor to the structure behind", "greater width"}
     assert wall.best is not None and wall.best.kind == "spring"
 
 
@@ -223,7 +223,7 @@ def test_beside_a_wall_the_load_acts_away_from_it():
 def test_one_sense_alone_is_warned_of():
     asked = {"kind": "strengthen", "acceleration": "0.3 g", "direction": "+x", "ties": [ANCHOR]}
     warnings = run({"structure": WALL, "analysis": [asked]}).warnings
-    assert any("To -x the building as it is carries 0.2 g" in text for text in warnings)
+    assert any("To -x the existing building carries 0.2 g" in text for text in warnings)
 
 
 def test_the_anchorage_follows_by_hand():

@@ -30,7 +30,7 @@ class OtherVerdict(ResultModel):
     """Verdict of one strategy before and after an intervention."""
 
     strategy: str = fact("the strategy in words")
-    before: Outcome = fact("verdict on the building as it is")
+    before: Outcome = fact("verdict on the existing building")
     after: Outcome = fact("verdict on the strengthened building")
     margin_before: float | None = fact("critical scale factor of the hazard before, or its lower end; null: not known")
     margin_after: float | None = fact("the same after")
@@ -44,7 +44,7 @@ class Intervention(ResultModel):
         "tie, strut, spring that works both ways, or change of a key"
     )
     key: str = maybe("key of the deck that is changed")
-    place: str = fact("where it is, or from which value the key is changed")
+    place: str = fact("place, or value from which the key is changed")
     start_m: list[float] = maybe("[x, y] of the first end of a tie", "m")
     stiffness_N_m: float = maybe(
         "axial stiffness EA/L that runs take for a tie: that of the deck, else of a steel bar of the least section",
@@ -60,7 +60,9 @@ class Intervention(ResultModel):
     )
     capacity_after: float | None = fact("value with the required size, in the unit of the target")
     safety_factor_after: float | None = fact("value with the required size over the demand")
-    next_mechanism: str = fact("what governs with the required size, or with the greatest one where none suffices")
+    next_mechanism: str = fact(
+        "mechanism that governs with the required size, or with the greatest one if none suffices"
+    )
     bound: Literal["exact", "upper"] | None = fact(
         "capacity after as a bound: exact; upper, where pressed joints slide (dilatant friction); null: an estimate by runs"
     )
@@ -74,14 +76,14 @@ class Intervention(ResultModel):
     anchorage: list[AnchorageCheck] = maybe("bar and anchorage under the required force")
     adverse: list[str] = fact("adverse effects")
     verdicts: list[OtherVerdict] = maybe("verdicts of all strategies before and after")
-    reason: str = fact("why it does not suffice, or has no answer; empty otherwise")
+    reason: str = fact("why it does not suffice, or has no result; empty otherwise")
 
 
 class CombinedTie(ResultModel):
     """Share of one tie in the cheapest combination."""
 
     name: str = fact("its name")
-    place: str = fact("where it is")
+    place: str = fact("place")
     force_N: float = fact("its yield force", "N")
 
 
@@ -91,7 +93,7 @@ class FragilityPair(ResultModel):
     name: str = fact("the intervention")
     levels: list[float] = fact("factors on the motions")
     motions: int = fact("number of motions")
-    before: list[float | None] = fact("share of the motions that collapse the building as it is")
+    before: list[float | None] = fact("share of the motions that collapse the existing building")
     before_low: list[float] = fact("lower end of its 95 % score interval", source="Wilson 1927")
     before_high: list[float] = fact("upper end", source="Wilson 1927")
     after: list[float | None] = fact("share of the motions that collapse the strengthened building")
@@ -108,17 +110,17 @@ class Strengthen(KindResults):
     target: float = fact("the target, in `unit`")
     demand: float | None = fact("demand to which safety factors refer, in `unit`; null: none")
     direction: Literal["both", "+x", "-x"] = fact("sense of the load of limit analysis")
-    value_before: float | None = fact("value of the building as it is; null: it cannot stand, or there is no answer")
-    safety_factor_before: float | None = fact("value of the building as it is over the demand")
-    met_before: bool = fact("whether the building as it is meets the target")
-    mechanism_before: str = fact("what governs before")
+    value_before: float | None = fact("value of the existing building; null: no result")
+    safety_factor_before: float | None = fact("value of the existing building over the demand")
+    met_before: bool = fact("whether the existing building meets the target")
+    mechanism_before: str = fact("governing mechanism of the existing building")
     interventions: list[Intervention] = fact("the alternatives, the cheapest that meets the target first")
     combination: list[CombinedTie] = maybe("the cheapest combination of all ties, those that carry a force")
     combination_cost: float = maybe("its cost")
     fragility: FragilityPair = maybe("fragility before and after, of the cheapest intervention")
 
     def judged(self, demand: Demand) -> Verdict:
-        """The building as it is against the target; a target is no demand, so that no outcome follows."""
+        """The existing building against the target; a target is no demand, so that no outcome follows."""
         return judge(self.statement(), self.target, self.value_before, self.unit, "not-applicable")
 
     @property
@@ -130,7 +132,7 @@ class Strengthen(KindResults):
         """The conclusion in two sentences."""
         unit = f" {self.unit}" if self.unit else ""
         now = "no value" if self.value_before is None else f"{self.value_before:.3g}{unit}"
-        text = f"{self.quantity} of the building as it is: {now}; target {self.target:.3g}{unit}."
+        text = f"{self.quantity} of the existing building: {now}; target {self.target:.3g}{unit}."
         if self.met_before:
             return f"{text} The target is met without an intervention."
         best = self.best

@@ -44,7 +44,7 @@ def _scale(unit: str) -> tuple[float, str]:
 
 
 def _mechanisms(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[str, str] | None:
-    """The mechanism of the building as it is, beside those with the cheapest interventions."""
+    """The mechanism of the existing building, beside those with the cheapest interventions."""
     rest, moved = _paths(run, name, "stones"), _paths(run, name, "stones_moved")
     shown = [k for k in ("0", "1", "2", "3") if any(key.startswith(f"{k}/") for key in rest)]
     if not shown:
@@ -59,7 +59,7 @@ def _mechanisms(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[st
             if k == "0":
                 unit = f" {r.unit}" if r.unit else ""
                 value = "none" if r.value_before is None else f"{r.value_before:.3g}{unit}"
-                ax.set_title(f"As it is: {value}\n(target {r.target:.3g}{unit})")
+                ax.set_title(f"Existing: {value}\n(target {r.target:.3g}{unit})")
             else:
                 one = r.interventions[int(k) - 1]
                 _tie(ax, one)
@@ -72,8 +72,8 @@ def _mechanisms(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[st
             ax.set_ylim(every[:, 1].min() - room, every[:, 1].max() + room)
         saved = style.save(fig, folder, f"{name}-mechanisms")
     return saved, (
-        "Collapse mechanisms that govern, exaggerated: the building as it is, and with interventions of the size that meets the target "
-        "(with the greatest size considered where none does)."
+        "Collapse mechanisms that govern, exaggerated: the existing building, and the building with interventions of the size that meets the target "
+        "(or of the greatest size considered, if none does)."
     )
 
 
@@ -209,7 +209,10 @@ def _front(points: list[tuple[float, float]], falls: bool) -> np.ndarray:
 def _fragility(pair: FragilityPair, name: str, folder: Path) -> tuple[str, str]:
     """Probabilities of collapse over the factor on the motions, with their intervals."""
     with style.figure(5.5, 3.8) as (fig, (ax,)):
-        for word, colour, label in (("before", style.THRUST, "as it is"), ("after", style.SAFE, f"with {pair.name}")):
+        for word, colour, label in (
+            ("before", style.THRUST, "existing building"),
+            ("after", style.SAFE, f"with {pair.name}"),
+        ):
             share = np.array([np.nan if p is None else p for p in getattr(pair, word)])
             low, high = getattr(pair, f"{word}_low"), getattr(pair, f"{word}_high")
             ax.fill_between(pair.levels, low, high, color=colour, alpha=0.2, linewidth=0.0)

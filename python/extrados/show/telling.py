@@ -181,8 +181,8 @@ def _advice(r: Assess) -> list[Block]:
          r.advice.rocking.get(one.name, ""))
         for one in r.advice.interventions
     ]  # fmt: skip
-    head = ("intervention", "least size", "capacity after [g]", "what governs then", "rocking under the hazard")
-    return [Heading("What to do", 2), Words(r.advice.statement), Table(head, rows, (1.4, 2.4, 0.8, 3.2, 1.2))]
+    head = ("intervention", "least size", "capacity after [g]", "then governs", "rocking under the hazard")
+    return [Heading("Strengthening", 2), Words(r.advice.statement), Table(head, rows, (1.4, 2.4, 0.8, 3.2, 1.2))]
 
 
 def _both(low: float | None, high: float | None) -> str:

@@ -47,9 +47,9 @@ def _rocks(asker: Asker, one: Intervention) -> str:
     try:
         result, _ = asker.ask("rocking", {}, None, changes)
     except Refused as error:
-        return f"no answer: {error}"
+        return f"gives no result: {error}"
     if not isinstance(result.results, Rocking):
-        return f"no answer: {result.reason or result.answer}"
+        return f"gives no result: {result.reason or result.answer}"
     return OUTCOMES.get(result.results.outcome, result.results.outcome)
 
 
@@ -57,7 +57,7 @@ def _statement(r: Strengthen, rocking: dict[str, str]) -> str:
     """The mechanism, the least interventions, and what governs then."""
     now = "no capacity" if r.value_before is None else f"a capacity of {r.value_before:.3g} g"
     said = [
-        f"The building as it is has {now}; {r.mechanism_before}. The peak of the hazard, {r.target:.3g} g, as a sustained load needs:"
+        f"The existing building has {now}; {r.mechanism_before}. To carry the peak of the hazard, {r.target:.3g} g, as a sustained load, alternatives are:"
     ]
     met = [one for one in r.interventions if one.meets_target]
     for one in met:

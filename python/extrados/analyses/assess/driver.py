@@ -62,7 +62,7 @@ def run(context: Context, options: Assess) -> Result:
         if options.sensitivity or options.vary:
             work.further("sensitivity", work.move)
         if options.advise:
-            work.further("what to do", work.advise)
+            work.further("strengthening", work.advise)
     except Interrupted:
         result.status, result.reason = "interrupted", "interrupted; the strategies that had run are reported"
     work.conclude(result)
@@ -455,7 +455,7 @@ class _Work:
             return
         found = advice.advise(self.asker, self.peak, "rocking" in self.results)
         if isinstance(found, str):
-            self.not_done.append(f"what to do: {found}")
+            self.not_done.append(f"strengthening: {found}")
         else:
             self.advice = found
 
@@ -614,7 +614,7 @@ class _Work:
         self._arrays(facts, rows, result)
         result.answer = answer(statement, rows, reasons, result.results.sensitivity or [])
         if self.advice is not None:
-            result.answer += f"\nWhat to do. {self.advice.statement}"
+            result.answer += f"\nStrengthening. {self.advice.statement}"
         result.warnings += [
             f"{row.label}: {row.status}: {row.reason}" for row in rows if row.status in ("failed", "left out")
         ]

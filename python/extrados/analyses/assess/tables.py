@@ -67,7 +67,7 @@ class Assess(Analysis):
     )
     advise: bool = key(
         True, "also seek the least tie and the least thickness with which the building carries the peak of the hazard as a sustained "
-        "load, where it does not stand under all strategies"
+        "load, if the building does not stand under all strategies"
     )  # fmt: skip
     options: dict[Strategy, dict[str, Any]] = key(
         {},

@@ -104,10 +104,10 @@ def run(context: Context, options: Strengthen) -> Result:
         mechanism_before=before.mechanism or before.reason, interventions=[s.row for s in sized], **more,
     )  # fmt: skip
     if before.value is None:
-        result.warnings.append(f"The building as it is has no value: {before.reason}")
+        result.warnings.append(f"The existing building has no value: {before.reason}")
     if before.bound == "upper":
         result.warnings.append(
-            "Pressed joints slide in the mechanism of the building as it is: its capacity is an upper bound, or the least of the states found without dilatancy."
+            "Pressed joints slide in the mechanism of the existing building: its capacity is an upper bound, or the least of the states found without dilatancy."
         )
     if isinstance(measure, Statics) and len(measure.senses) == 1 and building.supports.abutting_wall is None:
         result.warnings.append(measure.other_sense_told(building))
@@ -143,7 +143,7 @@ def _over(value: float | None, demand: float | None) -> float | None:
 
 
 class _Work:
-    """Sizes alternatives against the building as it is."""
+    """Sizes alternatives against the existing building."""
 
     def __init__(self, context: Context, options: Strengthen, measure: Measure, before: Worth):
         self.context, self.options, self.measure, self.before = context, options, measure, before
@@ -457,7 +457,7 @@ class _Work:
         senses = self.measure.senses if isinstance(self.measure, Statics) else ()
         for sense, was, now in zip(senses, before.by_sense, worth.by_sense, strict=False):
             if now < was * (1.0 - NAMED):
-                found.append(f"The capacity to {'+x' if sense > 0 else '-x'} falls from {was:.3g} to {now:.3g} g.")
+                found.append(f"The capacity to {'+x' if sense > 0 else '-x'} drops from {was:.3g} to {now:.3g} g.")
         if volume > 0.0:
             whole = volume_of(building)
             if volume > NAMED * whole:
@@ -521,7 +521,7 @@ class _Work:
                 worse = was.outcome == "stands" and row.outcome in ("collapses", "cannot-stand")
                 if worse or (low is not None and high is not None and high < low * (1.0 - NAMED)):
                     adverse.append(
-                        f"By {row.label} the margin falls from {_number(low)} to {_number(high)} (verdict {was.outcome}, then {row.outcome})."
+                        f"By {row.label} the margin drops from {_number(low)} to {_number(high)} (verdict {was.outcome}, then {row.outcome})."
                     )
             one.row = one.row.model_copy(update={"verdicts": verdicts, "adverse": [*one.row.adverse, *adverse]})
 
@@ -637,7 +637,7 @@ def _arrays(context: Context, before: Worth, sized: list[_Sized]) -> dict[str, A
             "x, y of the middle [m] and required force [N] (infinite: none) at the places of each tie",
         ),
         **packed(
-            "stones", rest, "m", "blocks of the building as it is (0/block) and of the alternatives (number/block)"
+            "stones", rest, "m", "blocks of the existing building (0/block) and of the alternatives (number/block)"
         ),
         **packed("stones_moved", moved, "m", "the same, moved by the mechanism that governs"),
     }

@@ -63,7 +63,7 @@ class Statics:
         self.senses = tuple(s for s in given if {"left": -1, "right": 1}.get(wall or "") != s)
         if not self.senses:
             raise Refused(
-                f"direction: the wall stands on that side ({wall}): the building cannot collapse there",
+                f"direction: the abutting wall is on that side ({wall}): the building cannot collapse towards it",
                 ("analysis", "direction"),
             )
 
@@ -104,7 +104,7 @@ class Statics:
         return Worth(float(values[k]), told[k], shape, bounds[k], by_sense=tuple(values), moved=moved)
 
     def other_sense_told(self, building: Building) -> str:
-        """What the building as it is carries in the sense that the deck leaves out."""
+        """What the existing building carries in the sense that the deck leaves out."""
         sense = -self.senses[0]
         try:
             carried = f"{sense * self.collapse(limit_of(building, self.options), sense)[0].gamma:.3g} g"
@@ -113,7 +113,7 @@ class Statics:
         except (NoEquilibrium, NoAnswer) as error:
             carried = f"no load: {error}"
         return (
-            f"The target is sought for a load to {_word(self.senses[0])} alone. To {_word(sense)} the building as it is carries {carried}. "
+            f"The target is sought for a load to {_word(self.senses[0])} alone. To {_word(sense)} the existing building carries {carried}. "
             'An earthquake acts both ways: take direction = "both", unless something else holds that side.'
         )
 

@@ -32,8 +32,8 @@ class Anchorage(Table):
         None, "design shear strength of the masonry around the plate; gives punching", gt=0
     )
     bond_length: Length | None = key(None, "length of an injected anchor", gt=0)
-    bond_diameter: Length | None = key(None, "diameter of its bore", gt=0)
-    bond_strength: Stress | None = key(None, "design bond strength along the bore; gives pull-out", gt=0)
+    bond_diameter: Length | None = key(None, "diameter of its borehole", gt=0)
+    bond_strength: Stress | None = key(None, "design bond strength along the borehole; gives pull-out", gt=0)
 
     @model_validator(mode="after")
     def _together(self) -> "Anchorage":
