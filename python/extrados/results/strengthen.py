@@ -69,7 +69,7 @@ class Intervention(ResultModel):
     ranges: list[GoverningRange] = fact("mechanisms that govern as the size grows, in order")
     length_m: float = fact("length of tie", "m")
     force_N: float = fact("force of tie", "N")
-    volume_m3: float = fact("volume of masonry added or injected", "m3")
+    volume_m3: float = fact("volume of masonry added or injected", "m^3")
     cost: float | None = fact(
         "cost by the weights of the deck; null where the target is not met, or no weight is of such a change"
     )
@@ -80,7 +80,7 @@ class Intervention(ResultModel):
 
 
 class CombinedTie(ResultModel):
-    """Share of one tie in the cheapest combination."""
+    """Share of one tie in the combination of least total force."""
 
     name: str = fact("its name")
     place: str = fact("place")
@@ -115,7 +115,7 @@ class Strengthen(KindResults):
     met_before: bool = fact("whether the existing building meets the target")
     mechanism_before: str = fact("governing mechanism of the existing building")
     interventions: list[Intervention] = fact("the alternatives, the cheapest that meets the target first")
-    combination: list[CombinedTie] = maybe("the cheapest combination of all ties, those that carry a force")
+    combination: list[CombinedTie] = maybe("combination of ties of least total force, if more than one tie carries a force")
     combination_cost: float = maybe("its cost")
     fragility: FragilityPair = maybe("fragility before and after, of the cheapest intervention")
 

@@ -50,8 +50,10 @@ EXCESS = 1e-7
 REACHED = 1e-6
 #: How far beyond the force of the greatest capacity, or beyond the required one, a curve goes
 BEYOND = 1.15
-#: Halvings of the interval in which a size meets the target, by limit analysis and by runs
+#: Halvings of the interval in which a size meets the target, of cheap analyses and of others
 HALVINGS, HALVINGS_OF_RUNS = 16, 5
+#: Analyses that take milliseconds
+CHEAP = ("tilt", "local-mechanism", "code-checks")
 #: Forces at which runs are made before the interval is halved
 FORCES_OF_RUNS = 5
 #: Changes of a capacity, or of a mass, that are named
@@ -148,6 +150,11 @@ class _Work:
     def __init__(self, context: Context, options: Strengthen, measure: Measure, before: Worth):
         self.context, self.options, self.measure, self.before = context, options, measure, before
         self.assessments: dict[str, Assess | str] = {}
+
+    @property
+    def _halvings(self) -> int:
+        """Halvings by the cost of one value."""
+        return HALVINGS if self.options.by in CHEAP else HALVINGS_OF_RUNS
 
     # ----- ties
 
@@ -290,7 +297,7 @@ class _Work:
             stop_if_asked()
             return runs.of_data(one.data(data, 0, force))
 
-        required, worth, curve = self._bracket(at, 0.0, one.most, FORCES_OF_RUNS, HALVINGS_OF_RUNS, False)
+        required, worth, curve = self._bracket(at, 0.0, one.most, FORCES_OF_RUNS, self._halvings, False)
         tie = one.places[0]
         row = self._row(
             name=one.name, kind=word_of(tie), place=_placed(tie), unit="N", required=required, greatest=_safest(runs, curve[1]),
@@ -319,7 +326,7 @@ class _Work:
             return seen[value]
 
         required, worth, curve = self._bracket(
-            at, one.start, one.stop, one.count, HALVINGS_OF_RUNS if by_runs else HALVINGS, one.whole
+            at, one.start, one.stop, one.count, self._halvings, one.whole
         )
         ranges = []
         if not by_runs:
@@ -431,7 +438,7 @@ class _Work:
             more["stiffness_N_m"] = stiffness
         if tie is not None:
             more |= {"start_m": list(tie.start), "end_m": list(tie.far), "required_N": required}
-        adverse = self._adverse(worth, volume, met)
+        adverse = self._adverse(worth, volume if key.startswith("structure.") else 0.0, met)
         if met and anchorage is not None:
             more["anchorage"] = check_anchorage(force, anchorage)
             adverse += [
@@ -477,7 +484,7 @@ class _Work:
     # ----- all together
 
     def combined(self, ties: list[TieAlternative]) -> dict[str, Any]:
-        """The cheapest combination of all ties at all places by their forces, in one programme."""
+        """The combination of all ties at all places whose forces have the least sum, in one programme; nothing where one tie is enough."""
         statics = self.measure
         assert isinstance(statics, Statics)
         columns = [(one, place) for one in ties for place in range(len(one.places))]
@@ -486,6 +493,8 @@ class _Work:
         except (NoEquilibrium, NoAnswer):
             return {}
         carry = [k for k, f in enumerate(forces) if f > 1e-6 * float(forces.max())]
+        if len(carry) < 2:
+            return {}
         rows, cost = [], 0.0
         for k in carry:
             one, place = columns[k]
@@ -683,5 +692,5 @@ def _words(r: out.Strengthen) -> str:
         said += [f"  {text}" for text in one.adverse]
     if r.combination:
         told = ", ".join(f"{row.force_N / 1e3:.3g} kN of {row.name}" for row in r.combination)
-        said.append(f"- Cheapest combination of all ties: {told}; cost {r.combination_cost:.3g}.")
+        said.append(f"- Combination of ties of least total force: {told}; cost {r.combination_cost:.3g}.")
     return "\n".join(said)
