@@ -185,6 +185,7 @@ ANALYSES: dict[str, AnalysisKind] = {
     "dem": _analysis("dem", "Dem", "driver", "dem:draw_dem", "dem", "dem/oppenheim", ("dem",)),
     "dem-domain": _analysis("dem", "DemDomain", "dem_domain", "dem:draw_domain", "dem_domain", "dem/domain"),
     "assess": _analysis("assess", "Assess", "driver", "assess:draw_assess", "others", "assess/readme-arch"),
+    "strengthen": _analysis("strengthen", "Strengthen", "driver", "strengthen:draw_strengthen", "strengthen", "strengthen/nave"),
     "dem-parameters": _analysis("dem", "DemParameters", "dem_parameters", "dem:draw_parameters", "others", "dem/rocking-block"),
 }  # fmt: skip
 

@@ -103,6 +103,7 @@ DECKS = {
     "shake-table": (None, RECORD, {}),
     "dem": (BLOCK, SINE, {"end_time": 0.4}),
     "dem-parameters": (BLOCK, None, {}),
+    "strengthen": (ARCH, None, {"acceleration": "0.4 g"}),
     "sla": (STACK, None, {"mesh": {"size": 0.5}, "events": 30}),
     "arch rocking": (ARCH, SINE, {"kind": "rocking"}),
     "arch spectrum": (ARCH, RECORD, {"kind": "rocking-spectrum", "periods": [12.0, 20.0]}),

@@ -1,6 +1,7 @@
 """Keys of a deck given other values, and the tables made of them."""
 
 import copy
+from collections.abc import Iterable
 from typing import Any
 
 from pydantic import ValidationError
@@ -11,7 +12,7 @@ from extrados.schema.table import Table
 
 
 def changed(data: Any, path: str, value: Any) -> Any:
-    """A structure's table with one key, dotted for a table within it or one of a list, set to another value."""
+    """A deck, or a table of one, with one key, dotted for a table within it or one of a list, set to another value."""
     data = copy.deepcopy(data)
     place: Any = data
     *way, last = path.split(".")
@@ -39,3 +40,15 @@ def read_table(model: type[Table], data: dict[str, Any]) -> Any:
         if first["type"] == "extra_forbidden":
             text = f"unknown key; known are {', '.join(model.model_fields)}"
         raise BadGeometry(f"{where}: {text}" if where else text) from None
+
+
+def lacking(data: dict[str, Any], without: Iterable[str]) -> dict[str, Any]:
+    """A deck's data without tables or keys, called as Building.special_keys calls them: "[[ties]]", "[supports] abutting_wall"."""
+    data = dict(data)
+    for what in without:
+        table, _, name = what.replace("[", "").replace("]", "").partition(" ")
+        if name:
+            data[table] = {k: v for k, v in data[table].items() if k not in (name, "rebound")}
+        else:
+            data.pop(table, None)
+    return data

@@ -194,7 +194,7 @@ def starter(kind: str) -> str:
     if analysis.structures and structure not in analysis.structures:
         structure = analysis.structures[0]
     lines = [f'title = "A first {kind} deck"', ""]
-    if analysis.view or analysis.structures:
+    if analysis.view or analysis.structures or "starter_structure" in vars(analysis):
         lines += _section(kinds.table("structure", structure), "[structure]", structure)
         for name in OVERRIDES:
             if any(use.startswith(f"{name}.") for use in analysis.uses):

@@ -141,11 +141,13 @@ class LimitAnalysis:
             np.zeros(2 * len(slope)),
         )
 
+    @property
+    def laws(self) -> Constraints:
+        """The laws of the joints but for crushing: pressure at both ends, and friction."""
+        return self._base if self._cone is None else self._base + self._cone
+
     def _whole(self) -> Constraints:
-        whole = self._base
-        for part in (self._cone, self._cuts):
-            whole = whole if part is None else whole + part
-        return whole
+        return self.laws if self._cuts is None else self.laws + self._cuts
 
     def optimise(self, cost: np.ndarray, gamma: tuple[float, float]) -> tuple[Solution, Constraints, np.ndarray]:
         """Minimise over the forces that obey all laws of the joints: solution, its rows, and the scaled corner forces.
@@ -156,22 +158,28 @@ class LimitAnalysis:
         for _ in range(ROUNDS_SPARSE if isinstance(self.system, Sparse) else ROUNDS):
             solution = programme.minimise(cost, gamma)
             corners = self.system.corners(solution.x)
-            if self._crush is None:
+            cuts = self.crushing_cuts(corners, LAW)
+            if cuts is None:
                 return solution, programme.constraints, corners
-            normal = corners[:, 0] + corners[:, 1]
-            need = self._crush * normal**2
-            weak = np.flatnonzero(need - corners[:, :2].min(axis=1) > LAW)
-            if not len(weak):
-                return solution, programme.constraints, corners
-            # Tangent planes of min(n_p, n_q) >= N^2 / (2 f L) where the solution breaks it.
-            slope, lower = 2.0 * (self._crush * normal)[weak], -need[weak]
-            zero = np.zeros(len(weak))
-            cuts = Constraints(weak, np.column_stack([1.0 - slope, -slope, zero]), lower) + Constraints(
-                weak, np.column_stack([-slope, 1.0 - slope, zero]), lower
-            )
             self._cuts = cuts if self._cuts is None else self._cuts + cuts
             programme = self._programme = Programme(self.system, self._whole())
         raise NoAnswer("the crushing of the joints did not settle")
+
+    def crushing_cuts(self, corners: np.ndarray, law: float) -> Constraints | None:
+        """Tangent planes of min(n_p, n_q) >= N^2 / (2 f L) where scaled corner forces (joints, 3) break it by more than `law` of
+        the total load; None where they keep it, or nothing crushes."""
+        if self._crush is None:
+            return None
+        normal = corners[:, 0] + corners[:, 1]
+        need = self._crush * normal**2
+        weak = np.flatnonzero(need - corners[:, :2].min(axis=1) > law)
+        if not len(weak):
+            return None
+        slope, lower = 2.0 * (self._crush * normal)[weak], -need[weak]
+        zero = np.zeros(len(weak))
+        return Constraints(weak, np.column_stack([1.0 - slope, -slope, zero]), lower) + Constraints(
+            weak, np.column_stack([-slope, 1.0 - slope, zero]), lower
+        )
 
     def _own_programme(self) -> Programme:
         """The programme of the laws themselves, kept: other loads change its costs only."""
@@ -226,7 +234,7 @@ class LimitAnalysis:
         return self._state(solution, corners), mechanism
 
     @cached_property
-    def _equations(self) -> Sparse:
+    def equations(self) -> Sparse:
         """The system with three equations per block."""
         if isinstance(self.system, Sparse):
             return self.system
@@ -237,7 +245,7 @@ class LimitAnalysis:
         answers = self.loads.resistance
         bounds = np.zeros((2, 0)) if answers is None else np.stack([answers.low, answers.high])
         found = collapse_of_crushing(
-            self._equations, None if self._cone is None else self._mu, crush, bounds, direction
+            self.equations, None if self._cone is None else self._mu, crush, bounds, direction
         )
         if found is None:
             return None
@@ -247,7 +255,7 @@ class LimitAnalysis:
 
     def _interior(self, direction: int) -> tuple[State, Mechanism] | None:
         """Collapse by the interior-point method; None where it does not settle."""
-        problem = CollapseProblem(self._equations, self._mu, direction, dilates=True)
+        problem = CollapseProblem(self.equations, self._mu, direction, dilates=True)
         allowed = RESIDUAL if problem.joints < MANY else 10.0 * RESIDUAL * np.sqrt(problem.joints / MANY)
         point, misfit = problem.state()
         if misfit > allowed and problem.joints >= MANY:  # a linear programme of a large wall takes ten times as long
@@ -267,7 +275,7 @@ class LimitAnalysis:
         """The least collapse load found without dilatancy, from rest on; its residuals stay in `coulomb`."""
         if self.strength is None and self.certificate() is not None:
             raise NoEquilibrium("no admissible thrust line")
-        problem = CoulombProblem(self._equations, self._mu, direction, self._crush)
+        problem = CoulombProblem(self.equations, self._mu, direction, self._crush)
         found = problem.least(self.starts, 0.0) or self._neutral(problem)
         if found is None:
             self._refuse_immovable(direction)
@@ -284,7 +292,7 @@ class LimitAnalysis:
 
     def contact_points(self, direction: int) -> ContactPoints:
         """The ends of the joints as points of contact, each with a shear along the joint; forces over the total load."""
-        system, m = self._equations, len(self._joints)
+        system, m = self.equations, len(self._joints)
         columns = 3 * np.repeat(self._joints, 4) + np.tile([0, 2, 1, 2], m)  # n_p, s, n_q, s
         length = self.assembly.length / self.assembly.length.mean()
         nothing = np.empty((2, 0))
@@ -344,7 +352,7 @@ class LimitAnalysis:
     ) -> tuple[State, Mechanism]:
         """State and mechanism of a collapse whose forces and motion were found together; taken: work of the joints."""
         nothing = Constraints(np.empty(0, dtype=int), np.empty((0, 3)), np.empty(0))
-        _, defect = self._equations.velocities(motion, -twist.ravel())
+        _, defect = self.equations.velocities(motion, -twist.ravel())
         mechanism = read_mechanism(
             self.assembly, self.loads, nothing, np.empty(0), motion, twist, defect, INNER_REST, taken
         )  # fmt: skip
@@ -365,7 +373,7 @@ class LimitAnalysis:
 
         taking: what soil and ties that yield take of the work counts.
         """
-        system = self._equations
+        system = self.equations
         m, n = len(self._joints), system.equations
         turned = sparse.csr_array(system.corner_matrix.T)
         unit = self.loads.scale * np.array([1.0, 1.0, self.assembly.size])

@@ -3,6 +3,7 @@
 from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
+from extrados.results.strengthen import Intervention
 from extrados.results.verdict import Bound, Demand, KindResults, Outcome, Verdict, judge
 
 Axis = Literal["acceleration", "pulse", "displacement", "probability", "check"]
@@ -105,6 +106,17 @@ class TurningValue(ResultModel):
     )
 
 
+class Advice(ResultModel):
+    """What to do, by limit analysis: interventions that carry the peak of the hazard as a sustained load."""
+
+    target_g: float = fact("constant horizontal acceleration that the interventions carry: the peak of the hazard", "g")
+    capacity_g: float | None = fact("capacity of the existing building; null: none", "g")
+    mechanism: str = fact("governing mechanism of the existing building")
+    interventions: list[Intervention] = fact("alternatives, the cheapest that meets the target first")
+    rocking: dict[str, str] = fact("outcome of rocking under the hazard with each intervention that meets the target")
+    statement: str = fact("recommendation in words")
+
+
 class Assess(KindResults):
     """assess: every strategy that applies, compared."""
 
@@ -122,6 +134,7 @@ class Assess(KindResults):
     parts: dict[str, str] = fact("analyses of this run that the assessment requested: name -> description")
     probes: list[Probe] = fact("further runs")
     sensitivity: list[TurningValue] = maybe("sensitivity of the verdicts, the most decisive value first")
+    advice: Advice = maybe("strengthening, if the building does not stand under all strategies")
     not_done: list[str] = fact("steps that the budget did not allow, and further runs that decided nothing")
     least_margin: float | None = fact(
         "least critical scale factor of the hazard of all strategies; 0 where the building cannot stand; null: none known"

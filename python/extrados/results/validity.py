@@ -140,6 +140,12 @@ DemParameters = Validity(
     "Rules of thumb give joint stiffness, impact frequency and damping; no run is made.",
     "The values are starting values for dem and no property of the building: vary them, and compare the outcomes.",
 )
+Strengthen = Validity(
+    "A tie is rigid until it yields, then carries its yield force; it is sized by limit analysis, other interventions by repeated runs "
+    "of the analysis that measures the target. Material and joints that are not changed keep their properties.",
+    "The required force is a yield force: stiffness, prestress and slack decide at which movement it acts. The anchorage carries it only "
+    "as far as its checks are made. The limits of the analysis that measures the target apply.",
+)
 Assess = Validity(
     "Each strategy answers by its own analysis, with parameters chosen by stated rules.",
     "The reasons state how the models differ, not which model is right. No strategy is better than the geometry and the "

@@ -497,6 +497,18 @@ class Shown:
         about = key.replace("_", " ")
         self._draw("Capacity", _axis("value", about, unit), _axis("", "collapse acceleration", "g"), rows)
 
+    def strengthen(self) -> None:
+        """The value over the size of each alternative, and the building with the mechanism of the cheapest one."""
+        rows = {one["name"]: one for one in self.run.analysis(self.name)["results"]["interventions"]}
+        start = self.arrays["curve_start"]
+        for k, name in enumerate(self.arrays["curve_of"].astype(str)):
+            size, value, _ = self.arrays["curve"][start[k] : start[k + 1]].T
+            self.out |= {f"size_{k}": size, f"value_{k}": value}
+            unit = rows[name]["unit"]
+            factor, shown = {"N": (1e-3, "kN"), "Pa": (1e-6, "MPa")}.get(unit, (1.0, unit))
+            self._draw(name, _axis(f"size_{k}", "size", shown, factor), _axis("", "value", self.run[self.name].unit), [_series(f"value_{k}", name)])  # fmt: skip
+        self.charts = self.charts[:12]
+
     def moving_load(self) -> None:
         """The live-load factor over the place of the load."""
         self.send("place", "capacity")

@@ -5,9 +5,11 @@ import re
 from pathlib import Path
 from typing import Any
 
+from extrados.results.assess import Assess
 from extrados.results.explain import fact_of
 from extrados.results.fields import ResultModel
 from extrados.results.store import STORE, SUMMARY, Stored
+from extrados.results.strengthen import size_told
 from extrados.results.validity import validity_of
 from extrados.show.document import Block, Code, Document, Figure, Heading, Table, Words
 
@@ -115,6 +117,7 @@ def _assessed(run: Stored, name: str) -> list[Block]:
             "The margin is the critical scale factor of the hazard: below 1 the strategy gives collapse under the hazard itself."
         )
     )
+    found += _advice(r)
     if r.reasons:
         found.append(Heading("Why they differ", 2))
         labels = {v.strategy: v.label for v in r.verdicts}
@@ -167,6 +170,19 @@ def _assessed(run: Stored, name: str) -> list[Block]:
     if r.not_done:
         found.append(Words("Not done, or not decided: " + "; ".join(r.not_done) + ".", "warn"))
     return found
+
+
+def _advice(r: Assess) -> list[Block]:
+    """What to do: the interventions of an assessment side by side."""
+    if r.advice is None:
+        return []
+    rows = [
+        (one.name, size_told(one) if one.meets_target else one.reason, cell(one.capacity_after, ""), one.next_mechanism,
+         r.advice.rocking.get(one.name, ""))
+        for one in r.advice.interventions
+    ]  # fmt: skip
+    head = ("intervention", "least size", "capacity after [g]", "then governs", "rocking under the hazard")
+    return [Heading("Strengthening", 2), Words(r.advice.statement), Table(head, rows, (1.4, 2.4, 0.8, 3.2, 1.2))]
 
 
 def _both(low: float | None, high: float | None) -> str:

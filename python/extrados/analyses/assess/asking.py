@@ -11,6 +11,7 @@ from extrados import interrupts, kinds
 from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.assess.strategies import Strategy
 from extrados.analyses.batches import Unfinished
+from extrados.analyses.changes import lacking
 from extrados.analyses.conclude import MotionDemand, concluded
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.self_weight import neglecting
@@ -67,12 +68,7 @@ class Asker:
         """The deck of one part; `changes` gives dotted keys other values, `without` names what it leaves out."""
         data = {k: copy.deepcopy(v) for k, v in self.context.deck.data.items() if k != "analysis"}
         data["motion"] = motion
-        for what in without:
-            table, _, key = what.replace("[", "").replace("]", "").partition(" ")
-            if key:
-                data[table] = {k: v for k, v in data[table].items() if k not in (key, "rebound")}
-            else:
-                data.pop(table, None)
+        data = lacking(data, without)
         for dotted, value in changes.items():
             *way, last = dotted.split(".")
             place = data

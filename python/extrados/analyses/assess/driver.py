@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from extrados import kinds
-from extrados.analyses.assess import hazard, sensitivity, strategies
+from extrados.analyses.assess import advice, hazard, sensitivity, strategies
 from extrados.analyses.assess.asking import (
     ENDING,
     STOPPED_AFTER,
@@ -61,6 +61,8 @@ def run(context: Context, options: Assess) -> Result:
         work.further("closer looks where strategies differ", work.refine)
         if options.sensitivity or options.vary:
             work.further("sensitivity", work.move)
+        if options.advise:
+            work.further("strengthening", work.advise)
     except Interrupted:
         result.status, result.reason = "interrupted", "interrupted; the strategies that had run are reported"
     work.conclude(result)
@@ -87,6 +89,7 @@ class _Work:
         self.moved: list[sensitivity.Moved] = []
         self.shaken: list[out.TurningValue] = []
         self.faults: dict[str, bytes] = {}
+        self.advice: out.Advice | None = None
         self.asker = Asker(
             context,
             dict(context.deck.data["motion"]),
@@ -443,6 +446,19 @@ class _Work:
             self._pushes = needed
         return self._pushes
 
+    # ----- what to do
+
+    def advise(self) -> None:
+        """The least interventions, where the building does not stand under all strategies."""
+        facts = self.facts()
+        if all(facts.outcome(n) == "stands" for n in facts.judged()) or self.rows.get("tilt") is None:
+            return
+        found = advice.advise(self.asker, self.peak, "rocking" in self.results)
+        if isinstance(found, str):
+            self.not_done.append(f"strengthening: {found}")
+        else:
+            self.advice = found
+
     # ----- sensitivity
 
     def move(self) -> None:
@@ -583,7 +599,8 @@ class _Work:
             ),
             verdicts=rows, agreement=agreement, reasons=reasons, unexplained=[list(p) for p in unexplained],
             parts=dict(zip(names, (words for _, words, _ in self.parts), strict=True)), probes=self.probes,
-            **({"sensitivity": self._sensitivity()} if self.moved or self.shaken else {}), not_done=self.not_done, least_margin=least[0], least_margin_strategy=least[1], budget_s=self.options.budget,
+            **({"sensitivity": self._sensitivity()} if self.moved or self.shaken else {}),
+            **({"advice": self.advice} if self.advice is not None else {}), not_done=self.not_done, least_margin=least[0], least_margin_strategy=least[1], budget_s=self.options.budget,
         )  # fmt: skip
         result.parts = [r for _, _, r in self.parts]
         for name, deck in zip(names, self.decks, strict=True):
@@ -596,6 +613,8 @@ class _Work:
         result.files |= self.faults
         self._arrays(facts, rows, result)
         result.answer = answer(statement, rows, reasons, result.results.sensitivity or [])
+        if self.advice is not None:
+            result.answer += f"\nStrengthening. {self.advice.statement}"
         result.warnings += [
             f"{row.label}: {row.status}: {row.reason}" for row in rows if row.status in ("failed", "left out")
         ]

@@ -1,6 +1,5 @@
 """What the verdicts hang on: sizes and properties moved one by one, margins anew, and the value at which a verdict turns."""
 
-import copy
 import itertools
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,14 +7,16 @@ from typing import Any
 
 import numpy as np
 
+from extrados import kinds
 from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.batches import stacked, sweep
+from extrados.analyses.changes import changed, lacking
 from extrados.analyses.context import Context
+from extrados.analyses.limit.asked import unit_at
 from extrados.analyses.sequence import run_one
 from extrados.decks.reader import DeckError, make_deck
 from extrados.results.limit import Tilt
 from extrados.results.statistics import OverLevels
-from extrados.schema.quantities import unit_of
 from extrados.views.building import Building
 
 #: How far each value is moved, as a share of it, by the last part of its key; others by ELSE
@@ -37,12 +38,13 @@ STRATEGIES = ("tilt", "rocking")
 
 @dataclass(frozen=True)
 class Varied:
-    """A key of the deck and its value as it is."""
+    """A key of the deck and its value as it is; whole: it takes whole numbers."""
 
     key: str
     base: float
     unit: str
     share: float
+    whole: bool = False
 
     def bounded(self, value: float) -> float:
         """A value of the key, brought within what the key may be."""
@@ -54,7 +56,8 @@ class Varied:
 class MarginsJob:
     """Member k: margins of limit analysis and of rocking with keys[k] at values[k]; NaN where there is none.
 
-    data: the deck without its analyses; levels: the factors at which rocking is tried; peak_g: the demand of statics.
+    data: the deck without its analyses; levels: the factors at which rocking is tried; peak_g: the demand of statics; without:
+    what of the deck tilt and fragility cannot take into account; wall: the side of an abutting wall, "" without one.
     """
 
     data: dict[str, Any]
@@ -65,6 +68,8 @@ class MarginsJob:
     count: int | None
     acceptable: float
     peak_g: float
+    without: tuple[tuple[str, ...], ...]
+    wall: str
 
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
         return stacked(lambda k: self._one(self.keys[k], self.values[k], threads), first, count)
@@ -74,16 +79,16 @@ class MarginsJob:
         if self.count is not None:
             levels["count"] = self.count
         margins = np.full(len(STRATEGIES), np.nan)
-        try:
-            deck = make_deck({**put(self.data, key, value), "analysis": [{"kind": "tilt"}, levels]}, Path(self.folder))
-        except DeckError:
-            return {"margin": margins}
-        context = Context(deck, threads)
-        for k, (options, building) in enumerate(zip(deck.analyses, deck.buildings, strict=True)):
-            r = run_one(context, options, building).results
+        data = changed(self.data, key, value)
+        for k, asked in enumerate(({"kind": "tilt"}, levels)):
+            try:
+                deck = make_deck({**lacking(data, self.without[k]), "analysis": [asked]}, Path(self.folder))
+            except DeckError:
+                continue
+            (options,), (building,) = deck.analyses, deck.buildings
+            r = run_one(Context(deck, threads), options, building).results
             if isinstance(r, Tilt):
-                wall = building.supports.abutting_wall
-                senses = {"left": (False,), "right": (True,)}.get(wall or "", (False, True))
+                senses = {"left": (False,), "right": (True,)}.get(self.wall, (False, True))
                 margins[k] = r.judged_towards(Demanded(self.peak_g), senses).ratio
             elif options.kind == "tilt" and (judged := r.judged(Demanded(self.peak_g))) is not None:  # of solids
                 margins[k] = np.nan if judged.ratio is None else judged.ratio
@@ -99,17 +104,6 @@ def margin_over(r: OverLevels, acceptable: float) -> float:
     if first is None:
         return float(r.levels[-1])
     return float(np.sqrt(r.levels[first] * r.levels[first - 1])) if first else float(r.levels[0])
-
-
-def put(data: dict[str, Any], key: str, value: Any) -> dict[str, Any]:
-    """A deck's data with another value at a dotted key; numbers name rows of an array of tables."""
-    data = copy.deepcopy(data)
-    *way, last = key.split(".")
-    place: Any = data
-    for part in way:
-        place = place[int(part)] if isinstance(place, list) else place.setdefault(part, {})
-    place[last] = value
-    return data
 
 
 def varied(building: Building, given: dict[str, float] | None, restitution: float | None) -> list[Varied]:
@@ -130,8 +124,9 @@ def varied(building: Building, given: dict[str, float] | None, restitution: floa
             base = restitution
         if isinstance(base, int | float) and not isinstance(base, bool) and base > 0.0:
             name = rest.rpartition(".")[2]
-            unit = unit_of(type(getattr(building, table)), rest) if "." not in rest else "m"
-            found.append(Varied(key, float(base), unit, share or SHARES.get(name, ELSE)))
+            held = getattr(building, table)
+            unit = unit_at(type(held[0] if isinstance(held, tuple) else held), rest)
+            found.append(Varied(key, float(base), unit, share or SHARES.get(name, ELSE), isinstance(base, int)))
     return found
 
 
@@ -180,9 +175,12 @@ class Margins:
         new = [w for w in dict.fromkeys(wanted) if w not in self.known]
         if not new:
             return
+        building = self.context.building
+        bears = [kinds.load(kinds.ANALYSES[kind].table).bears for kind in ("tilt", "fragility")]
+        without = tuple(tuple(what for what in building.special_keys if what not in able) for able in bears)
         job = MarginsJob(
             self.data, str(self.context.deck.folder), [k for k, _ in new], [v for _, v in new], self.levels, self.count,
-            self.acceptable, self.peak_g,
+            self.acceptable, self.peak_g, without, building.supports.abutting_wall or "",
         )  # fmt: skip
         found = sweep(self.context, "sensitivity", job, len(new), "sensitivity", slow=True).whole()
         self.known |= {w: found["margin"][i] for i, w in enumerate(new)}

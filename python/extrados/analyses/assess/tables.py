@@ -65,6 +65,10 @@ class Assess(Analysis):
         None,
         'keys that are moved in place of these, with the shares by which they are: { "structure.thickness" = 0.1 }',
     )
+    advise: bool = key(
+        True, "also seek the least tie and the least thickness with which the building carries the peak of the hazard as a sustained "
+        "load, if the building does not stand under all strategies"
+    )  # fmt: skip
     options: dict[Strategy, dict[str, Any]] = key(
         {},
         "keys of a strategy's own table, such as `dem = { joints.normal_stiffness = 2e10 }`; they go before the rules",

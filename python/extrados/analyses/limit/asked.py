@@ -53,7 +53,7 @@ def _is_whole(model: Table | tuple[Table, ...], table: str, path: str) -> bool:
     return "int" in text and "float" not in text
 
 
-def _unit(table: type[Table], path: str) -> str:
+def unit_at(table: type[Table], path: str) -> str:
     """Unit of a key, dotted for one of a table within the table, or of one in a list of tables."""
     place: Any = table
     *way, last = path.split(".")
@@ -65,16 +65,16 @@ def _unit(table: type[Table], path: str) -> str:
     return unit_of(place, last)
 
 
-def _number(value: float | str | None, unit: str, key: str) -> float:
-    """A value of a sweep in the unit of its key; Refused where its text is no quantity of it."""
+def number_of(value: float | str | None, unit: str, at: Key) -> float:
+    """A value in the unit of its key; Refused where its text is no quantity of it; `at` is its key."""
     if not isinstance(value, str):
         return float(value or 0.0)
     if not unit:
-        raise Refused(f"'{value}': the key that varies has no unit, give a number", ("analysis", key))
+        raise Refused(f"'{value}': the key that varies has no unit, give a number", at)
     try:
         return parse(value, "m/s^2" if unit == "g" else unit) / (GRAVITY if unit == "g" else 1.0)
     except ValueError as error:
-        raise Refused(str(error), ("analysis", key)) from None
+        raise Refused(str(error), at) from None
 
 
 def values_of(building: Building, options: Sweep) -> tuple[str, str, str, bool, np.ndarray]:
@@ -85,11 +85,11 @@ def values_of(building: Building, options: Sweep) -> tuple[str, str, str, bool, 
     if model == ():
         raise Refused("vary: the deck has no [[ties]]", VARY)
     whole = _is_whole(model, table, path)
-    unit = _unit(type(model[0] if isinstance(model, tuple) else model), path)
+    unit = unit_at(type(model[0] if isinstance(model, tuple) else model), path)
     if options.values:
-        values = np.array([_number(value, unit, "values") for value in options.values])
+        values = np.array([number_of(value, unit, ("analysis", "values")) for value in options.values])
     else:
-        start, stop = _number(options.start, unit, "start"), _number(options.stop, unit, "stop")
+        start, stop = (number_of(getattr(options, end), unit, ("analysis", end)) for end in ("start", "stop"))
         values = np.linspace(start, stop, options.count)
     return table, path, unit, whole, np.unique(np.round(values)) if whole else np.sort(values)
 

@@ -1,0 +1,69 @@
+"""What to do: the governing mechanism, the least interventions that cure it by limit analysis, and what governs then."""
+
+from extrados.analyses.assess.asking import Asker
+from extrados.analyses.context import Refused
+from extrados.results.assess import Advice
+from extrados.results.rocking import Rocking
+from extrados.results.strengthen import Intervention, Strengthen, size_told
+
+#: Outcomes of rocking in words
+OUTCOMES = {"no-hinging": "does not rock", "recovery": "rocks and recovers", "collapse": "collapses"}
+
+
+def advise(asker: Asker, peak_g: float, rocks: bool) -> Advice | str:
+    """Interventions that carry the peak of the hazard, with the outcome of rocking; why there are none, in words."""
+    dropped = tuple(what for what in asker.cannot_bear("tilt") if what != "[supports] abutting_wall")
+    if dropped:
+        return f"limit analysis, which sizes interventions, neglects {' and '.join(dropped)}"
+    try:
+        result, _ = asker.ask("strengthen", {"acceleration": f"{peak_g!r} g"})
+    except Refused as error:
+        return str(error)
+    r = result.results
+    if not isinstance(r, Strengthen):
+        return result.reason or "the analysis has no result"
+    rocking = {one.name: _rocks(asker, one) for one in r.interventions if one.meets_target} if rocks else {}
+    return Advice(
+        target_g=r.target, capacity_g=r.value_before, mechanism=r.mechanism_before, interventions=r.interventions,
+        rocking=rocking, statement=_statement(r, rocking),
+    )  # fmt: skip
+
+
+def _rocks(asker: Asker, one: Intervention) -> str:
+    """The outcome of rocking with an intervention, in words."""
+    if one.key is not None:
+        changes = {one.key: one.required_size}
+    else:
+        far = "ground" if "ground" in one.place else "end"
+        tie = {
+            "name": "strengthening",
+            "start": one.start_m,
+            far: one.end_m,
+            "yield_force": one.required_N,
+            "stiffness": one.stiffness_N_m,
+        }
+        works = {"tie": "tension", "strut": "compression"}.get(one.kind, "both")
+        changes = {"ties": [*asker.context.deck.data.get("ties", []), {**tie, "works_in": works}]}
+    try:
+        result, _ = asker.ask("rocking", {}, None, changes)
+    except Refused as error:
+        return f"gives no result: {error}"
+    if not isinstance(result.results, Rocking):
+        return f"gives no result: {result.reason or result.answer}"
+    return OUTCOMES.get(result.results.outcome, result.results.outcome)
+
+
+def _statement(r: Strengthen, rocking: dict[str, str]) -> str:
+    """The mechanism, the least interventions, and what governs then."""
+    now = "no capacity" if r.value_before is None else f"a capacity of {r.value_before:.3g} g"
+    said = [
+        f"The existing building has {now}; {r.mechanism_before}. To carry the peak of the hazard, {r.target:.3g} g, as a sustained load, alternatives are:"
+    ]
+    met = [one for one in r.interventions if one.meets_target]
+    for one in met:
+        then = f", then {one.next_mechanism}" if one.next_mechanism else ""
+        moves = f" (under the hazard the strengthened building {rocking[one.name]})" if one.name in rocking else ""
+        said.append(f"{one.name}, {size_told(one)}{then}{moves}.")
+    if not met:
+        said.append("no tie and no thickness that was considered suffices.")
+    return " ".join(said)

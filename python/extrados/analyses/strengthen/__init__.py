@@ -1,0 +1,1 @@
+"""Strengthening: the least intervention that meets a target."""

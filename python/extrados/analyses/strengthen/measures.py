@@ -1,0 +1,282 @@
+"""What a building is worth by the analysis that measures the target: limit analysis, or the verdict of any other."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+
+from extrados.analyses.changes import changed, lacking
+from extrados.analyses.conclude import MotionDemand
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.limit.common import collapse_beside, hinge_rows, limit_of
+from extrados.analyses.limit.variation import Signature, signature
+from extrados.analyses.sequence import run_one
+from extrados.analyses.strengthen.alternatives import TieAlternative
+from extrados.analyses.strengthen.tables import Strengthen
+from extrados.decks.reader import Deck, DeckError, make_deck
+from extrados.limit.answer import cannot_stand
+from extrados.limit.errors import Immovable, NoAnswer, NoEquilibrium
+from extrados.limit.finite_motion import finite_motion
+from extrados.limit.programme import LimitAnalysis, Mechanism
+from extrados.limit.strengthening import Point, least_forces, taken_per_force
+from extrados.model.errors import BadGeometry
+from extrados.model.geometry.assembly import Assembly
+from extrados.results.statistics import Ensemble
+from extrados.results.verdict import SelfWeight
+from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
+
+#: Hinges and sliding joints that are named
+MOST_NAMED = 6
+#: Keys of an analysis that limit analysis takes from this table
+OWN = ("friction_rule", "starts", "load", "material", "joints", "supports", "initial")
+Bound = Literal["exact", "upper"]
+
+
+@dataclass(frozen=True)
+class Worth:
+    """The value of a building in the quantity of the target: None without one, infinite where no mechanism exists.
+
+    mechanism: what governs, in words; shape: the same but for mirror images; bound: of the value; reason: why there is none; moved: the blocks and the poses into which
+    the mechanism carries them.
+    """
+
+    value: float | None
+    mechanism: str = ""
+    shape: Signature = ()
+    bound: Bound | None = None
+    reason: str = ""
+    by_sense: tuple[float, ...] = ()
+    moved: tuple[Assembly, np.ndarray] | None = None
+
+
+class Statics:
+    """Capacity by limit analysis [g]: the least over the senses of the load."""
+
+    higher_is_safer = True
+
+    def __init__(self, context: Context, options: Strengthen):
+        self.context, self.options = context, options
+        wall = context.building.supports.abutting_wall
+        given = {"both": (1, -1), "+x": (1,), "-x": (-1,)}[options.direction]
+        self.senses = tuple(s for s in given if {"left": -1, "right": 1}.get(wall or "") != s)
+        if not self.senses:
+            raise Refused(
+                f"direction: the abutting wall is on that side ({wall}): the building cannot collapse towards it",
+                ("analysis", "direction"),
+            )
+
+    def of(self, building: Building, picture: bool = False) -> Worth:
+        """The capacity and what governs; picture: also the mechanism carried on."""
+        try:
+            limit = limit_of(building, self.options)
+        except (BadGeometry, Refused) as error:
+            return Worth(None, reason=str(error))
+        values, told, bounds = [], [], []
+        mechanisms: list[Mechanism | None] = []
+        for sense in self.senses:
+            try:
+                state, mechanism = limit.collapse(sense)
+                value, bound = self._least(limit, mechanism, sense, sense * state.gamma)
+            except Immovable as error:
+                values.append(np.inf)
+                told.append(f"none to {_word(sense)}: {error}")
+                bounds.append("exact")
+                mechanisms.append(None)
+                continue
+            except NoEquilibrium:
+                return self._fallen(limit)
+            except NoAnswer as error:
+                return Worth(None, reason=str(error))
+            if value < 0.0:
+                return self._fallen(limit)
+            values.append(value)
+            told.append(mechanism_told(limit.assembly, mechanism, sense))
+            bounds.append(bound)
+            mechanisms.append(mechanism)
+        if len(self.senses) == 1 and not limit.stands():
+            return self._fallen(limit)
+        k = int(np.argmin(values))
+        chosen = mechanisms[k]
+        moved = (limit.assembly, finite_motion(limit.assembly, chosen)) if picture and chosen is not None else None
+        shape = () if chosen is None else unmirrored(signature(limit.assembly, chosen))
+        return Worth(float(values[k]), told[k], shape, bounds[k], by_sense=tuple(values), moved=moved)
+
+    def other_sense_told(self, building: Building) -> str:
+        """What the existing building carries in the sense that the deck leaves out."""
+        sense = -self.senses[0]
+        try:
+            carried = f"{sense * self.collapse(limit_of(building, self.options), sense)[0].gamma:.3g} g"
+        except Immovable:
+            carried = "any load"
+        except (NoEquilibrium, NoAnswer) as error:
+            carried = f"no load: {error}"
+        return (
+            f"The target is sought for a load to {_word(self.senses[0])} alone. To {_word(sense)} the existing building carries {carried}. "
+            'An earthquake acts both ways: take direction = "both", unless something else holds that side.'
+        )
+
+    def _least(self, limit: LimitAnalysis, mechanism: Mechanism, sense: int, value: float) -> tuple[float, Bound]:
+        """The capacity, and as a bound; where pressed joints slide the least state found without dilatancy."""
+        if not limit.dilating(mechanism):
+            return value, "exact"
+        try:
+            state, _ = collapse_beside(limit.without_dilatancy(), sense)
+        except (NoAnswer, NoEquilibrium):
+            return value, "upper"
+        return min(value, sense * state.gamma), "upper"
+
+    def _fallen(self, limit: LimitAnalysis) -> Worth:
+        """0 with the proof."""
+        try:
+            return Worth(0.0, "collapse under self-weight", bound="exact", reason=str(cannot_stand(limit)))
+        except NoAnswer as error:
+            return Worth(None, reason=str(error))
+
+    def of_data(self, data: dict[str, Any], picture: bool = False) -> Worth:
+        """The same of a deck's data."""
+        own = {k: v for k, v in self.options.model_dump(exclude_unset=True).items() if k in OWN and v is not None}
+        plain = lacking(data, [w for w in self.context.building.special_keys if w == "[supports] abutting_wall"])
+        try:
+            deck = make_deck({**plain, "analysis": [{"kind": "tilt", **own}]}, self.context.deck.folder)
+        except DeckError as error:
+            return Worth(None, reason="; ".join(error.complaints))
+        return self.of(deck.buildings[0], picture)
+
+    def point(self, one: TieAlternative, place: int, force: float) -> Point:
+        """A point of the capacity curve over the force of a tie, with dilatant friction; Immovable where nothing moves."""
+        building = self.context.building
+        limit = limit_of(one.having(building, place, force), self.options)
+        found = []
+        for sense in self.senses:
+            try:
+                state, mechanism = self.collapse(limit, sense)
+            except Immovable:
+                continue
+            tied = building.having(ties=(one.places[place],)).anchored()
+            slope = taken_per_force(limit.assembly, limit.loads, tied, mechanism, one.places[place].works_in)
+            found.append(Point(force, sense * state.gamma, slope, sense, mechanism))
+        if not found:
+            raise Immovable("no load of this kind causes collapse")
+        return min(found, key=lambda p: p.capacity)
+
+    @staticmethod
+    def collapse(limit: LimitAnalysis, sense: int) -> tuple[Any, Mechanism]:
+        """Collapse with dilatant friction, whose capacity is concave in the force of a tie."""
+        return limit.collapse(sense) if limit.associated else LimitAnalysis(
+            limit.assembly, limit.friction, strength=limit.strength, loads=limit.loads
+        ).collapse(sense)  # fmt: skip
+
+    def forces(self, ties: list[tuple[TieAlternative, int]], target: float) -> np.ndarray:
+        """Yield forces [N] of least sum with which the building carries the target both ways and stands at rest."""
+        building = self.context.building
+        added = tuple(one.places[place].model_copy(update={"yield_force": None}) for one, place in ties)
+        limit = limit_of(building.having(ties=(*building.ties, *added)), self.options, forces_only=True)
+        gammas = [sense * target for sense in self.senses] + ([] if len(self.senses) == 2 else [0.0])
+        most = np.array([one.most for one, _ in ties])
+        return least_forces([limit] * len(gammas), gammas, len(ties), np.ones(len(ties)), most)
+
+    @cached_property
+    def demand(self) -> float:
+        """To what safety factors refer [g]."""
+        if self.options.acceleration is not None:
+            return float(self.options.acceleration) / GRAVITY
+        return MotionDemand(self.context).peak_g or 0.0
+
+    @property
+    def target(self) -> float:
+        """The capacity that is required [g]."""
+        return self.demand * (self.options.safety_factor or 1.0)
+
+
+class Runs:
+    """The verdict of another analysis: its safety factor, or the probability of collapse of a fragility."""
+
+    def __init__(self, context: Context, options: Strengthen):
+        self.context, self.options = context, options
+        self.by_probability = options.by == "fragility"
+        self.higher_is_safer = not self.by_probability
+        self.demand = None if self.by_probability else 1.0
+        self.target = float(options.probability if self.by_probability else options.safety_factor or 1.0)
+
+    def of_data(self, data: dict[str, Any], keys: dict[str, Any] | None = None) -> Worth:
+        """The value of a deck's data; keys: of the analysis, in place of the options of the table."""
+        own = {k: v for k, v in self.options.model_dump(exclude_unset=True).items() if k in OWN[3:] and v is not None}
+        asked = {"kind": self.options.by, **own, **(self.options.options if keys is None else keys)}
+        try:
+            deck = make_deck({**data, "analysis": [asked]}, self.context.deck.folder)
+        except DeckError as error:
+            return Worth(None, reason="; ".join(error.complaints))
+        context = nested(self.context, deck)
+        result = run_one(context, deck.analyses[0], deck.buildings[0])
+        if result.status != "ok":
+            return Worth(None, reason=result.reason)
+        if isinstance(result.results, SelfWeight):
+            return Worth(1.0 if self.by_probability else 0.0, "collapse under self-weight")
+        if self.by_probability:
+            if not isinstance(result.results, Ensemble):
+                raise Refused("options: levels belong to the key levels of this table", ("analysis", "options"))
+            share = result.results.collapse_probability
+            return Worth(
+                share, "rocking until it overturns", reason="" if share is not None else "no motion could be run"
+            )
+        verdict = result.results.judged(MotionDemand(context))
+        if verdict is None or verdict.ratio is None:
+            told = "" if verdict is None else f": {verdict.statement}"
+            return Worth(None, reason=f"{self.options.by} gives no safety factor{told}")
+        return Worth(verdict.ratio, verdict.statement.rstrip("."))
+
+
+Measure = Statics | Runs
+
+
+def measure_of(context: Context, options: Strengthen) -> Measure:
+    """The measure of the target."""
+    return Statics(context, options) if options.by == "tilt" else Runs(context, options)
+
+
+def nested(context: Context, deck: Deck) -> Context:
+    """A context for a deck of a part."""
+    whole = context.deck
+    deck = replace(deck, sha256=whole.identity, path=whole.path)
+    return Context(deck, context.threads, motions=context.motions)
+
+
+def with_value(
+    context: Context, options: Strengthen, key: str, value: float
+) -> tuple[dict[str, Any], dict[str, Any] | None]:
+    """The deck's data with a key changed, and the options where the key is one of them."""
+    data = plain_data(context)
+    if key.startswith("options."):
+        return data, changed({"options": options.options}, key, value)["options"]
+    return changed(data, key, value), None
+
+
+def plain_data(context: Context) -> dict[str, Any]:
+    """The deck without its analyses and titles."""
+    return {k: v for k, v in context.deck.data.items() if k not in ("analysis", "title", "note")}
+
+
+def mechanism_told(assembly: Assembly, mechanism: Mechanism, sense: int) -> str:
+    """A mechanism in words: the sense of the load, hinges and sliding joints."""
+    hinges = [hinge.told() for hinge in hinge_rows(assembly, mechanism.hinges, mechanism.pivot)[:MOST_NAMED]]
+    more = len(mechanism.hinges) - MOST_NAMED
+    parts = []
+    if hinges:
+        parts.append(f"hinges at {', '.join(hinges)}{f' and {more} more' if more > 0 else ''}")
+    if mechanism.sliding:
+        names = [assembly.joint_names[j] for j in mechanism.sliding[:MOST_NAMED]]
+        more = len(mechanism.sliding) - MOST_NAMED
+        parts.append(f"sliding or parting of {', '.join(names)}{f' and {more} more' if more > 0 else ''}")
+    return f"load to {_word(sense)}: {'; '.join(parts)}"
+
+
+def unmirrored(found: Signature) -> Signature:
+    """A mechanism that is the same for its mirror image: hinges of a chain in the lesser order, left and right alike."""
+    sides = [(name.replace("left", "side").replace("right", "side"), min(marks, marks[::-1])) for name, marks in found]
+    return tuple(sorted(sides))
+
+
+def _word(sense: int) -> str:
+    return "+x" if sense > 0 else "-x"

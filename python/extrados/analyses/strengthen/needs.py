@@ -1,0 +1,95 @@
+"""What a strengthening needs of a deck: stones for limit analysis, places of ties, keys that are there, motions."""
+
+from collections.abc import Iterator
+from functools import partial
+
+from extrados import kinds
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.needs import Need
+from extrados.analyses.strengthen.alternatives import change_alternatives, tie_alternatives
+from extrados.analyses.strengthen.tables import Strengthen
+from extrados.motions.from_deck import is_set
+from extrados.views.building import Building
+
+#: What limit analysis takes into account; beside a wall it pushes away from it
+STATICS = ("[[ties]]", "[supports] abutting_wall")
+
+
+def needs(context: Context, options: Strengthen) -> Iterator[Need]:
+    """Steps that raise where the deck is wrong, see `analyses.needs`."""
+    building, motion = context.building, context.deck.motion
+    if options.by == "tilt":
+        for what, key in building.special_keys.items():
+            if what not in STATICS:
+                yield partial(_refuse, f'by = "tilt" neglects {what}: take by = "fragility", or leave it out', key)
+        yield building.blocks
+        yield building.refuse_weightless
+        yield building.friction
+        yield building.anchored
+        if options.safety_factor is not None:
+            yield partial(_refuse_without_peak, context)
+    else:
+        yield partial(_refuse_options, options)
+        yield partial(_refuse_unlimited, options)
+    if kinds.load(kinds.ANALYSES[options.by].table).needs_motion or options.fragility or options.assess:
+        yield partial(_refuse_still, context)
+    if (options.fragility or options.by == "fragility") and motion is not None and not is_set(motion):
+        yield partial(
+            _refuse, "a fragility needs many motions: a [motion] of kind suite, generated or compatible", ("motion",)
+        )
+    if building.structure is not None or options.ties:
+        yield lambda: tie_alternatives(building, options)
+    yield lambda: _refuse_idle(context, options)
+
+
+def _refuse(text: str, key: tuple[str | int, ...]) -> None:
+    raise Refused(text, key)
+
+
+def _refuse_without_peak(context: Context) -> None:
+    if context.deck.motion is None or is_set(context.deck.motion):
+        raise Refused(
+            'safety_factor with by = "tilt" refers to the peak of one motion: give a [motion] that is one, or an acceleration',
+            ("analysis", "safety_factor"),
+        )
+    context.refuse_motion()
+
+
+def _refuse_options(options: Strengthen) -> None:
+    """Refused where the options are no table of the analysis that measures."""
+    table = kinds.load(kinds.ANALYSES[options.by].table)
+    wrong = [name for name in options.options if name not in table.model_fields or name == "kind"]
+    if wrong:
+        raise Refused(f"options: {options.by} has no key '{wrong[0]}'", ("analysis", "options"))
+
+
+def _refuse_unlimited(options: Strengthen) -> None:
+    """Refused where ties are sought by runs without a range of forces, or over a range of places."""
+    for k, tie in enumerate(options.ties):
+        if tie.yield_force is None:
+            raise Refused(
+                f'by = "{options.by}" searches the force by runs: give yield_force, the greatest one considered',
+                ("analysis", "ties", k),
+            )
+        if tie.start_to is not None or tie.far_to is not None:
+            raise Refused(
+                'a range of places is for by = "tilt"; give one place, or one table for each', ("analysis", "ties", k)
+            )
+
+
+def _refuse_still(context: Context) -> None:
+    if context.deck.motion is None:
+        raise Refused("the deck has no [motion]", ("analysis",))
+    context.refuse_motion()
+
+
+def _refuse_idle(context: Context, options: Strengthen) -> None:
+    """Refused where the deck names no intervention and the kind of structure suggests none."""
+    building: Building = context.building
+    changes = change_alternatives(context, options)
+    if options.ties or options.changes:
+        return
+    if options.by != "tilt":
+        raise Refused(f'by = "{options.by}" needs ties or changes: the interventions to compare', ("analysis",))
+    if not changes and not tie_alternatives(building, options):
+        raise Refused("no intervention is known for this structure: give ties or changes", ("analysis",))

@@ -1,0 +1,191 @@
+"""Analysis kind of strengthening: strengthen."""
+
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, ValidationError, model_validator
+
+from extrados import kinds
+from extrados.analyses.limit.tables import LimitAnalysisTable
+from extrados.analyses.table import Analysis
+from extrados.model.ties import Point, Tie
+from extrados.schema.quantities import Acceleration, Length, Stress
+from extrados.schema.table import Table, key
+
+if TYPE_CHECKING:
+    from extrados.views.building import Building
+
+#: Analyses by which a target may be measured, besides limit analysis
+BY = ("tilt", "local-mechanism", "code-checks", "rocking", "fragility", "dem")
+
+
+class Anchorage(Table):
+    """Design strengths and sizes of a tie and its anchorage, partial and confidence factors included."""
+
+    steel_strength: Stress | None = key(None, "design yield strength of the bar; gives section and diameter", gt=0)
+    plate_width: Length | None = key(None, "width of the anchor plate", gt=0)
+    plate_height: Length | None = key(None, "height of the anchor plate", gt=0)
+    wall_thickness: Length | None = key(None, "thickness of the wall behind the plate", gt=0)
+    compressive_strength: Stress | None = key(
+        None, "design compressive strength of the masonry under the plate; gives bearing", gt=0
+    )
+    shear_strength: Stress | None = key(
+        None, "design shear strength of the masonry around the plate; gives punching", gt=0
+    )
+    bond_length: Length | None = key(None, "length of an injected anchor", gt=0)
+    bond_diameter: Length | None = key(None, "diameter of its borehole", gt=0)
+    bond_strength: Stress | None = key(None, "design bond strength along the borehole; gives pull-out", gt=0)
+
+    @model_validator(mode="after")
+    def _together(self) -> "Anchorage":
+        def whole(*names: str) -> bool:
+            given = [name for name in names if getattr(self, name) is not None]
+            if given and len(given) < len(names):
+                missing = ", ".join(name for name in names if name not in given)
+                raise ValueError(f"{' and '.join(given)} need {missing} too")
+            return bool(given)
+
+        plate = whole("plate_width", "plate_height")
+        if not plate and (self.compressive_strength is not None or self.shear_strength is not None):
+            raise ValueError("compressive_strength and shear_strength need plate_width and plate_height too")
+        if plate and self.compressive_strength is None and self.shear_strength is None:
+            raise ValueError("plate_width and plate_height need compressive_strength, shear_strength or both")
+        if (self.shear_strength is None) != (self.wall_thickness is None):
+            raise ValueError("shear_strength and wall_thickness go together: one of them is missing")
+        whole("bond_length", "bond_diameter", "bond_strength")
+        return self
+
+
+class TieOption(Tie):
+    """A tie, strut, anchor or bonded strip whose yield force is sought, at one place or between two.
+
+    Its keys are those of [[ties]]. `yield_force` is the greatest force considered; of a bonded strip, its debonding force.
+    """
+
+    start_to: Point | None = key(None, "second end of the range of `start`")
+    far_to: Point | None = key(None, "second end of the range of `end` or `ground`")
+    places: int = key(9, "number of places in the range", ge=2, le=200)
+    anchorage: Anchorage | None = key(None, "strengths of bar and anchorage, for their checks")
+
+    @model_validator(mode="after")
+    def _range(self) -> "TieOption":
+        if "places" in self.model_fields_set and self.start_to is None and self.far_to is None:
+            raise ValueError("places: needs start_to or far_to, the second end of the range")
+        if self.prestress:
+            raise ValueError("prestress: the force of the tie is sought; plastic collapse does not depend on prestress")
+        return self
+
+    def at(self, share: float) -> Tie:
+        """The tie at a share of its range, as [[ties]] would give it."""
+        keys = {name: getattr(self, name) for name in Tie.model_fields if getattr(self, name) is not None}
+
+        def between(one: list[float], two: list[float] | None) -> list[float]:
+            return one if two is None else [(1.0 - share) * a + share * b for a, b in zip(one, two, strict=True)]
+
+        far = "end" if self.ground is None else "ground"
+        keys |= {"start": between(self.start, self.start_to), far: between(self.far, self.far_to)}
+        return Tie.model_construct(**keys)
+
+
+class Change(Table):
+    """A number of the deck that is changed: a thickness, a buttress, a base width, a strength after injection, a damper."""
+
+    name: str | None = key(None, "name of the intervention; default the key", max_length=80)
+    vary: str = key(
+        about="key of the deck with its table, for instance structure.buttress_width, material.compressive_strength, "
+        "joints.friction or dampers.0.damping; `options.` begins a key of the options below"
+    )
+    start: float | str | None = key(None, "value without the intervention; default that of the deck")
+    stop: float | str = key(about='greatest change considered, in the unit of the key or as text such as "40 cm"')
+    count: int = key(9, "values between both at which the capacity is computed", ge=3, le=200)
+
+
+class Weights(Table):
+    """Cost of an intervention: length, force and volume, each with a weight in one common unit of cost."""
+
+    per_metre: float = key(1.0, "cost per m of tie", ge=0, le=1e9)
+    per_kilonewton: float = key(1.0, "cost per kN of tie force, with its anchorage", ge=0, le=1e9)
+    per_cubic_metre: float = key(10.0, "cost per m3 of masonry added, or injected", ge=0, le=1e9)
+
+
+class Strengthen(LimitAnalysisTable):
+    """The least intervention that meets a target: tie forces by linear programming, sizes and strengths by bracketing.
+
+    Without `ties` and `changes` it takes horizontal ties at several heights, and the sizes that make the kind of structure thick.
+    """
+
+    kind: Literal["strengthen"]
+    view: ClassVar = ""
+    bears: ClassVar = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
+    beside: ClassVar = ("supports.abutting_wall", "supports.stiffness")
+    starter_structure: ClassVar = "arch"
+    starter: ClassVar = {"acceleration": '"0.5 g"'}
+    acceleration: Acceleration | None = key(
+        None, "target: the constant horizontal acceleration that the building is to carry", gt=0
+    )
+    safety_factor: float | None = key(
+        None, "target: capacity over demand, of limit analysis on the peak of [motion]; by a code its safety index (zeta_E, %NBS / 100)",
+        gt=0, le=100,
+    )  # fmt: skip
+    probability: float | None = key(
+        None, 'target: probability of collapse over the motions of [motion]; needs by = "fragility"', gt=0, lt=1
+    )
+    by: Literal["tilt", "local-mechanism", "code-checks", "rocking", "fragility", "dem"] = key(
+        "tilt", "analysis by which the target is measured; with tilt the tie force is found by one linear programme"
+    )
+    options: dict[str, Any] = key({}, "keys of that analysis, as in its own table")
+    direction: Literal["both", "+x", "-x"] = key(
+        "both", "sense of the load, for limit analysis; beside an abutting wall away from it"
+    )
+    ties: list[TieOption] = key([], "ties whose force is sought: alternatives", max_length=50)
+    changes: list[Change] = key([], "numbers of the deck whose least change is sought: alternatives", max_length=50)
+    combine: bool = key(True, "also seek the combination of the given ties of least total force, by one linear programme")
+    weights: Weights = key(Weights(), "weights of the cost by which alternatives are compared")
+    fragility: bool = key(
+        False, "also compute the fragility before and after, of the cheapest intervention; needs a [motion]"
+    )
+    levels: list[Annotated[float, Field(gt=0, le=100)]] = key(
+        [0.25, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0], "factors on the motions of these curves", min_length=2, max_length=50
+    )
+    assess: bool = key(
+        False, "also assess the building and each strengthened one by every strategy that applies; needs a [motion]"
+    )
+    budget: float = key(20.0, "time limit of each of these assessments, in s", ge=5, le=1e6)
+
+    @model_validator(mode="after")
+    def _target(self) -> "Strengthen":
+        given = [n for n in ("acceleration", "safety_factor", "probability") if getattr(self, n) is not None]
+        if len(given) != 1:
+            raise ValueError("give one target: acceleration, safety_factor or probability")
+        if (self.by == "fragility") != (self.probability is not None):
+            raise ValueError('probability and by = "fragility" go together')
+        if self.acceleration is not None and self.by != "tilt":
+            raise ValueError(f'acceleration is a target of by = "tilt"; by = "{self.by}" takes a safety_factor')
+        if self.by == "tilt" and self.options:
+            raise ValueError('options: by = "tilt" takes its keys from this table')
+        if "levels" in self.model_fields_set and not self.fragility:
+            raise ValueError("levels: needs fragility = true")
+        if "budget" in self.model_fields_set and not self.assess:
+            raise ValueError("budget: needs assess = true")
+        return self
+
+    @property
+    def measuring(self) -> Analysis | None:
+        """The table of the analysis that measures the target; None for limit analysis, or where the options are wrong."""
+        if self.by == "tilt":
+            return None
+        try:
+            found: Analysis = kinds.table("analysis", self.by).model_validate({"kind": self.by, **self.options})
+        except ValidationError:
+            return None
+        return found
+
+    def rests_on(self, building: "Building") -> dict[str, str | None]:
+        """The properties on which the measure of the target rests."""
+        other = self.measuring
+        return super().rests_on(building) if other is None else other.rests_on(building)
+
+    def reckons_with(self, building: "Building") -> set[str]:
+        """Those that change the measure of the target, and what is asked of supports."""
+        other = self.measuring
+        found = super().reckons_with(building) if other is None else other.reckons_with(building)
+        return {*found, *self.beside}

@@ -1,0 +1,153 @@
+"""Results of strengthen: the interventions that meet a target, what each costs, and what governs then."""
+
+from typing import Literal
+
+from extrados.results.fields import ResultModel, fact, maybe
+from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judge
+
+
+class GoverningRange(ResultModel):
+    """A mechanism that governs over a range of the size of an intervention."""
+
+    first: float = fact("size at which it begins to govern, in the unit of the intervention")
+    last: float = fact("size at which another one begins to govern, or the curve ends")
+    capacity_first: float = fact("capacity at the first size, in the unit of the target")
+    capacity_last: float = fact("capacity at the last size, in the unit of the target")
+    direction: Literal["+x", "-x"] = fact("sense of the load")
+    mechanism: str = fact("the mechanism in words")
+
+
+class AnchorageCheck(ResultModel):
+    """One check of bar and anchorage under the required force."""
+
+    part: str = fact("bar, bearing of the plate, punching of the wall, or pull-out of the anchor")
+    capacity_N: float | None = fact("capacity with the given sizes; null where the size follows from the force", "N")
+    needed: float = fact("least size that carries the required force")
+    size: str = fact("which size, with its unit")
+
+
+class OtherVerdict(ResultModel):
+    """Verdict of one strategy before and after an intervention."""
+
+    strategy: str = fact("the strategy in words")
+    before: Outcome = fact("verdict on the existing building")
+    after: Outcome = fact("verdict on the strengthened building")
+    margin_before: float | None = fact("critical scale factor of the hazard before, or its lower end; null: not known")
+    margin_after: float | None = fact("the same after")
+
+
+class Intervention(ResultModel):
+    """One alternative: its least size, its cost, and what governs then."""
+
+    name: str = fact("its name")
+    kind: Literal["tie", "strut", "spring", "change"] = fact(
+        "tie, strut, spring that works both ways, or change of a key"
+    )
+    key: str = maybe("key of the deck that is changed")
+    place: str = fact("place, or value from which the key is changed")
+    start_m: list[float] = maybe("[x, y] of the first end of a tie", "m")
+    stiffness_N_m: float = maybe(
+        "axial stiffness EA/L that runs take for a tie: that of the deck, else of a steel bar of the least section",
+        "N/m",
+    )
+    end_m: list[float] = maybe("[x, y] of its other end", "m")
+    unit: str = fact("unit of the sizes")
+    meets_target: bool = fact("whether any size considered meets the target")
+    required_size: float | None = fact("least size that meets the target, in `unit`; null: none does")
+    required_N: float | None = maybe("least yield force of a tie; null: none suffices", "N")
+    greatest_capacity: float | None = fact(
+        "greatest value reached, in the unit of the target; null: no collapse mechanism is left, or nothing was reached"
+    )
+    capacity_after: float | None = fact("value with the required size, in the unit of the target")
+    safety_factor_after: float | None = fact("value with the required size over the demand")
+    next_mechanism: str = fact(
+        "mechanism that governs with the required size, or with the greatest one if none suffices"
+    )
+    bound: Literal["exact", "upper"] | None = fact(
+        "capacity after as a bound: exact; upper, where pressed joints slide (dilatant friction); null: an estimate by runs"
+    )
+    ranges: list[GoverningRange] = fact("mechanisms that govern as the size grows, in order")
+    length_m: float = fact("length of tie", "m")
+    force_N: float = fact("force of tie", "N")
+    volume_m3: float = fact("volume of masonry added or injected", "m^3")
+    cost: float | None = fact(
+        "cost by the weights of the deck; null where the target is not met, or no weight is of such a change"
+    )
+    anchorage: list[AnchorageCheck] = maybe("bar and anchorage under the required force")
+    adverse: list[str] = fact("adverse effects")
+    verdicts: list[OtherVerdict] = maybe("verdicts of all strategies before and after")
+    reason: str = fact("why it does not suffice, or has no result; empty otherwise")
+
+
+class CombinedTie(ResultModel):
+    """Share of one tie in the combination of least total force."""
+
+    name: str = fact("its name")
+    place: str = fact("place")
+    force_N: float = fact("its yield force", "N")
+
+
+class FragilityPair(ResultModel):
+    """Probabilities of collapse before and after an intervention under the same motions."""
+
+    name: str = fact("the intervention")
+    levels: list[float] = fact("factors on the motions")
+    motions: int = fact("number of motions")
+    before: list[float | None] = fact("share of the motions that collapse the existing building")
+    before_low: list[float] = fact("lower end of its 95 % score interval", source="Wilson 1927")
+    before_high: list[float] = fact("upper end", source="Wilson 1927")
+    after: list[float | None] = fact("share of the motions that collapse the strengthened building")
+    after_low: list[float] = fact("lower end of its 95 % score interval", source="Wilson 1927")
+    after_high: list[float] = fact("upper end", source="Wilson 1927")
+
+
+class Strengthen(KindResults):
+    """strengthen: alternatives that meet a target, side by side."""
+
+    by: str = fact("analysis by which the target is measured")
+    quantity: str = fact("quantity of the target in words")
+    unit: str = fact("unit of target and values; empty of a factor or a probability")
+    target: float = fact("the target, in `unit`")
+    demand: float | None = fact("demand to which safety factors refer, in `unit`; null: none")
+    direction: Literal["both", "+x", "-x"] = fact("sense of the load of limit analysis")
+    value_before: float | None = fact("value of the existing building; null: no result")
+    safety_factor_before: float | None = fact("value of the existing building over the demand")
+    met_before: bool = fact("whether the existing building meets the target")
+    mechanism_before: str = fact("governing mechanism of the existing building")
+    interventions: list[Intervention] = fact("the alternatives, the cheapest that meets the target first")
+    combination: list[CombinedTie] = maybe("combination of ties of least total force, if more than one tie carries a force")
+    combination_cost: float = maybe("its cost")
+    fragility: FragilityPair = maybe("fragility before and after, of the cheapest intervention")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The existing building against the target; a target is no demand, so that no outcome follows."""
+        return judge(self.statement(), self.target, self.value_before, self.unit, "not-applicable")
+
+    @property
+    def best(self) -> Intervention | None:
+        """The cheapest alternative that meets the target."""
+        return next((one for one in self.interventions if one.meets_target), None)
+
+    def statement(self) -> str:
+        """The conclusion in two sentences."""
+        unit = f" {self.unit}" if self.unit else ""
+        now = "no value" if self.value_before is None else f"{self.value_before:.3g}{unit}"
+        text = f"{self.quantity} of the existing building: {now}; target {self.target:.3g}{unit}."
+        if self.met_before:
+            return f"{text} The target is met without an intervention."
+        best = self.best
+        if best is None:
+            return f"{text} No intervention considered meets the target."
+        word = "Intervention" if best.cost is None else "Cheapest intervention"
+        return f"{text} {word} that meets it: {best.name}, {size_told(best)}."
+
+
+def size_told(one: Intervention) -> str:
+    """The required size of an intervention in words."""
+    size = one.required_size
+    if size is None:
+        return "no size suffices"
+    if one.required_N is not None:
+        return f"{size / 1e3:.3g} kN {one.place}"
+    scale, unit = {"Pa": (1e6, "MPa"), "N": (1e3, "kN")}.get(one.unit, (1.0, one.unit))
+    return f"{one.key} = {size / scale:.3g} {unit}".rstrip()

@@ -1,0 +1,356 @@
+"""Strengthening: tie forces by the linear programme, held against hand calculation, bisection over runs and other programmes."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from extrados.analyses.context import Context
+from extrados.analyses.limit.common import limit_of
+from extrados.analyses.sequence import run_analyses, run_one
+from extrados.analyses.strengthen.alternatives import TieAlternative, tie_alternatives
+from extrados.analyses.strengthen.anchorage import check_anchorage
+from extrados.analyses.strengthen.measures import Statics
+from extrados.analyses.strengthen.tables import Anchorage
+from extrados.decks.reader import make_deck
+from extrados.limit.errors import NoEquilibrium
+from extrados.limit.strengthening import concave_curve, pieces_of
+from extrados.results.strengthen import Strengthen
+
+G = 9.80665
+WALL = {"kind": "block", "width": 0.6, "height": 3.0, "depth": 1.0}
+ANCHOR = {"name": "anchor", "start": [-0.3, 2.5], "start_stone": "block", "ground": [-2.3, 2.5]}
+NAVE = {
+    "structure": {"kind": "vault", "preset": "dejong-a"}, "joints": {"friction": "no-sliding"},
+    "tie": {"start": [-9.0, 4.0], "end": [9.0, 4.0]}, "target": 0.2,
+}  # fmt: skip
+ARCH = {
+    "structure": {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7},
+    "joints": {"friction": "no-sliding"}, "tie": {"start": [-6.0, 8.0], "end": [6.0, 8.0], "start_stone": "voussoir 2",
+    "end_stone": "voussoir 6"}, "target": 0.42,
+}  # fmt: skip
+CRUSHING = {**NAVE, "material": {"compressive_strength": "2 MPa"}, "target": 0.15}
+COLUMN = {
+    "structure": {"kind": "column", "width": 0.8, "height": 4.0, "drums": 5}, "joints": {"friction": 0.8},
+    "tie": {"start": [-0.39, 3.5], "ground": [-3.0, 3.5], "works_in": "both"}, "target": 0.4,
+}  # fmt: skip
+SLIDING = {
+    "structure": {"kind": "block", "width": 0.8, "height": 1.2, "depth": 1.0}, "joints": {"friction": 0.3},
+    "tie": {"start": [-0.39, 0.3], "start_stone": "block", "ground": [-3.0, 0.3], "works_in": "both"}, "target": 0.45,
+}  # fmt: skip
+BUILDINGS = {"nave": NAVE, "arch": ARCH, "crushing": CRUSHING, "column": COLUMN, "sliding": SLIDING}
+
+
+def run(data: dict[str, Any]) -> Any:
+    """The result of the one analysis of a deck."""
+    (result,) = run_analyses(Context(make_deck(data, Path.cwd()), threads=1))
+    return result
+
+
+def deck_of(building: dict[str, Any], **keys: Any) -> Any:
+    tables = {k: building[k] for k in ("structure", "joints", "material") if k in building}
+    asked = {"kind": "strengthen", "acceleration": f"{building['target']} g", "ties": [building["tie"]], **keys}
+    return make_deck({**tables, "analysis": [asked]}, Path.cwd())
+
+
+def strengthened(building: dict[str, Any], **keys: Any) -> Strengthen:
+    deck = deck_of(building, **keys)
+    result = run_one(Context(deck, 1), deck.analyses[0], deck.buildings[0])
+    assert result.status == "ok", result.reason
+    assert isinstance(result.results, Strengthen)
+    return result.results
+
+
+def tilt_of(building: dict[str, Any], force: float) -> Any:
+    """What `tilt` says of the building with a tie of a given yield force, both ways [g]."""
+    tables = {k: building[k] for k in ("structure", "joints", "material") if k in building}
+    deck = {**tables, "ties": [{**building["tie"], "yield_force": force}], "analysis": [{"kind": "tilt"}]}
+    return run(deck)
+
+
+def capacity_of(building: dict[str, Any], force: float) -> float:
+    r = tilt_of(building, force)
+    least = [r["collapse_acceleration_g"], r["collapse_acceleration_opposite_g"]]
+    for end in ("", "_opposite"):
+        if (lower := r.results.get(f"collapse_acceleration_non_associated{end}_g")) is not None:
+            least.append(lower)
+    return min(least)
+
+
+def test_an_anchor_is_sized_as_by_moments_about_the_toe():
+    r = run({
+        "structure": WALL, "material": {"density": 1800.0},
+        "analysis": [{"kind": "strengthen", "acceleration": "0.3 g", "direction": "+x", "ties": [ANCHOR]}],
+    }).results  # fmt: skip
+    weight = 1800.0 * 0.6 * 3.0 * G
+    (anchor,) = r.interventions
+    assert r.value_before == pytest.approx(0.2) and not r.met_before
+    assert anchor.required_N == pytest.approx(weight * (0.3 * 1.5 - 0.3) / 2.5, rel=1e-6)
+    assert anchor.capacity_after == pytest.approx(0.3, rel=1e-6) and anchor.capacity_after >= 0.3
+    # overturning, then the same about the toe that the tie presses down: the slope is the arm of the tie over that of the weight
+    first = anchor.ranges[0]
+    slope = (first.capacity_last - first.capacity_first) / (first.last - first.first)
+    assert slope == pytest.approx(2.5 / (weight * 1.5), rel=1e-6)
+
+
+def test_a_tie_without_which_an_arch_slides_apart_carries_its_least_thrust():
+    data = {
+        "structure": {"kind": "arch", "radius": 5.0, "thickness": 1.0, "embrace": 180.0, "voussoirs": 24},
+        "joints": {"friction": "no-sliding", "types": [{"joints": ["joint 0"], "friction": 0.0}]},
+        "analysis": [{"kind": "strengthen", "acceleration": "0.05 g", "ties": [
+            {"start": [-5.0, 0.0], "end": [5.0, 0.0], "start_stone": "voussoir 1", "end_stone": "voussoir 24"}]}],
+    }  # fmt: skip
+    deck = make_deck(data, Path.cwd())
+    statics = Statics(Context(deck, 1), deck.analyses[0])
+    (tie,) = tie_alternatives(deck.building, deck.analyses[0])
+    # by moments of the stones, as in cases/limit/tied-arch
+    assert statics.forces([(tie, 0)], 0.0)[0] == pytest.approx(47455.59344928777, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", BUILDINGS)
+def test_the_programme_agrees_with_bisection_over_tilt(name):
+    building = BUILDINGS[name]
+    (one,) = strengthened(building).interventions
+    assert one.meets_target and one.required_N is not None
+    low, high = 0.0, 4.0 * one.required_N
+    assert capacity_of(building, high) > building["target"] > capacity_of(building, 1e-3)
+    while high - low > 1e-6 * one.required_N:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if capacity_of(building, middle) >= building["target"] else (middle, high)
+    assert one.required_N == pytest.approx(high, rel=1e-4)
+    assert one.bound == ("upper" if name == "sliding" else "exact")
+    if name == "sliding":  # the tie takes what friction leaves of the load
+        assert one.required_N == pytest.approx((0.45 - 0.3) * 2000.0 * 0.8 * 1.2 * G, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", BUILDINGS)
+def test_the_curve_is_that_of_tilt_at_any_force(name):
+    building = BUILDINGS[name]
+    deck = deck_of(building)
+    statics = Statics(Context(deck, 1), deck.analyses[0])
+    (tie,) = tie_alternatives(deck.building, deck.analyses[0])
+    most = 2.0 * float(statics.forces([(tie, 0)], building["target"])[0])
+    pieces = pieces_of(concave_curve(lambda force: statics.point(tie, 0, force), 0.0, most))
+    assert pieces[0].first == 0.0 and pieces[-1].last == pytest.approx(most)
+    ends = [p.first for p in pieces] + [most]
+    values = [p.low for p in pieces] + [pieces[-1].high]
+    slopes = [p.point.slope for p in pieces]
+    assert slopes == sorted(slopes, reverse=True)
+    smooth = 2e-3 if name == "crushing" else 1e-6  # crushing bends the curve: tangents lie above it
+    for force in np.random.default_rng(5).uniform(1e-3, 1.0, 12) * most:
+        assert np.interp(force, ends, values) == pytest.approx(statics.point(tie, 0, force).capacity, rel=smooth)
+
+
+def test_one_programme_serves_several_ties_and_both_senses():
+    low = {**NAVE["tie"], "name": "low", "start": [-9.0, 0.0], "end": [9.0, 0.0]}
+    high = {**NAVE["tie"], "name": "high"}
+    deck = deck_of(NAVE, ties=[low, high])
+    options = deck.analyses[0]
+    statics = Statics(Context(deck, 1), options)
+    ties = tie_alternatives(deck.building, options)
+    alone = [float(statics.forces([(tie, 0)], 0.2)[0]) for tie in ties]
+    both = statics.forces([(tie, 0) for tie in ties], 0.2)
+    assert both.sum() <= min(alone) * (1.0 + 1e-9)
+    added = tuple(
+        tie.places[0].model_copy(update={"yield_force": max(float(force), 1e-6), "name": tie.name})
+        for tie, force in zip(ties, both, strict=True)
+    )
+    limit = limit_of(deck.building.having(ties=added), options)
+    assert min(limit.collapse(1)[0].gamma, -limit.collapse(-1)[0].gamma) == pytest.approx(0.2, rel=1e-6)
+
+
+def test_what_no_tie_cures_says_so_with_the_greatest_capacity():
+    r = strengthened({**NAVE, "target": 0.5})
+    (one,) = r.interventions
+    assert not one.meets_target and one.required_N is None and one.cost is None
+    assert 0.2 < (one.greatest_capacity or 0.0) < 0.5 and one.next_mechanism and one.reason
+    assert "No intervention" in r.statement()
+    deck = deck_of(NAVE)
+    statics = Statics(Context(deck, 1), deck.analyses[0])
+    (tie,) = tie_alternatives(deck.building, deck.analyses[0])
+    with pytest.raises(NoEquilibrium):
+        statics.forces([(tie, 0)], 0.5)
+
+
+def test_a_range_of_places_finds_the_cheapest_one():
+    anchor = {
+        **ANCHOR,
+        "start": [-0.3, 1.0],
+        "ground": [-2.3, 1.0],
+        "start_to": [-0.3, 2.8],
+        "far_to": [-2.3, 2.8],
+        "places": 7,
+    }
+    r = run({
+        "structure": WALL, "analysis": [{"kind": "strengthen", "acceleration": "0.3 g", "direction": "+x", "ties": [anchor]}],
+    })  # fmt: skip
+    (one,) = r.results.interventions
+    assert one.start_m == pytest.approx([-0.3, 2.8])
+    heights, forces = r.arrays["range"].data[:, 1], r.arrays["range"].data[:, 2]
+    assert forces * heights == pytest.approx(np.full(7, forces[0] * heights[0]), rel=1e-6)
+
+
+def test_a_width_is_bracketed_to_its_closed_form():
+    r = run({
+        "structure": WALL, "analysis": [{"kind": "strengthen", "acceleration": "0.3 g", "changes": [
+            {"vary": "structure.width", "stop": "1.5 m"}]}],
+    }).results  # fmt: skip
+    (one,) = r.interventions
+    assert one.required_size == pytest.approx(0.9, rel=1e-4) and (one.required_size or 0.0) >= 0.9
+    assert one.volume_m3 == pytest.approx(3.0 * ((one.required_size or 0.0) - 0.6), rel=1e-6)
+    assert any("weight grows" in text for text in one.adverse)
+
+
+def test_without_ties_and_changes_usual_ones_are_taken():
+    r = run({
+        "structure": NAVE["structure"], "joints": NAVE["joints"], "analysis": [{"kind": "strengthen", "acceleration": "0.2 g"}],
+    }).results  # fmt: skip
+    assert {one.name for one in r.interventions} == {"horizontal tie", "greater thickness", "greater buttress width"}
+    wall = run({"structure": WALL, "analysis": [{"kind": "strengthen", "acceleration": "0.3 g"}]}).results
+    assert {one.name for one in wall.interventions} == {"anchor to the structure behind", "greater width"}
+    assert wall.best is not None and wall.best.kind == "spring"
+
+
+def test_beside_a_wall_the_load_acts_away_from_it():
+    r = run({
+        "structure": WALL, "supports": {"abutting_wall": "left"},
+        "analysis": [{"kind": "strengthen", "acceleration": "0.3 g", "ties": [ANCHOR]}],
+    }).results  # fmt: skip
+    assert r.direction == "+x" and r.interventions[0].meets_target
+
+
+def test_one_sense_alone_is_warned_of():
+    asked = {"kind": "strengthen", "acceleration": "0.3 g", "direction": "+x", "ties": [ANCHOR]}
+    warnings = run({"structure": WALL, "analysis": [asked]}).warnings
+    assert any("To -x the existing building carries 0.2 g" in text for text in warnings)
+
+
+def test_the_anchorage_follows_by_hand():
+    # a bar of 24 mm, plate 300 x 300 mm on a wall of 400 mm, design strengths as in the example of the reference
+    given = Anchorage(
+        steel_strength=235e6 / 1.05, plate_width=0.3, plate_height=0.3, wall_thickness=0.4, compressive_strength=2.6e6 / 2.7,
+        shear_strength=88148.148, bond_length=0.5, bond_diameter=0.04, bond_strength=0.3e6,
+    )  # fmt: skip
+    bar, bearing, punching, pull = check_anchorage(101.2e3, given)
+    assert bar.needed == pytest.approx(0.024, rel=1e-3)
+    assert bearing.capacity_N == pytest.approx(86.67e3, rel=1e-3)
+    assert punching.capacity_N == pytest.approx(98.73e3, rel=1e-3)
+    assert pull.capacity_N == pytest.approx(0.3e6 * np.pi * 0.04 * 0.5)
+    wider = Anchorage(
+        plate_width=bearing.needed, plate_height=bearing.needed, compressive_strength=2.6e6 / 2.7,
+        wall_thickness=0.4, shear_strength=88148.148,
+    )  # fmt: skip
+    assert check_anchorage(101.2e3, wider)[0].capacity_N == pytest.approx(101.2e3)
+    enough = wider.model_copy(update={"plate_width": punching.needed, "plate_height": punching.needed})
+    assert check_anchorage(101.2e3, enough)[1].capacity_N == pytest.approx(101.2e3)
+
+
+def test_a_weak_anchorage_is_an_adverse_effect():
+    weak = {"plate_width": "10 cm", "plate_height": "10 cm", "compressive_strength": "0.05 MPa"}
+    asked = {"kind": "strengthen", "acceleration": "0.3 g", "direction": "+x", "ties": [{**ANCHOR, "anchorage": weak}]}
+    (one,) = run({"structure": WALL, "analysis": [asked]}).results.interventions
+    assert any("bearing of the plate carries" in text for text in one.adverse)
+
+
+FACADE = {
+    "mechanism": "facade", "height": 6.0, "thickness": 0.6, "width": 1.0, "ties": [{"height": 5.5, "force": 1.0}],
+    "spectrum": {"code": "EN1998-1", "ground": "B", "acceleration": "0.25 g"},
+}  # fmt: skip
+
+
+def test_a_safety_index_of_a_code_is_met_where_the_code_itself_says_so():
+    asked = {
+        "kind": "strengthen", "by": "local-mechanism", "safety_factor": 1.0, "options": FACADE,
+        "changes": [{"vary": "options.ties.0.force", "stop": "40 kN"}, {"vary": "options.thickness", "stop": "1.5 m"}],
+    }  # fmt: skip
+    r = run({"analysis": [asked]}).results
+    assert all(one.meets_target for one in r.interventions) and not r.met_before
+    for one in r.interventions:
+        for size, stands in ((one.required_size, True), (0.97 * (one.required_size or 0.0), False)):
+            keys = (
+                {**FACADE, "thickness": size}
+                if one.key == "options.thickness"
+                else {**FACADE, "ties": [{"height": 5.5, "force": size}]}
+            )
+            verdict = run({"analysis": [{"kind": "local-mechanism", **keys}]}).verdict
+            assert verdict is not None and verdict.ratio is not None and (verdict.ratio >= 1.0) is stands
+
+
+STATUE = {
+    "structure": {"kind": "block", "width": 0.5, "height": 2.0, "depth": 0.5}, "material": {"density": 2500.0},
+    "motion": {"kind": "generated", "mmi": 9, "duration": 10.0, "seed": 7},
+}  # fmt: skip
+
+
+def test_a_probability_is_met_under_the_same_motions():
+    tie = {
+        "start": [-0.25, 1.5],
+        "start_stone": "block",
+        "ground": [-1.25, 1.5],
+        "works_in": "both",
+        "stiffness": "1 MN/m",
+    }
+    asked = {
+        "kind": "strengthen", "by": "fragility", "probability": 0.1, "options": {"count": 30}, "fragility": True,
+        "levels": [0.5, 1.0, 1.5], "ties": [{**tie, "yield_force": "2 kN"}],
+    }  # fmt: skip
+    r = run({**STATUE, "analysis": [asked]}).results
+    (one,) = r.interventions
+    assert r.value_before is not None and r.value_before > 0.3 and one.meets_target
+    ties = [{**tie, "yield_force": one.required_N}]
+    again = run({**STATUE, "ties": ties, "analysis": [{"kind": "fragility", "count": 30}]}).results
+    assert again.collapse_probability == one.capacity_after and one.capacity_after <= 0.1
+    pair = r.fragility
+    assert pair is not None and all(a <= b for a, b in zip(pair.after, pair.before, strict=True))
+    assert all(lo <= p <= hi for lo, p, hi in zip(pair.after_low, pair.after, pair.after_high, strict=True))
+
+
+def test_a_tie_of_a_range_passes_over_places_between_stones():
+    column = {
+        **COLUMN["tie"],
+        "start": [-0.39, 1.6],
+        "start_to": [-0.39, 3.2],
+        "ground": [-3.0, 1.6],
+        "far_to": [-3.0, 3.2],
+        "places": 4,
+    }
+    deck = deck_of(COLUMN, ties=[column])
+    (one,) = tie_alternatives(deck.building, deck.analyses[0])
+    assert isinstance(one, TieAlternative) and len(one.places) == 2  # 1.6 and 3.2 m are joints
+
+
+@pytest.mark.parametrize(
+    ("keys", "said"),
+    [
+        ({}, "give one target"),
+        ({"acceleration": "0.3 g", "safety_factor": 1.0}, "give one target"),
+        ({"probability": 0.1}, "go together"),
+        ({"acceleration": "0.3 g", "by": "rocking"}, "takes a safety_factor"),
+        ({"safety_factor": 1.0}, "refers to the peak of one motion"),
+        ({"acceleration": "0.3 g", "assess": True}, "the deck has no [motion]"),
+        ({"acceleration": "0.3 g", "changes": [{"vary": "structure.heigth", "stop": 2.0}]}, "no such number"),
+        ({"acceleration": "0.3 g", "changes": [{"vary": "structure.width", "stop": "2 kN"}]}, "kN"),
+        ({"acceleration": "0.3 g", "ties": [{**ANCHOR, "start_stone": "stone"}]}, "no stone 'stone'"),
+        ({"acceleration": "0.3 g", "ties": [{**ANCHOR, "prestress": "1 kN"}]}, "does not depend on prestress"),
+        ({"acceleration": "0.3 g", "ties": [{**ANCHOR, "places": 4}]}, "second end of the range"),
+        (
+            {"by": "local-mechanism", "safety_factor": 1.0, "options": {"mechanisms": "facade"}},
+            "has no key 'mechanisms'",
+        ),
+        ({"by": "code-checks", "safety_factor": 1.0}, "needs ties or changes"),
+        ({"by": "code-checks", "safety_factor": 1.0, "ties": [ANCHOR]}, "give yield_force"),
+        ({"acceleration": "0.3 g", "levels": [1.0, 2.0]}, "needs fragility"),
+        ({"acceleration": "0.3 g", "ties": [{**ANCHOR, "anchorage": {"plate_width": 0.3}}]}, "plate_height"),
+    ],
+)
+def test_wrong_decks_are_refused_with_the_reason(keys, said):
+    from extrados.decks.reader import DeckError
+
+    try:
+        result = run({"structure": WALL, "analysis": [{"kind": "strengthen", **keys}]})
+        text = f"{result.status}: {result.reason}"
+        assert result.status == "refused", text
+    except DeckError as error:
+        text = " ".join(error.complaints)
+    assert said in text
