@@ -141,6 +141,8 @@ def code_spectrum(model: CodeSpectrum, folder: Path, damping: float = 0.05) -> c
             )
         case "ASCE7":
             return code_spectra.asce7(model.sds, model.sd1, model.long_period)  # type: ignore[arg-type]
+        case "NZS1170":
+            return code_spectra.nzs1170(model.ground, model.hazard_factor, model.return_factor, damping)  # type: ignore[arg-type]
     return code_spectra.read_table(model.table, folder)  # type: ignore[arg-type]
 
 
