@@ -76,7 +76,8 @@ def _plain() -> dict[str, tuple[str, Any]]:
     from extrados.decks.reader import PROPERTIES
     from extrados.schema.code import Code
 
-    return {model.__name__: (section, model) for section, model in {**PROPERTIES, **PLURAL, "code": Code}.items()}
+    tables: dict[str, Any] = {**PROPERTIES, **PLURAL, "code": Code}
+    return {model.__name__: (section, model) for section, model in tables.items()}
 
 
 def maker(name: str) -> Maker:
