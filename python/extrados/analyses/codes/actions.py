@@ -15,6 +15,7 @@ from extrados.motions.motion import Motion
 from extrados.motions.tables import Compatible
 from extrados.schema.code import Code
 from extrados.schema.spectrum import CodeSpectrum
+from extrados.schema.table import FloorBelow
 
 #: Pseudo-acceleration [m/s^2] over period [s] and damping ratio
 Spectrum = Callable[[float, float], float]
@@ -34,6 +35,11 @@ class Action:
     peak: float | None
     years: float | None = None
     of_motion: bool = False
+
+
+def floor_below(context: Context) -> FloorBelow | None:
+    """The floor on which the deck's motion stands; None for the ground."""
+    return None if context.deck.motion is None else context.deck.motion.floor
 
 
 def code_of(context: Context) -> Code:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.codes import ntc, research
-from extrados.analyses.codes.actions import Action, actions, apart, code_of, dated, sampled
+from extrados.analyses.codes.actions import Action, actions, apart, code_of, dated, floor_below, sampled
 from extrados.analyses.codes.code_rules import Line, table
 from extrados.analyses.codes.parts import Part, asce41, en1998, nzsee
 from extrados.analyses.codes.piers import Pier, asce41_piers, en1998_piers, ntc_piers, nzsee_piers
@@ -19,6 +19,7 @@ from extrados.model.structures.block import BlockAssembly
 from extrados.results import codes as out
 from extrados.results.model import Array, Result
 from extrados.schema.constants import GRAVITY
+from extrados.schema.table import FloorBelow
 
 #: q of the demand on a pier of masonry without reinforcement; of ASCE 41 m, which is 1 where Table 11-3 is not used
 BEHAVIOUR = {"NTC": 2.0, "EN1998": 1.5}
@@ -111,7 +112,9 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
     alpha = float(model.alpha.min())
     # one body: all its mass takes part (e* = 1); d* is the displacement of the centre of mass
     alpha0 = float(np.tan(alpha))
-    part = Part("block", alpha0, height, width, 0.0, None)
+    below = floor_below(context)
+    place = (0.0, None) if below is None else (below.height, below.building_height)
+    part = Part("block", alpha0, height, width, *place)
     lines: list[Line] = []
     for action in asked or [main]:
         match code.jurisdiction:
@@ -122,7 +125,7 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
                     alpha0 * GRAVITY / factor,
                     f"alpha_0 {alpha0:.4g}, e* 1",
                 )
-                rows = ntc.checks(found, q, action.state, action.peak, action.spectrum, ntc.Place())
+                rows = ntc.checks(found, q, action.state, action.peak, action.spectrum, _placed(action, below))
             case "EN1998":
                 rows = en1998(part, action.peak, action.state)
             case "ASCE41":
@@ -139,6 +142,17 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
                 rows = []
         lines += dated(rows, action)
     return lines + _formulas(context, options, main, (width, height), pgv), beside
+
+
+def _placed(action: Action, below: FloorBelow | None) -> ntc.Place:
+    """Where the block stands: on the ground, or on the floor of the deck's motion."""
+    if below is None or action.of_motion:
+        return ntc.Place(shaken=below is not None)
+    floor = None
+    if action.spectrum is not None:
+        period, damping = below.building_period, below.building_damping
+        floor = ntc.floor(action.spectrum, below.height, below.building_height, below.storeys, period, damping)
+    return ntc.Place(True, floor)
 
 
 def _formulas(

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from extrados.analyses.codes import ntc
-from extrados.analyses.codes.actions import Action, Spectrum, actions, apart, code_of, dated
+from extrados.analyses.codes.actions import Action, Spectrum, actions, apart, code_of, dated, floor_below
 from extrados.analyses.codes.bending import Bending
 from extrados.analyses.codes.code_rules import Line, table
 from extrados.analyses.codes.kinematics import Capacity, NoMechanism, Overturning, capacity, in_chain, spectral
@@ -31,6 +31,7 @@ from extrados.results.limit import DILATANT, SAME
 from extrados.results.model import Array, Result, TableData
 from extrados.results.verdict import Bound
 from extrados.schema.constants import GRAVITY
+from extrados.schema.table import FloorBelow
 from extrados.views.building import Building
 from extrados.views.rockers.mechanism import MechanismModel, NoMotion
 from extrados.views.rockers.restraints import Restraints, members_of
@@ -89,6 +90,8 @@ class _Judged:
 def run(context: Context, options: LocalMechanism) -> Result:
     """Multiplier, M*, a_0*, capacity curve, and the checks of the codes that apply, of the mechanism of least margin."""
     building, on_plan = context.building, False
+    if (below := floor_below(context)) is not None:
+        options = _on_floor(options, below)
     if options.mechanism == "building":
         on_plan = isinstance(building.structure, Plan)
         try:
@@ -103,6 +106,7 @@ def run(context: Context, options: LocalMechanism) -> Result:
             )
         body = body_of(options, building.material.density, building.material.compressive_strength)
         z = options.hinge_height if options.base_height is None else options.base_height
+        z += 0.0 if below is None or options.base_height is not None else below.height
         turnings = [
             _body(body, f"the {options.mechanism}", (z, (options.building_height or options.height) if z else None))
         ]
@@ -114,6 +118,14 @@ def run(context: Context, options: LocalMechanism) -> Result:
         key=lambda j: (np.inf if (least := j.results.least()) is None else least, j.results.activation_acceleration_g)
     )
     return _of_walls(context, judged) if on_plan else _result(judged[0])
+
+
+def _on_floor(options: LocalMechanism, below: FloorBelow) -> LocalMechanism:
+    """The table of a mechanism whose structure stands on a floor: the building is that of the motion."""
+    given = options.model_fields_set
+    own = {"building_height": below.building_height, "building_period": below.building_period, "storeys": below.storeys}
+    unused = {"building_period", "storeys"} if options.modes else set()
+    return options.model_copy(update={k: v for k, v in own.items() if k not in given | unused})
 
 
 def _refuse_fallen(turning: _Turning) -> None:
@@ -327,7 +339,7 @@ def _side(context: Context, options: LocalMechanism, model: MechanismModel, held
             "The mechanism is the one without dampers and added hinges, which then resist it: its multiplier is an upper bound."
         )
     return _Turning(
-        found, (np.asarray(spectral(*moving, travel)), alpha), _words(building), _place(stones, chain, options), bound,
+        found, (np.asarray(spectral(*moving, travel)), alpha), _words(building), _place(context, stones, chain, options), bound,
         links=links if differ else None,
     )  # fmt: skip
 
@@ -402,7 +414,7 @@ def _at_rest(context: Context, options: LocalMechanism, side: int) -> _Turning:
                     f"the {DILATANT}. The checks use the lower value."
                 )
     return _Turning(
-        found, (np.zeros(1), np.array([found.alpha0])), words, _place(stones, chain, options), bound, slides=slides, associated=associated,
+        found, (np.zeros(1), np.array([found.alpha0])), words, _place(context, stones, chain, options), bound, slides=slides, associated=associated,
     )  # fmt: skip
 
 
@@ -429,7 +441,9 @@ def _without_dilatancy(limit: LimitAnalysis, sense: int) -> tuple[float, Mechani
     return least, mechanism
 
 
-def _place(stones: Assembly, chain: np.ndarray, options: LocalMechanism) -> tuple[float, float | None]:
+def _place(
+    context: Context, stones: Assembly, chain: np.ndarray, options: LocalMechanism
+) -> tuple[float, float | None]:
     """z and H [m]: of the deck, else of the lowest joint between the chain and what stays at rest, and of the top of all, above the
     lowest support; a mechanism that reaches the ground stands on it."""
     moves = np.append(chain, False)  # GROUND = -1 is the last
@@ -440,6 +454,8 @@ def _place(stones: Assembly, chain: np.ndarray, options: LocalMechanism) -> tupl
     z, top = 0.0, max(float(outline[:, 1].max()) for outline in stones.outlines) - foundation
     if not (border & grounded).any():
         z = float(low[border].min()) - foundation
+    if (below := floor_below(context)) is not None:
+        z += below.height
     if options.base_height is not None:
         z = options.base_height
     return z, (options.building_height or top) if z > 0.0 else None
@@ -508,7 +524,10 @@ def _ntc(
                 f"at {z:.3g} m above the foundation the checks of NTC require the response of the building at its period: without a spectrum they "
                 "have no demand"
             )
-    place = ntc.Place(height is not None, at_height, options.mechanism in FREE_TO_VIBRATE, _period(context, options))
+    free, period = options.mechanism in FREE_TO_VIBRATE, _period(context, options)
+    place = ntc.Place(height is not None, at_height, free, period)
+    if action.of_motion and floor_below(context) is not None:
+        place, at_height = ntc.Place(free=free, period=period, shaken=True), None
     compared = ntc.Capacities(found.acceleration / fc, found.d0, found.alone / fc, note)
     lines = ntc.checks(compared, options.behaviour_factor, action.state, action.peak, action.spectrum, place)
     return lines, {} if at_height is None else {"floor_acceleration_g": at_height.acceleration / GRAVITY}

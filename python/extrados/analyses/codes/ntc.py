@@ -160,12 +160,14 @@ class Capacities:
 @dataclass(frozen=True)
 class Place:
     """Where the mechanism stands. raised: above the ground, where the demand is that of the floor, by `at_height`, and not known where
-    that is None; free: whether it is a part that vibrates at its own period, `period` [s], None: not known [C8.7.1.9]."""
+    that is None; shaken: whether the action itself is the motion of its floor; free: whether it is a part that vibrates at its own
+    period, `period` [s], None: not known [C8.7.1.9]."""
 
     raised: bool = False
     at_height: Floor | None = None
     free: bool = False
     period: float | None = None
+    shaken: bool = False
 
     def acceleration(self, spectrum: Spectrum | None, peak: float | None) -> float | None:
         """Demand on a rigid part [m/s^2], or on a free one at its own period; None where it is not known."""
@@ -191,6 +193,8 @@ def checks(
     if state == "SLC":
         return [] if found.d0 is None else [_nonlinear(found, state, spectrum, place)]
     where, quantity = ("at height z", "a_Z") if place.raised else ("at the ground", "a_g S")
+    if place.shaken:
+        where, quantity = "on its floor", "peak"
     if place.free:
         quantity = "S_eZ(T_0)"
     felt = place.acceleration(spectrum, peak)
