@@ -100,7 +100,7 @@ class Checked(KindResults):
         remarks = f" Open for want of a demand: {', '.join(undecided)}." if undecided else ""
         if self.by_default:
             remarks += f" The deck names no code: the rules of {self.code} are applied. Give [code] for another."
-        if self.confidence_factor == 1.0:
+        if self.confidence_factor == 1.0 and self.jurisdiction not in ("NZSEE", "none"):
             remarks += " All partial and confidence factors are 1: the capacity holds no margin for what is not known of the masonry."
         if decided:
             _, name, worst = decided[0]
@@ -140,6 +140,22 @@ class Checked(KindResults):
             )
         told = "; ".join(f"{rule}: {reason}" for rule, reason in barred.items())
         return judge(f"No rule of the code applies to this element. {told[:1].upper()}{told[1:]}.")
+
+    def conclusion(self) -> str:
+        """The verdict in one sentence, for the head of a report."""
+        rows, verdict = self.governing(), self.overall()
+        if not rows or verdict.outcome not in ("stands", "collapses"):
+            return verdict.statement
+        margin, name, check = rows[0]
+        state = f" at {check.limit_state}" if check.limit_state else ""
+        word = {"stands": "satisfies", "collapses": "does not satisfy"}[verdict.outcome]
+        zeta = "" if self.zeta_E is None else f", zeta_E {self.zeta_E:.3g}"
+        nbs = "" if self.nbs_percent is None else f", {self.nbs_percent:.0f} %NBS"
+        return f"{self.subject()} {word} {self.code or check.code}{state}: safety factor {margin:.3g} by {name}{zeta}{nbs}."
+
+    def subject(self) -> str:
+        """What is checked, in words."""
+        return "The structure"
 
     def weakest(self) -> tuple[str, Check] | None:
         """The rule of the code with the least lateral strength [N] of a pier; residual strengths are not among them."""
@@ -220,6 +236,17 @@ class LocalMechanism(Checked):
         "joints slide: alpha_0 by associated (dilatant) friction, the upper end of the interval whose least state found is `multiplier`",
         source="Drucker 1954",
     )
+
+    def subject(self) -> str:
+        """The mechanism that is checked."""
+        bends = {
+            "vertical-bending": "The wall between its floors",
+            "horizontal-bending": "The wall between its side walls",
+        }
+        if self.mechanism == "building":
+            return "The mechanism of the structure"
+        return bends.get(self.mechanism, f"The {self.mechanism}")
+
     walls: list[WallMechanism] = maybe(
         "of a building on a plan: every wall above the foot of each storey, the worst first; the other "
         "numbers are those of the worst"
