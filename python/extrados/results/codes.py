@@ -47,7 +47,7 @@ class Checked(KindResults):
     jurisdiction: Jurisdiction = maybe("code whose rules decide; of a deck without [code] NTC")
     code: str = maybe("code and edition in words")
     by_default: bool = maybe("whether the deck has no [code], so that the rules of NTC 2018 are applied")
-    clause: str = maybe("clause of the check that governs, with edition and equation; empty where none does")
+    clause: str = maybe("clause of the check that governs, with edition and equation; empty without a verdict")
     zeta_E: float | None = maybe(
         "NTC: seismic action that the part carries over that of the code, at SLV; null without a demand",
         source="NTC 2018 8.3",

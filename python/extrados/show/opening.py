@@ -1,5 +1,6 @@
 """The first page of a report: conclusion, governing mechanism, demand against capacity, confidence, and what to do next."""
 
+import re
 from typing import Any
 
 from extrados import kinds
@@ -13,6 +14,8 @@ Figures = list[tuple[str, str]]
 OUTCOMES = {
     "cannot-stand": "cannot stand", "collapses": "collapses", "open": "open", "stands": "stands", "not-applicable": "no verdict",
 }  # fmt: skip
+#: Ends of the names of figures that show a mechanism
+MECHANISMS = ("-collapse", "-mechanism")
 #: A safety factor below this is thin
 THIN = 1.5
 
@@ -31,7 +34,7 @@ def opening(run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | 
     if (picture := governing_figure(run, drawn, building)) is not None:
         found.append(picture)
     found.append(Words(f"Confidence. {_confidence(run, lead)}"))
-    found.append(Words(f"What to do. {_next_step(run, lead)}"))
+    found.append(Words(f"Next step. {_next_step(run, lead)}"))
     return found
 
 
@@ -55,13 +58,20 @@ def governing_figure(run: Stored, drawn: dict[str, Figures], building: tuple[str
     if isinstance(r, LocalMechanism) and r.mechanism == "building":
         names += [a["name"] for a in run.analyses if a["kind"] == "tilt"]
     every = [f for name in names for f in drawn.get(name, [])]
-    chosen = next((f for f in every if "mechanism" in f[0]), every[0] if every else building)
+    chosen = next((f for f in every if f[0].endswith(MECHANISMS)), every[0] if every else building)
     return None if chosen is None else Figure(f"figures/{chosen[0]}", chosen[1], 0.7)
 
 
 def _conclusion(run: Stored, lead: dict[str, Any]) -> str:
     r = run[lead["name"]]
-    return r.conclusion() if isinstance(r, Checked) else str(lead["verdict"]["statement"])
+    if isinstance(r, Checked):
+        return r.conclusion()
+    first, *rest = re.split(r"(?<=\.) (?=[A-Z])", str(lead["verdict"]["statement"]))
+    # the strategies one by one and their reasons follow in the table and behind the contents
+    least = (
+        [one for one in rest if one.startswith("The least critical scale factor")] if isinstance(r, Assess) else rest
+    )
+    return " ".join([first, *least])
 
 
 def _comparison(run: Stored, lead: dict[str, Any]) -> Table:

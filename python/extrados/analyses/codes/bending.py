@@ -134,7 +134,7 @@ def vertical_bending(
             if sum(setback) >= thickness:
                 if weight + load > strength * width * thickness:
                     raise CannotStand(
-                        f"the weight crushes the wall; proof: {(weight + load) / 1e3:.3g} kN rest on a section that carries "
+                        f"the weight crushes the wall; certificate: {(weight + load) / 1e3:.3g} kN rest on a section that carries "
                         f"{strength * width * thickness / 1e3:.3g} kN at most",
                         neglects=(),
                     )

@@ -36,7 +36,7 @@ def ishiyama(width: float, height: float, pga: float | None, pgv: float | None) 
     """Overturning needs both PGA >= (B/H) g and PGV >= 10 B/sqrt(H) cm/s with B, H in cm."""
     source = "Ishiyama 1982 (verify clause)"
     speed = 10.0 * 100.0 * width / np.sqrt(100.0 * height) / 100.0
-    note = "overturns only where both limits are passed"
+    note = "overturning requires that the motion exceeds both limits"
     return (
         Line(
             "Ishiyama acceleration",
