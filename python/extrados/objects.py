@@ -74,8 +74,10 @@ def _plain() -> dict[str, tuple[str, Any]]:
     """Tables without kinds, by the names of their classes."""
     from extrados.decks.plural import PLURAL
     from extrados.decks.reader import PROPERTIES
+    from extrados.schema.code import Code
 
-    return {model.__name__: (section, model) for section, model in {**PROPERTIES, **PLURAL}.items()}
+    tables: dict[str, Any] = {**PROPERTIES, **PLURAL, "code": Code}
+    return {model.__name__: (section, model) for section, model in tables.items()}
 
 
 def maker(name: str) -> Maker:

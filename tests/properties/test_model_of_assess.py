@@ -751,7 +751,7 @@ def checks(draw: st.DrawFn) -> dict[str, Check]:
         verdict = "" if demand is None else "holds" if capacity > demand else "fails"
         found[name] = Check(
             capacity=capacity, demand=demand, unit=draw(st.sampled_from(["g", "m"])), verdict=draw(st.sampled_from([verdict] * 4 + ["not-applicable"])),
-            source="", note="", code=code, scope="", alternative=draw(st.sampled_from(["", "SLV"])), reason="",
+            source="", note="", code=code, quantity="", limit_state="", scope="", alternative=draw(st.sampled_from(["", "SLV"])), reason="",
         )  # fmt: skip
     return found
 
@@ -808,7 +808,7 @@ def test_what_the_codes_explain_follows_from_their_checks(
     if part is not None:  # by the multiplier of statics
         capacity = 2.0 * multiplier / 1.2 / part
         rules["NTC linear"] = Check(capacity=capacity, demand=0.2, unit="g", verdict="holds" if capacity > 0.2 else "fails", source="", note="",
-                                    code="NTC 2018", scope="", alternative="", reason="")  # fmt: skip
+                                    code="NTC 2018", quantity="", limit_state="", scope="", alternative="", reason="")  # fmt: skip
     decided = governing(rules)
     if not decided:
         return

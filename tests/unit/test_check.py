@@ -273,7 +273,7 @@ WRONG = {
     ),
     "floor above the top": ("above the top", FACADE + "[[analysis.floors]]\nload = 1e3\nheight = 30 # here\n"),
     "side walls of a corner": (
-        "leave side_walls out", FACADE.replace('"facade"', '"corner"') + "crack_angle = 30\nside_walls = { thickness = 0.5, crack_angle = 20 } # here\n",
+        "does not use side_walls", FACADE.replace('"facade"', '"corner"') + "crack_angle = 30\nside_walls = { thickness = 0.5, crack_angle = 20 } # here\n",
     ),
     "facade without weight": ("has weight", "[material]\ndensity = 0.0 # here\n" + FACADE),
     "block without weight": ("has no weight", BLOCK + "[material]\ndensity = 0.0 # here\n" + TILT),

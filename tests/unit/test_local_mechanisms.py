@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import extrados
-from extrados.analyses.codes.code_rules import more_piers
 from extrados.analyses.codes.kinematics import Overturning, Push, Weight, capacity
 from extrados.analyses.codes.ntc import displacement, floor
+from extrados.analyses.codes.piers import Pier, asce41_piers, en1998_piers, ntc_piers
 from extrados.decks.reader import DeckError
 from extrados.schema.constants import GRAVITY
 
@@ -237,12 +237,15 @@ def test_what_goes_for_every_wall_is_said_once() -> None:
 def test_the_worked_example_of_a_pier() -> None:
     """Advanced Design Examples of Seismic Retrofit of Structures, section 2.7.5, its wall 1, Eqs 2.31 to 2.36 [kg, cm]."""
     stress = GRAVITY / 1e-4  # kg/cm^2
-    rows = more_piers(
-        0.93, 1.8, 0.35, 10883.0 * GRAVITY, 2864.0 * GRAVITY, 30.0 * stress, 2.5 * stress, 0.4, 2.0 / 1.5 * stress, double=True
+    pier = Pier(
+        0.93, 1.8, 0.35, 10883.0 * GRAVITY, 2864.0 * GRAVITY, True, 30.0 * stress, 2.5 * stress, 0.4, 2.0 / 1.5 * stress
     )  # fmt: skip
+    rows = [
+        *asce41_piers(pier, 1.0, None, 1.0, "LS"), *en1998_piers(pier, 1.0, None, "SD"), *ntc_piers(pier, 1.0, 1.0, None, "SLV")
+    ]  # fmt: skip
     found = {x.rule: x.capacity for x in rows}
     printed = {
-        "ASCE 41 rocking of a pier": 5726.0, "ASCE 41 sliding once cracked": 5441.0, "ASCE 41 bed-joint sliding": 8493.0,
+        "ASCE 41 rocking of a pier": 5726.0, "ASCE 41 residual sliding": 5441.0, "ASCE 41 bed-joint sliding": 8493.0,
         "ASCE 41 toe crushing": 4961.0, "ASCE 41 diagonal tension": 7957.0,
     }  # fmt: skip
     # they round v_me to 2.61, and press the pier with 4.63 where 1.1 (P_D + P_W)/A_n is 4.65
@@ -324,7 +327,7 @@ def test_the_floor_spectrum_of_the_circolare() -> None:
 
 
 def test_at_a_height_the_floor_is_asked_and_either_check_suffices() -> None:
-    base = {"mechanism": "parapet", "height": 1.2, "thickness": 0.3, "spectrum": SITE}
+    base = {"mechanism": "wall", "height": 1.2, "thickness": 0.3, "spectrum": SITE}
     low = mechanism(**base)["local-mechanism"].checks
     high = mechanism(**base, base_height=9.0, building_height=10.0, storeys=3)["local-mechanism"]
     linear = high.checks["NTC linear (at height z)"]
@@ -349,7 +352,10 @@ def test_a_place_at_a_height_is_not_checked_as_if_it_stood_on_the_ground() -> No
     )
     checks = run["local-mechanism"].checks
     assert checks["NTC linear (at height z)"].demand is None and not any("at the ground" in name for name in checks)
-    part = checks["EN 1998-1 part of a building"]
+    table = {"kind": "local-mechanism", "mechanism": "parapet", "height": 1.2, "thickness": 0.3, "peak_acceleration": "0.15 g", "base_height": 9.0, "building_height": 10.0}  # fmt: skip
+    part = extrados.run({"code": {"jurisdiction": "EN1998"}, "analysis": table})["local-mechanism"].checks[
+        "EN 1998-1 part of a building"
+    ]
     assert part.capacity == pytest.approx(0.25) and part.verdict == "fails", "q_a of Table 4.4 is 1 of a parapet"
     assert any("without a spectrum they have no demand" in w for w in run.results[0].warnings)
 

@@ -85,8 +85,8 @@ def check(capacity: float, demand: float | None, unit: str = "g", code: str = "N
     verdict = "" if demand is None else "holds" if capacity >= demand else "fails"
     alternative = "SLV" if code == "NTC 2018" else ""
     return Check(
-        capacity=capacity, demand=demand, unit=unit, verdict=verdict, source="", note="", code=code, scope="", reason="",
-        alternative=alternative,
+        capacity=capacity, demand=demand, unit=unit, quantity="", verdict=verdict, source="", note="", code=code,
+        limit_state="SLV" if alternative else "", scope="", reason="", alternative=alternative,
     )  # fmt: skip
 
 

@@ -45,7 +45,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_page_says_who_what_and_how_to_repeat(folder: Path) -> None:
     page = (folder / "report.html").read_text()
     for words in ("St Martin", "A. Mason", "2026-05-04", "Contents", "clear span", "3.6", "material.density", "2100", "kg/m^3",
-                  "Limits of validity", "To repeat it", "Figure 1. The building", validity.Tilt.limits[:40]):  # fmt: skip
+                  "Limits of validity", "To repeat it", "Figure 2. The building", "Next step.", validity.Tilt.limits[:40]):  # fmt: skip
         assert words in page, words
     assert "An &lt;arch&gt;" in page and "<details" not in page, "what is folded vanishes in print"
     assert "analysis" in page and "http://" not in page.replace("http://www.w3.org", "")

@@ -96,7 +96,7 @@ def test_a_driver_that_gives_another_model_fails(monkeypatch) -> None:
 ENDS = {"mm": "_mm",
     "g": "_g", "deg": "_deg", "N": "_N", "m": "_m", "m/s": "_m_s", "s": "_s", "rad": "_rad", "J": "_J", "Hz": "_Hz",
     "kg": "_kg", "m^2": "_m2", "m^3": "_m3", "rad/s": "_rad_s", "N/m": "_N_m", "kN/m": "_kN_per_m", "Pa/m": "_Pa_per_m", "Pa": "_Pa",
-    "N*m": "_Nm", "1/s": "_per_s", "1/year": ("_rate", "_rate_interval", "_rate_left_out"), "year": ("years",),
+    "N*m": "_Nm", "1/s": "_per_s", "1/year": ("_rate", "_rate_interval", "_rate_left_out"), "year": ("years",), "%": "_percent",
 }  # fmt: skip
 
 

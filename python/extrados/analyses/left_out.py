@@ -17,6 +17,9 @@ SHARED = frozenset(
     f"joints.{name}" for name in ("friction", "cohesion", "tension", "compressive_strength", "worn_corners")
 ) | {"material.compressive_strength", "supports.stiffness"}
 
+#: The analyses that apply the rules of [code]
+BY_CODE = ("code-checks", "local-mechanism", "assess")
+
 
 @dataclass(frozen=True)
 class Remark:
@@ -52,6 +55,10 @@ def left_out(deck: Deck) -> list[Remark]:
                 if name not in asked[k] and (names[k], name) not in found:
                     words = f"{names[k]} does not use it{_known_to(name, deck.analyses)}"
                     found[names[k], name] = Remark(deck.complaint(options, ("analysis", *at), words), k)
+    if deck.code is not None and not any(options.kind in BY_CODE for options in deck.analyses):
+        found["", "code"] = Remark(
+            deck.complaint(None, ("code",), f"no analysis of this deck uses it; {', '.join(BY_CODE)} do"), 0
+        )
     return list(found.values())
 
 

@@ -11,6 +11,7 @@ from extrados.decks.plural import PLURAL
 from extrados.decks.words import WORDS
 from extrados.model.properties import Initial, Joints, Material, Supports
 from extrados.schema import quantities
+from extrados.schema.code import Code
 from extrados.schema.table import Table
 
 #: Tables without kinds that say what the building is besides its geometry
@@ -21,7 +22,7 @@ def sections() -> dict[str, dict[str, type[Table]]]:
     """Section -> kind -> table; a section without kinds has one table, under no name."""
     found = {name: {kind: kinds.table(name, kind) for kind in there} for name, there in kinds.TABLES.items()}
     return {"structure": found["structure"], **{n: {"": m} for n, m in {**PLAIN, **PLURAL}.items()},
-            "motion": found["motion"], "analysis": found["analysis"]}  # fmt: skip
+            "motion": found["motion"], "code": {"": Code}, "analysis": found["analysis"]}  # fmt: skip
 
 
 def json_schema() -> dict[str, Any]:

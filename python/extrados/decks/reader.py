@@ -25,6 +25,7 @@ from extrados.decks.words import WORDS
 from extrados.model.properties import Initial, Joints, Material, Supports
 from extrados.model.structure import Structure
 from extrados.schema import files
+from extrados.schema.code import Code
 from extrados.schema.table import Motion, Table
 from extrados.schema.text import printable
 from extrados.views.building import Building
@@ -37,7 +38,7 @@ PIPE = re.compile(r"-|/dev/stdin|/dev/fd/\d+")
 PROPERTIES: dict[str, type[Table]] = {"material": Material, "joints": Joints, "supports": Supports, "initial": Initial}
 #: What one kind of structure calls by one word and another kind by another
 ALIKE = {"thickness": {"depth"}, "depth": {"thickness"}, "length": {"width", "span"}, "span": {"width", "radius"}}
-TOP_LEVEL = {*WORDS, "structure", *PROPERTIES, "materials", *PLURAL, "motion", "analysis"}
+TOP_LEVEL = {*WORDS, "structure", *PROPERTIES, "materials", *PLURAL, "motion", "code", "analysis"}
 
 
 class DeckError(Exception):
@@ -53,7 +54,8 @@ class Deck:
     """A checked deck. `data` is what stood in it; folder is where its files are looked for.
 
     building: what [structure], [material], [joints], [supports] and [initial] say; buildings: as each analysis sees it,
-    with what it overrides. positions: where its keys stand; tables: the place of each analysis among them.
+    with what it overrides. code: that of the report, None where the deck names none. positions: where its keys stand; tables:
+    the place of each analysis among them.
     """
 
     title: str
@@ -69,6 +71,7 @@ class Deck:
     project: str = ""
     author: str = ""
     date: str = ""
+    code: Code | None = None
     positions: Positions = field(default_factory=Positions)
     tables: list[Key] = field(default_factory=list)
 
@@ -116,6 +119,7 @@ class Deck:
             "materials": {name: m.model_dump() for name, m in self.building.materials.items()},
             **{name: [one.model_dump(exclude_none=True) for one in getattr(self.building, name)] for name in PLURAL},
             "motion": self.motion.model_dump() if self.motion else None,
+            **({"code": self.code.model_dump(exclude_none=True)} if self.code else {}),
             "analysis": [a.model_dump(exclude_none=True) for a in self.analyses],
         }
 
@@ -212,6 +216,7 @@ class _Checker:
                 self.complain((word,), "expected text in quotes")
         structure = self.section("structure", data.get("structure"), ("structure",))
         motion = self.section("motion", data.get("motion"), ("motion",))
+        code = self.table(Code, data["code"], ("code",)) if "code" in data else None
         given = data.get("analysis")
         if given is None or (isinstance(given, list) and not given):
             self.complain((), f"no [analysis]: expected one of {_words(kinds.ANALYSES)}")
@@ -249,6 +254,7 @@ class _Checker:
             project=data.get("project", ""),
             author=data.get("author", ""),
             date=data.get("date", ""),
+            code=code,
             positions=self.positions,
             tables=tables_of,
         )

@@ -71,6 +71,36 @@ def asce7(sds: float, sd1: float, long_period: float) -> Spectrum:
     return _four_branches(sds, 0.4 * sds, 0.2 * ts, ts, long_period)
 
 
+#: NZS 1170.5 Table 3.1, shape C_h(T) with the values for periods from 0: C_h(0), plateau, its end [s], factor and corner period
+#: of the branch to 1.5 s, factor of 1/T to 3 s
+_NZS = {
+    "A": (1.0, 2.35, 0.3, 1.6, 0.5, 1.05), "B": (1.0, 2.35, 0.3, 1.6, 0.5, 1.05), "C": (1.33, 2.93, 0.3, 2.0, 0.5, 1.32),
+    "D": (1.12, 3.0, 0.56, 2.4, 0.75, 2.14), "E": (1.12, 3.0, 1.0, 3.0, 1.0, 3.32),
+}  # fmt: skip
+
+
+def nzs1170(ground: str, hazard: float, return_factor: float, damping: float = 0.05) -> Spectrum:
+    """NZS 1170.5 3.1: C(T) = C_h(T) Z R without near-fault factor, as a public implementation gives Table 3.1.
+
+    Damping other than 5 %: sqrt(7/(2 + xi)), xi in percent, of the New Zealand guidelines; the ground at T = 0 has none.
+    """
+    zero, plateau, end, factor, corner, late = _NZS[ground]
+    reduced = float(np.sqrt(7.0 / (2.0 + 100.0 * damping)))
+
+    def at(period: np.ndarray) -> np.ndarray:
+        t = np.asarray(period, dtype=float)
+        x = np.maximum(t, 1e-12)
+        high = reduced * np.select(
+            [t < end, t <= 1.5, t <= 3.0],
+            [np.full_like(x, plateau), np.minimum(factor * (corner / x) ** 0.75, plateau), late / x],
+            3.0 * late / x**2,
+        )
+        low = zero + (reduced * plateau - zero) * t / 0.1
+        return np.where(t < 0.1, low, high) * hazard * return_factor * GRAVITY
+
+    return at
+
+
 def tabulated(period: np.ndarray, acceleration: np.ndarray) -> Spectrum:
     """Straight lines between points of a table; constant below the first period, refused above the last."""
 

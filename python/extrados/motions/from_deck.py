@@ -10,6 +10,7 @@ from extrados.core.ground import Ground
 from extrados.motions import code_spectra, pulses, records
 from extrados.motions import tables as models
 from extrados.motions.compatible import CompatibleSet, NotMatched
+from extrados.motions.floors import on_floor, sway_of
 from extrados.motions.formats.record import Record, RecordError
 from extrados.motions.generated import GeneratedSet, generated
 from extrados.motions.motion import Motion
@@ -21,7 +22,13 @@ Sets = models.Suite | models.Generated | models.Compatible
 
 
 def make_motion(model: Model, folder: Path) -> Motion:
-    """The motion of a deck's [motion], of a set its `member`; records.RecordError where a file is wrong."""
+    """The motion of a deck's [motion], of a set its `member`, on its floor; records.RecordError where a file is wrong."""
+    made = _make_motion(model, folder)
+    # those of sets are on their floor already
+    return made if isinstance(model, Sets) else on_floor(made, model.floor)
+
+
+def _make_motion(model: Model, folder: Path) -> Motion:
     match model:
         case models.Constant():
             return pulses.constant(model.amplitude, model.duration)
@@ -98,16 +105,17 @@ def member_name(member: models.Components) -> str:
 
 def suite_motion(model: models.Suite, member: models.Components, folder: Path) -> Motion:
     """One record of a suite as a motion; RecordError where it, or a component of it, cannot be read."""
-    return replace(_record(member, _treatment(model), folder), name=member_name(member))
+    return on_floor(replace(_record(member, _treatment(model), folder), name=member_name(member)), model.floor)
 
 
 def generated_set(model: models.Generated, folder: Path, seed: int | None = None) -> GeneratedSet:
     """The set of a deck's `generated` motion, its seed replaced where given."""
-    keys = model.model_dump(exclude={"kind", "member", "time_step"})
+    keys = model.model_dump(exclude={"kind", "member", "time_step", "floor"})
     if seed is not None:
         keys["seed"] = seed
     try:
-        return generated(**keys, step=model.time_step, folder=folder)
+        made = generated(**keys, step=model.time_step, folder=folder)
+        return made if model.floor is None else replace(made, floor=sway_of(model.floor))
     except ValueError as error:
         raise RecordError(f"[motion] generated: {error}") from None
 
@@ -141,6 +149,8 @@ def code_spectrum(model: CodeSpectrum, folder: Path, damping: float = 0.05) -> c
             )
         case "ASCE7":
             return code_spectra.asce7(model.sds, model.sd1, model.long_period)  # type: ignore[arg-type]
+        case "NZS1170":
+            return code_spectra.nzs1170(model.ground, model.hazard_factor, model.return_factor, damping)  # type: ignore[arg-type]
     return code_spectra.read_table(model.table, folder)  # type: ignore[arg-type]
 
 
@@ -166,7 +176,7 @@ def compatible_motion(model: models.Compatible, folder: Path, k: int, accelerati
     try:
         if acceleration is not None:
             return Motion(numbered("compatible", k), Ground(samples=acceleration[None, :], step=model.time_step))
-        return Motion(numbered("compatible", k), compatible_set(model, folder).ground(k))
+        return on_floor(Motion(numbered("compatible", k), compatible_set(model, folder).ground(k)), model.floor)
     except (NotMatched, ValueError) as error:
         raise RecordError(f"[motion] compatible: {error}") from None
 

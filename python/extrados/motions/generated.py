@@ -8,6 +8,7 @@ import numpy as np
 
 from extrados.core import motion as core
 from extrados.core.ground import Ground
+from extrados.motions.floors import Sway
 from extrados.motions.line_spectra import SHIPPED, load_spectrum
 from extrados.motions.point_source import worden_pga, worden_pgv
 
@@ -19,7 +20,8 @@ class GeneratedSet:
     """A set of motions by seed: motion k is the same in any batch, on any number of threads, in any run.
 
     lines (n) [Hz] with the Fourier amplitude `spectrum` [m/s] and the amplitude of the sines [m/s^2];
-    window (points): the envelope at 0, step, ... [s]. dispersion: of the logarithm of a further factor on each motion.
+    window (points): the envelope at 0, step, ... [s]. dispersion: of the logarithm of a further factor on each motion. floor: where
+    the structure stands on one, which then moves so.
     """
 
     mmi: float
@@ -31,6 +33,7 @@ class GeneratedSet:
     amplitude: np.ndarray
     window: np.ndarray
     dispersion: float = 0.0
+    floor: Sway | None = None
 
     @property
     def points(self) -> int:
@@ -47,7 +50,8 @@ class GeneratedSet:
         made = core.generate(
             self.lines, self.amplitude, self.window, self.step, self.seed, first, count, threads=threads
         )
-        return made * self.factors(first, count)[:, None] if self.dispersion > 0.0 else made
+        made = made * self.factors(first, count)[:, None] if self.dispersion > 0.0 else made
+        return made if self.floor is None else self.floor.accelerations(made, self.step)
 
     def factors(self, first: int, count: int) -> np.ndarray:
         """Lognormal factors of median 1 on the strength of motions first .. first + count - 1."""

@@ -1,11 +1,12 @@
 """Results of code-checks."""
 
-from typing import Literal
+from typing import Any, Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.limit import DILATANT
 from extrados.results.rocking import RockingOutcome
 from extrados.results.verdict import Bound, Demand, KindResults, Outcome, Verdict, judge
+from extrados.schema.code import Jurisdiction
 
 Applied = Literal["holds", "fails", "not-applicable", ""]
 
@@ -16,15 +17,24 @@ class Check(ResultModel):
     capacity: float | None = fact("capacity by the rule, in `unit`; null where the rule gives none for this element")
     demand: float | None = fact("demand, in `unit`; null where it is not known")
     unit: str = fact("unit of capacity and demand")
+    quantity: str = fact("what is compared: displacement, acceleration, lateral strength, drift, slenderness")
     verdict: Applied = fact("verdict of the rule; not-applicable outside its scope; empty without a demand")
-    source: str = fact("source of the rule")
+    source: str = fact("clause of the rule, with edition and equation")
     note: str = fact("values on which capacity and demand rest")
     code: str = fact("code whose check it is; empty for a formula for comparison or a strength")
+    limit_state: str = fact(
+        "limit state of the demand: SLD, SLV, SLC; DL, SD, NC; IO, LS, CP; ULS; empty of a formula for comparison"
+    )
     scope: str = fact("element, restraint and height that the rule is for")
     alternative: str = fact(
-        "checks of one code with the same word are alternatives: one that holds suffices; empty: must hold by itself"
+        "checks of one code and limit state with the same word are alternatives: one that holds suffices; empty: must hold by itself"
     )
     reason: str = fact("why the rule does not apply; empty where it does")
+
+    @property
+    def words(self) -> str:
+        """Its code and limit state."""
+        return f"{self.code} at {self.limit_state}" if self.limit_state else self.code
 
 
 Row = tuple[float, str, Check]
@@ -34,8 +44,19 @@ class Checked(KindResults):
     """Rules of codes, by name, and one verdict for all."""
 
     checks: dict[str, Check] = fact("the rules by name")
-    confidence_factor: float = maybe("FC by which the capacity of the checks of NTC is divided")
-    behaviour_factor: float = maybe("q of the linear check of NTC")
+    jurisdiction: Jurisdiction = maybe("code whose rules decide; of a deck without [code] NTC")
+    code: str = maybe("code and edition in words")
+    by_default: bool = maybe("whether the deck has no [code], so that the rules of NTC 2018 are applied")
+    clause: str = maybe("clause of the check that governs, with edition and equation; empty without a verdict")
+    zeta_E: float | None = maybe(
+        "NTC: seismic action that the part carries over that of the code, at SLV; null without a demand",
+        source="NTC 2018 8.3",
+    )
+    nbs_percent: float | None = maybe(
+        "NZSEE: %NBS, capacity over demand of the check that governs; null without a demand", "%"
+    )
+    confidence_factor: float = maybe("confidence factor by which capacities are divided")
+    behaviour_factor: float = maybe("q of the linear check of NTC, and of the demand on a pier")
     bound: Bound = maybe("which side of the exact capacity the checks lie on")
     margin_associated: float | None = maybe(
         "joints slide: capacity / demand of the governing check by associated (dilatant) friction; a check that fails without dilatancy is "
@@ -50,12 +71,12 @@ class Checked(KindResults):
         return self.overall()
 
     def _groups(self) -> list[tuple[str, Row | None, bool]]:
-        """Of the checks that apply, each group of alternatives: its code; margin, name and check of that which allows most, None without
+        """Of the checks that apply, each group of alternatives: its code and limit state; margin, name and check of that which allows most, None without
         a demand; whether it is decided: one holds, or all fail."""
         groups: dict[tuple[str, str], list[tuple[str, Check]]] = {}
         for name, check in self.checks.items():
             if check.code and check.verdict != "not-applicable":
-                groups.setdefault((check.code, check.alternative or name), []).append((name, check))
+                groups.setdefault((check.words, check.alternative or name), []).append((name, check))
         found = []
         for (code, _), rows in groups.items():
             margins = [(c.capacity / c.demand, n, c) for n, c in rows if c.demand and c.capacity is not None]
@@ -77,7 +98,9 @@ class Checked(KindResults):
         comparison and the computed rocking do not count; without a demand the weakest strength of a pier [N]."""
         decided, undecided = self.governing(), sorted({code for code, _, known in self._groups() if not known})
         remarks = f" Open for want of a demand: {', '.join(undecided)}." if undecided else ""
-        if self.confidence_factor == 1.0:
+        if self.by_default:
+            remarks += f" The deck names no code: the rules of {self.code} are applied. Give [code] for another."
+        if self.confidence_factor == 1.0 and self.jurisdiction not in ("NZSEE", "none"):
             remarks += " All partial and confidence factors are 1: the capacity holds no margin for what is not known of the masonry."
         if decided:
             _, name, worst = decided[0]
@@ -93,25 +116,64 @@ class Checked(KindResults):
                     f"and not proved.{remarks}"
                 )
             return judge(
-                f"{worst.code} governs and {worst.verdict}, by {name}: demand {worst.demand:.3g}, capacity {worst.capacity:.3g}{unit}."
+                f"{worst.words} governs and {worst.verdict}, by {name}: demand {worst.demand:.3g}, capacity {worst.capacity:.3g}{unit}."
                 f"{remarks}",
                 worst.demand, worst.capacity, worst.unit, outcome, self.bound,
                 (self.violated or ()) if holds else (),
             )  # fmt: skip
-        strengths = {name: c.capacity for name, c in self.checks.items() if c.unit == "N" and c.capacity is not None}
-        if strengths:
-            name, least = min(strengths.items(), key=lambda item: item[1])
+        if (weakest := self.weakest()) is not None:
+            name, check = weakest
             return judge(
-                f"{name} gives the least strength, {least / 1e3:.4g} kN, with all partial factors at 1.",
+                f"{name} gives the least strength, {(check.capacity or 0.0) / 1e3:.4g} kN ({check.note}).{remarks}",
                 None,
-                least,
+                check.capacity,
                 "N",
             )
-        barred = {c.code: c.reason for c in self.checks.values() if c.code and c.verdict == "not-applicable"}
+        barred = {
+            f"{c.code}, {n}": c.reason for n, c in self.checks.items() if c.code and c.verdict == "not-applicable"
+        }
+        if self.jurisdiction == "none":
+            return judge("The deck chooses no code: formulas for comparison decide nothing.")
         if undecided or not barred:
-            return judge("The deck holds no demand for the checks that apply: give the spectrum of the code.")
-        told = "; ".join(f"{code}: {reason}" for code, reason in barred.items())
-        return judge(f"No check of a code applies. {told[:1].upper()}{told[1:]}.")
+            return judge(
+                f"The deck holds no demand for the checks that apply: give the seismic action in [code], or a spectrum.{remarks}"
+            )
+        told = "; ".join(f"{rule}: {reason}" for rule, reason in barred.items())
+        return judge(f"No rule of the code applies to this element. {told[:1].upper()}{told[1:]}.")
+
+    def conclusion(self) -> str:
+        """The verdict in one sentence, for the head of a report."""
+        rows, verdict = self.governing(), self.overall()
+        if not rows or verdict.outcome not in ("stands", "collapses"):
+            return verdict.statement
+        margin, name, check = rows[0]
+        state = f" at {check.limit_state}" if check.limit_state else ""
+        word = {"stands": "satisfies", "collapses": "does not satisfy"}[verdict.outcome]
+        zeta = "" if self.zeta_E is None else f", zeta_E {self.zeta_E:.3g}"
+        nbs = "" if self.nbs_percent is None else f", {self.nbs_percent:.0f} %NBS"
+        return f"{self.subject()} {word} {self.code or check.code}{state}: safety factor {margin:.3g} by {name}{zeta}{nbs}."
+
+    def subject(self) -> str:
+        """What is checked, in words."""
+        return "The structure"
+
+    def weakest(self) -> tuple[str, Check] | None:
+        """The rule of the code with the least lateral strength [N] of a pier; residual strengths are not among them."""
+        strengths = [
+            (n, c) for n, c in self.checks.items()
+            if c.quantity == "lateral strength" and c.code and c.capacity is not None and c.verdict != "not-applicable"
+        ]  # fmt: skip
+        return min(strengths, key=lambda item: item[1].capacity or 0.0, default=None)
+
+    def concluded(self) -> dict[str, Any]:
+        """Clause of the governing check, zeta_E and %NBS, from the checks."""
+        rows = self.governing()
+        found: dict[str, Any] = {"clause": rows[0][2].source if rows else ""}
+        if self.jurisdiction == "NTC":
+            found["zeta_E"] = min((m for m, _, c in rows if c.limit_state == "SLV"), default=None)
+        if self.jurisdiction == "NZSEE":
+            found["nbs_percent"] = 100.0 * rows[0][0] if rows else None
+        return found
 
 
 class CodeChecks(Checked):
@@ -174,6 +236,17 @@ class LocalMechanism(Checked):
         "joints slide: alpha_0 by associated (dilatant) friction, the upper end of the interval whose least state found is `multiplier`",
         source="Drucker 1954",
     )
+
+    def subject(self) -> str:
+        """The mechanism that is checked."""
+        bends = {
+            "vertical-bending": "The wall between its floors",
+            "horizontal-bending": "The wall between its side walls",
+        }
+        if self.mechanism == "building":
+            return "The mechanism of the structure"
+        return bends.get(self.mechanism, f"The {self.mechanism}")
+
     walls: list[WallMechanism] = maybe(
         "of a building on a plan: every wall above the foot of each storey, the worst first; the other "
         "numbers are those of the worst"

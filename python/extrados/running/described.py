@@ -9,7 +9,7 @@ from extrados.schema.quantities import unit_of
 from extrados.schema.table import Table
 
 #: Tables whose keys a report shows where they were given, and those that it shows whole
-GIVEN, WHOLE = ("structure", "motion", "supports", "initial"), ("material", "joints")
+GIVEN, WHOLE = ("structure", "motion", "supports", "initial", "code"), ("material", "joints")
 #: Keys of these that say nothing where they are as they are by default
 QUIET: tuple[Any, ...] = (None, [], False)
 
@@ -38,7 +38,7 @@ def _properties(deck: Deck) -> list[dict[str, Any]]:
     tables |= {f"materials.{name}": table for name, table in building.materials.items()}
     for name in ("ties", "dampers", "hinges"):
         tables |= {f"{name}.{one.name}": one for one in getattr(building, name)}
-    tables["motion"] = deck.motion
+    tables |= {"motion": deck.motion, "code": deck.code}
     return [row for name, table in tables.items() if table is not None for row in _rows(name, table)]
 
 

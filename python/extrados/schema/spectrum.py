@@ -11,10 +11,10 @@ from extrados.schema.table import Table, key
 class CodeSpectrum(Table):
     """The elastic spectrum of a code, with its own values, or a table."""
 
-    code: Literal["EN1998-1", "EN1998-2", "NTC", "ASCE7", "table"] = key(
-        about="EN 1998-1:2004 spectrum type 1 or 2, NTC 2018, ASCE 7-16, or a table of your own"
+    code: Literal["EN1998-1", "EN1998-2", "NTC", "ASCE7", "NZS1170", "table"] = key(
+        about="EN 1998-1:2004 spectrum type 1 or 2, NTC 2018, ASCE 7-16, NZS 1170.5, or a table of your own"
     )
-    ground: Literal["A", "B", "C", "D", "E"] = key("A", "ground type (EN 1998-1, NTC)")
+    ground: Literal["A", "B", "C", "D", "E"] = key("A", "ground type (EN 1998-1, NTC), site subsoil class (NZS 1170.5)")
     acceleration: Acceleration | None = key(None, "a_g on ground A (EN 1998-1, NTC)", gt=0)
     amplification: float = key(2.5, "F_0 (NTC)", ge=1, le=10)
     corner_period: Time = key(0.35, "T_C* (NTC)", gt=0, le=2)
@@ -22,12 +22,14 @@ class CodeSpectrum(Table):
     sds: Acceleration | None = key(None, "S_DS (ASCE 7)", gt=0)
     sd1: Acceleration | None = key(None, "S_D1 (ASCE 7)", gt=0)
     long_period: Time = key(8.0, "T_L (ASCE 7)", gt=0)
+    hazard_factor: float | None = key(None, "Z (NZS 1170.5)", gt=0, le=1)
+    return_factor: float = key(1.0, "R, return period factor (NZS 1170.5)", gt=0, le=2)
     table: str | None = key(None, "CSV file period_s,sa_g", min_length=1, max_length=1024)
 
     @model_validator(mode="after")
     def _has_values(self) -> "CodeSpectrum":
         need = {"EN1998-1": ("acceleration",), "EN1998-2": ("acceleration",), "NTC": ("acceleration",),
-                "ASCE7": ("sds", "sd1"), "table": ("table",)}[self.code]  # fmt: skip
+                "ASCE7": ("sds", "sd1"), "NZS1170": ("hazard_factor",), "table": ("table",)}[self.code]  # fmt: skip
         missing = [name for name in need if getattr(self, name) is None]
         if missing:
             raise ValueError(f"code {self.code} needs {' and '.join(missing)}")

@@ -2,7 +2,9 @@
 
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BaseModel, ConfigDict, Field, create_model, field_validator
+from pydantic import BaseModel, ConfigDict, Field, create_model, field_validator, model_validator
+
+from extrados.schema.quantities import Length, Time
 
 #: Size of a number in SI that no structure and no motion reaches, and below which it can only be zero
 LARGEST, SMALLEST = 1e15, 1e-15
@@ -34,16 +36,39 @@ class Table(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True, defer_build=True)
 
 
-class Motion(Table):
-    """Base of the motion kinds."""
-
-    kind: str
-
-
 def key(default: Any = ..., about: str = "", *, source: str = "", **limits: Any) -> Any:
     """A deck key: default, one-sentence meaning, source of the formula behind it, bounds."""
     extra: dict[str, Any] | None = {"source": source} if source else None
     return Field(default, description=about, json_schema_extra=extra, **limits)
+
+
+class FloorBelow(Table):
+    """The floor of a building on which the structure stands: it is shaken by the floor, not by the ground."""
+
+    height: Length = key(about="height z of the floor above the foundation", gt=0)
+    building_height: Length = key(about="height H of the building", gt=0)
+    building_period: Time | None = key(
+        None, "first period T_1 of the building; default 0.05 H^0.75", gt=0, source="EN 1998-1 Eq. 4.6"
+    )
+    building_damping: float = key(0.05, "damping ratio of the building", gt=0, le=0.3)
+    storeys: int = key(
+        1, "storeys N of the building: gamma_1 = 3 N/(2 N + 1)", ge=1, le=50, source="Circ. 7/2019 [C7.2.10]"
+    )
+
+    @model_validator(mode="after")
+    def _within(self) -> "FloorBelow":
+        if self.height > self.building_height:
+            raise ValueError(f"height: {self.height:g} m is above the top of the building, {self.building_height:g} m")
+        return self
+
+
+class Motion(Table):
+    """Base of the motion kinds."""
+
+    kind: str
+    floor: FloorBelow | None = key(
+        None, "floor of a building that carries the structure: every analysis then takes the motion of the floor"
+    )
 
 
 class _Built(Table):

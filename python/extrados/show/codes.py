@@ -17,7 +17,7 @@ def draw_local_mechanism(run: Stored, name: str, folder: Path) -> list[tuple[str
             color=style.EDGE,
             label="capacity at finite rotations",
         )
-        if r.zero_displacement_m is not None:
+        if r.zero_displacement_m is not None and r.jurisdiction == "NTC":
             ax.plot(
                 [0.0, r.zero_displacement_m],
                 [r.activation_acceleration_g, 0.0],
@@ -35,8 +35,11 @@ def draw_local_mechanism(run: Stored, name: str, folder: Path) -> list[tuple[str
         ax.set_ylim(0.0, None)
         ax.set_xlabel("displacement d* [m]")
         ax.set_ylabel("acceleration a* [g]")
-        ax.set_title("Capacity of the mechanism" if r.mechanism == "building" else f"Capacity of the {r.mechanism}")
+        ax.set_title(
+            "Capacity of the mechanism" if r.mechanism == "building" else f"Capacity: {r.mechanism.replace('-', ' ')}"
+        )
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-capacity")
-    caption = "Capacity curve of the equivalent oscillator, with the confidence factor; the straight line is that of the code."
+    straight = "; the straight line is that of the code" if r.jurisdiction == "NTC" else ""
+    caption = f"Capacity curve of the equivalent oscillator, with the confidence factor{straight}."
     return [(saved, caption), *draw_code_checks(run, name, folder)]

@@ -51,9 +51,12 @@ Block = Heading | Words | Table | Figure | Code
 
 @dataclass(frozen=True)
 class Document:
-    """title; facts: what stands below it, label and text; blocks in order; foot: on every printed page."""
+    """title; facts: what stands below it, label and text; opening: the first page, before the contents; blocks in order; annex: what
+    the page on the screen holds after them, and paper does not; foot: on every printed page."""
 
     title: str
     facts: list[tuple[str, str]]
     blocks: list[Block]
     foot: str
+    opening: list[Block] = field(default_factory=list)
+    annex: list[Block] = field(default_factory=list)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import jinja2
 
-from extrados.show.document import Document, Figure, Heading
+from extrados.show.document import Block, Document, Figure, Heading
 
 TEMPLATE = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>{{ document.title }}</title>
@@ -25,16 +25,18 @@ nav ol{columns:2}nav a{color:inherit}
 pre{background:#f7f7f7;padding:.7rem;overflow:auto;font-size:12px;white-space:pre-wrap}footer{margin-top:3rem;font-size:.8rem;color:#666}
 @media print{body{font-size:10.5pt;margin:0;max-width:none;padding:0}h2,h3{break-after:avoid}.fresh{break-before:page}table{font-size:8.5pt}}
 </style></head><body>
-<h1>{{ document.title }}</h1>
-<table>{% for label, text in document.facts %}<tr><th>{{ label }}</th><td>{{ text }}</td></tr>{% endfor %}</table>
-<nav><h2>Contents</h2><ol>{% for text in contents %}<li><a href="#part-{{ loop.index }}">{{ text }}</a></li>{% endfor %}</ol></nav>
-{% for kind, b, number in blocks %}
+{% macro show(blocks) %}{% for kind, b, number in blocks %}
 {% if kind == "Heading" %}<h{{ b.level + 1 }}{% if b.level == 1 %} id="part-{{ number }}"{% endif %}{% if b.fresh %} class="fresh"{% endif %}>{% if b.level == 1 %}{{ number }} {% endif %}{{ b.text }}</h{{ b.level + 1 }}>
 {% elif kind == "Words" %}<p{% if b.look %} class="{{ b.look }}"{% endif %}>{{ b.text }}</p>
 {% elif kind == "Table" %}<table>{% if b.head %}<tr>{% for cell in b.head %}<th>{{ cell }}</th>{% endfor %}</tr>{% endif %}
 {% for row in b.rows %}<tr>{% for cell in row %}{% if loop.first %}<th>{{ cell }}</th>{% else %}<td{% if cell in looks %} class="{{ cell|replace(' ', '-') }}"{% endif %}>{{ cell }}</td>{% endif %}{% endfor %}</tr>{% endfor %}</table>
 {% elif kind == "Figure" %}<figure><img alt="{{ b.caption }}"{% if b.width < 1 %} style="max-width:{{ (100 * b.width)|round|int }}%"{% endif %} src="data:image/svg+xml;base64,{{ images[b.name] }}"><figcaption>Figure {{ number }}. {{ b.caption }}</figcaption></figure>
-{% else %}<pre>{{ b.text }}</pre>{% endif %}{% endfor %}
+{% else %}<pre>{{ b.text }}</pre>{% endif %}{% endfor %}{% endmacro %}
+<h1>{{ document.title }}</h1>
+<table>{% for label, text in document.facts %}<tr><th>{{ label }}</th><td>{{ text }}</td></tr>{% endfor %}</table>
+{{ show(opening) }}
+<nav><h2>Contents</h2><ol>{% for text in contents %}<li><a href="#part-{{ loop.index }}">{{ text }}</a></li>{% endfor %}</ol></nav>
+{{ show(blocks) }}
 <footer>{{ document.foot }}</footer>
 </body></html>
 """
@@ -45,17 +47,23 @@ LOOKS = ("stands", "collapses", "cannot stand", "open", "holds", "fails")
 def page(document: Document, folder: Path) -> str:
     """The page; pictures are folder/NAME.svg."""
     numbers = {"Heading": 0, "Figure": 0}
-    blocks = []
-    for block in document.blocks:
+    opening, blocks = _numbered(document.opening, numbers), _numbered([*document.blocks, *document.annex], numbers)
+    images = {
+        b.name: base64.b64encode((folder / f"{b.name}.svg").read_bytes()).decode()
+        for _, b, _ in (*opening, *blocks) if isinstance(b, Figure)
+    }  # fmt: skip
+    return jinja2.Environment(autoescape=True).from_string(TEMPLATE).render(
+        document=document, opening=opening, blocks=blocks, images=images, looks=LOOKS,
+        contents=[b.text for _, b, _ in blocks if isinstance(b, Heading) and b.level == 1],
+    )  # fmt: skip
+
+
+def _numbered(blocks: list[Block], numbers: dict[str, int]) -> list[tuple[str, Block, int]]:
+    """Kind, block and number of each; numbers: of the headings and figures before, which go on."""
+    found = []
+    for block in blocks:
         kind = type(block).__name__
         if (isinstance(block, Heading) and block.level == 1) or isinstance(block, Figure):
             numbers[kind] += 1
-        blocks.append((kind, block, numbers.get(kind, 0)))
-    images = {
-        b.name: base64.b64encode((folder / f"{b.name}.svg").read_bytes()).decode()
-        for b in document.blocks if isinstance(b, Figure)
-    }  # fmt: skip
-    return jinja2.Environment(autoescape=True).from_string(TEMPLATE).render(
-        document=document, blocks=blocks, images=images, looks=LOOKS,
-        contents=[b.text for b in document.blocks if isinstance(b, Heading) and b.level == 1],
-    )  # fmt: skip
+        found.append((kind, block, numbers.get(kind, 0)))
+    return found

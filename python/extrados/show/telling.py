@@ -6,18 +6,16 @@ from pathlib import Path
 from typing import Any
 
 from extrados.results.assess import Assess
+from extrados.results.codes import Checked
 from extrados.results.explain import fact_of
 from extrados.results.fields import ResultModel
 from extrados.results.store import STORE, SUMMARY, Stored
 from extrados.results.strengthen import size_told
 from extrados.results.validity import validity_of
 from extrados.show.document import Block, Code, Document, Figure, Heading, Table, Words
+from extrados.show.opening import OUTCOMES, governing_figure, opening
 
 Figures = list[tuple[str, str]]
-#: Outcomes of verdicts in words
-OUTCOMES = {
-    "stands": "stands", "collapses": "collapses", "cannot-stand": "cannot stand", "open": "open", "not-applicable": "no verdict",
-}  # fmt: skip
 #: Values of a list that are shown, and rows of a list of tables
 MOST_SHOWN, MOST_ROWS = 12, 4
 
@@ -33,20 +31,33 @@ def told(run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | Non
         ("Deck", f"{deck['path'] or 'from Python'} (sha256 {deck['sha256'][:16]})"),
     ]
     facts += [("Made by", f"extrados {made['version']} {made['commit']}".strip())]
+    if code := _code_of(run):
+        facts.insert(len(facts) - 3, ("Code", code))
+    first = governing_figure(run, drawn, building)
     blocks: list[Block] = []
     if deck.get("note"):
         blocks.append(Words(_flowing(deck["note"])))
     blocks += _verdicts(run)
-    blocks += _building(deck, building)
+    blocks += _building(
+        deck, building if building is None or first is None or first.name != f"figures/{building[0]}" else None
+    )
     blocks += _hazard(run, deck)
     hidden = {name for _, name, _ in _own_tables(run)}
+    whole = any(a["kind"] == "assess" and a["results"] for a in run.analyses)
+    parts: list[Block] = []  # of an assessment: the strategies one by one, which paper does not hold
     for a in run.analyses:
-        blocks += _analysis(run, a, drawn.get(a["name"], []))
+        figures = [f for f in drawn.get(a["name"], []) if first is None or first.name != f"figures/{f[0]}"]
+        where = parts if whole and a["kind"] != "assess" else blocks
+        where += _analysis(run, a, figures)
     blocks += _limits(run)
-    blocks += _numbers(run, hidden)
-    blocks += _repeat(run, deck, made)
+    annex = [*parts, *_defaults(deck), *_numbers(run, hidden), *_repeat(run, deck, made)]
     foot = f"{title}. extrados {made['version']} {made['commit']}, deck {deck['sha256'][:16]}"
-    return Document(title, facts, blocks, foot)
+    return Document(title, facts, blocks, foot, opening(run, drawn, building), annex)
+
+
+def _code_of(run: Stored) -> str:
+    """The code of the report, where an analysis applies one."""
+    return next((r.code for a in run.analyses if isinstance(r := run[a["name"]], Checked) and r.code), "")
 
 
 def heading(deck: dict[str, Any]) -> str:
@@ -191,8 +202,8 @@ def _both(low: float | None, high: float | None) -> str:
 
 def _building(deck: dict[str, Any], drawing: tuple[str, str] | None) -> list[Block]:
     properties = deck.get("properties", [])
-    structure = [p for p in properties if p["table"] == "structure"]
-    found: list[Block] = [Heading("Building")] if structure or drawing else []
+    given = any(p["from"] != "default" and p["table"] != "motion" for p in properties)
+    found: list[Block] = [Heading("Building")] if given or drawing else []
     if drawing:
         found.append(Figure(f"figures/{drawing[0]}", drawing[1], 0.65))
     if deck.get("dimensions"):
@@ -206,11 +217,18 @@ def _building(deck: dict[str, Any], drawing: tuple[str, str] | None) -> list[Blo
     for heading, tables in (
         ("Geometry as the deck gives it", ("structure",)), ("Materials and joints", ("material", "materials", "joints")),
         ("Supports, ties and the state at the start", ("supports", "ties", "dampers", "hinges", "initial")),
+        ("Code and site", ("code",)),
     ):  # fmt: skip
-        rows = [p for p in properties if p["table"].split(".")[0] in tables]
+        rows = [p for p in properties if p["table"].split(".")[0] in tables and p["from"] != "default"]
         if rows:
             found += [Heading(heading, 2), _properties(rows)]
     return found
+
+
+def _defaults(deck: dict[str, Any]) -> list[Block]:
+    """Properties of the building that the deck leaves at their defaults."""
+    rows = [p for p in deck.get("properties", []) if p["from"] == "default" and p["table"] != "motion"]
+    return [Heading("Properties at their defaults"), _properties(rows)] if rows else []
 
 
 def _properties(rows: list[dict[str, Any]]) -> Table:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from extrados.results.store import StoreError
-from extrados.show.document import Code, Document, Figure, Heading, Table, Words
+from extrados.show.document import Block, Code, Document, Figure, Heading, Table, Words
 from extrados.show.html import LOOKS
 
 #: A drawing of more bytes is taken as a picture of dots: a page would take seconds
@@ -66,8 +66,24 @@ def markup(document: Document, folder: Path) -> str:
     if document.facts:
         rows = ", ".join(f"strong({text_of(a)}), {_words(b)}" for a, b in document.facts)
         lines.append(f"#table(columns: (auto, 1fr), {rows})")
+    lines += _set(document.opening, folder)
     lines.append("#outline(depth: 1, title: [Contents])")
-    for block in document.blocks:
+    lines += _set(document.blocks, folder)
+    if document.annex:
+        lines.append(
+            _paragraph(
+                Words(
+                    "The annex is in report.html beside this file: each strategy by itself, all numbers, settings and checksums."
+                )
+            )
+        )
+    return "\n".join(lines)
+
+
+def _set(blocks: list[Block], folder: Path) -> list[str]:
+    """Blocks in the language of typst."""
+    lines = []
+    for block in blocks:
         if isinstance(block, Heading):
             if block.fresh:
                 lines.append("#pagebreak(weak: true)")
@@ -82,7 +98,7 @@ def markup(document: Document, folder: Path) -> str:
             lines.append(
                 f'#block(fill: rgb("#f7f7f7"), inset: 6pt, width: 100%, raw({text_of(block.text)}, block: true))'
             )
-    return "\n".join(lines)
+    return lines
 
 
 def _paragraph(block: Words) -> str:

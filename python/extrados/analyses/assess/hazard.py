@@ -76,8 +76,10 @@ def peak_of(context: Context) -> tuple[float, str]:
             at_zero = float(code_spectrum(model, context.deck.folder, 0.05)(np.array([0.0]))[0])
         except ValueError as error:
             raise Refused(str(error), ("motion",)) from None
-        return at_zero / GRAVITY, "the code's spectrum at period 0, a_g S"
-    return context.motion.peak / GRAVITY, "the greatest horizontal acceleration of the motion"
+        if model.floor is None:
+            return at_zero / GRAVITY, "the code's spectrum at period 0, a_g S"
+    whose = "motion" if model is None or model.floor is None else "floor"
+    return context.motion.peak / GRAVITY, f"the greatest horizontal acceleration of the {whose}"
 
 
 def primary(motion: Motion) -> tuple[float, float] | None:

@@ -1,67 +1,72 @@
-"""code-checks: rules of codes for rocking bodies, and for walls as piers, beside the computed rocking."""
+"""code-checks: the rules of the code of a deck for a rocking block, or for a wall as a pier, beside the computed rocking."""
 
-from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from extrados.analyses.codes import ntc
-from extrados.analyses.codes.code_rules import Line, asce43, housner, ishiyama, more_piers, piers, table, west
+from extrados.analyses.codes import ntc, research
+from extrados.analyses.codes.actions import Action, actions, apart, code_of, dated, floor_below, sampled
+from extrados.analyses.codes.code_rules import Line, table
+from extrados.analyses.codes.parts import Part, asce41, en1998, nzsee
+from extrados.analyses.codes.piers import Pier, asce41_piers, en1998_piers, ntc_piers, nzsee_piers
 from extrados.analyses.codes.tables import CodeChecks
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking.conditions import of_one, told
 from extrados.core import motion as core_motion
 from extrados.core import rocking as core_rocking
 from extrados.model.structures.block import BlockAssembly
-from extrados.motions.code_spectra import damping_factor
-from extrados.motions.from_deck import code_spectrum
-from extrados.motions.motion import Motion
-from extrados.motions.tables import Compatible
 from extrados.results import codes as out
 from extrados.results.model import Array, Result
 from extrados.schema.constants import GRAVITY
-from extrados.schema.spectrum import CodeSpectrum
+from extrados.schema.table import FloorBelow
+
+#: q of the demand on a pier of masonry without reinforcement; of ASCE 41 m, which is 1 where Table 11-3 is not used
+BEHAVIOUR = {"NTC": 2.0, "EN1998": 1.5}
+#: gamma_M of masonry in a linear analysis with q (NTC 2018 7.8.1.1)
+PARTIAL = 2.0
+#: Periods [s] among which the plateau of a spectrum is looked for
+PLATEAU = np.linspace(0.05, 1.0, 96)
 
 
 def run(context: Context, options: CodeChecks) -> Result:
-    """All rules that apply to the code's own demand, with the computed rocking of the deck's motion beside them."""
-    structure = context.deck.structure
+    """The rules of the code at its limit states, with the computed rocking of the deck's motion beside them."""
+    structure, code = context.deck.structure, code_of(context)
     result = Result("code-checks")
-    demands: dict[str, Any] = {}
+    beside: dict[str, Any] = {}
     if structure.rocks_as == "piers":
-        lines = _wall(context, options)
+        lines, beside = _wall(context, options)
     else:
         block = context.building.rocker().model.block
-        lines, demands = _block(context, options, block)
+        lines, beside = _block(context, options, block)
         if options.axial_load is not None:
-            lines += _pier(context, options, block.toe_right + block.toe_left, 2.0 * block.centre_height,
-                           options.thickness or block.depth, float(block.mass[0]) * GRAVITY)  # fmt: skip
-    r = out.CodeChecks(checks={line.rule: line.check() for line in lines}, **demands)
+            width, height = block.toe_right + block.toe_left, 2.0 * block.centre_height
+            more, _ = _pier(
+                context, options, width, height, options.thickness or block.depth, float(block.mass[0]) * GRAVITY
+            )
+            lines += more
+    lines = apart(lines)
+    r = out.CodeChecks(
+        checks={line.rule: line.check() for line in lines}, jurisdiction=code.jurisdiction, code=code.name,
+        by_default=context.deck.code is None, clause="", **beside,
+    )  # fmt: skip
+    r = r.model_copy(update=r.concluded())
     result.results = r
     rows = result.tables["code_checks"] = table(lines)
     result.arrays = {
         "capacity": Array(np.array(rows.columns["capacity"]), ("rule",), "", "each in its unit, see code_checks.csv"),
         "demand": Array(np.array(rows.columns["demand"]), ("rule",)),
     }
-    said = [
-        f"{x.rule} {x.verdict} ({x.demand:.3g} against {x.capacity:.3g} {x.unit})"
-        for x in lines
-        if x.verdict in ("holds", "fails")
-    ]
-    words = [r.overall().statement, f"In detail: {'; '.join(said)}."] if said else []
+    compared = [x for x in lines if x.verdict in ("holds", "fails") and x.demand is not None and x.capacity is not None]
+    said = [f"{x.rule} {x.verdict} ({x.demand:.3g} against {x.capacity:.3g} {x.unit})" for x in compared]
+    words = [r.overall().statement, *([f"In detail: {'; '.join(said)}."] if said else [])]
     if r.dynamic_outcome:
         ratio = r.dynamic_peak_rotation_ratio
         spoken = {"collapse": "overturns", "recovery": f"rocks to {100 * ratio:.0f} % of its critical rotation and recovers",
                   "no-hinging": "does not rock"}[r.dynamic_outcome]  # fmt: skip
         words.append(f"Computed under the motion itself, the block {spoken}.")
-    strengths = {x.rule: x.capacity for x in lines if x.unit == "N" and x.capacity is not None}
-    if strengths:
-        weakest = min(strengths, key=lambda rule: strengths[rule])
-        words.append(
-            f"As a pier its least strength is {strengths[weakest] / 1e3:.4g} kN ({weakest}), with all partial factors at 1."
-        )
-    if not said:
-        words.insert(0, "Capacities without a demand: give spectrum or peak_acceleration, the values of the code.")
+    if (weakest := r.weakest()) is not None and said:
+        words.append(f"As a pier its least strength is {(weakest[1].capacity or 0.0) / 1e3:.4g} kN ({weakest[0]}).")
     result.answer = " ".join(words)
     return result
 
@@ -72,25 +77,20 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
     model = rocker.model
     context.warnings += model.warnings
     width, height = block.toe_right + block.toe_left, 2.0 * block.centre_height
-    spectrum = demanded_spectrum(context, options.spectrum, options.motion_spectrum)
-    pga, sa, pgv = None, None, options.peak_velocity
-    if options.motion_spectrum and pgv is None and spectrum_of(context, options.spectrum) is None:
-        pgv = float(core_motion.measures(*_sampled(context.motion)).pgv[0])
-    if spectrum is not None:
-        pga = spectrum(0.0, 0.05) / GRAVITY
-
-        def sa(period: float, damping: float) -> float:
-            return spectrum(period, damping) / GRAVITY
-
-    if options.peak_acceleration is not None:
-        pga = options.peak_acceleration / GRAVITY
+    code, asked = code_of(context), actions(context, options)
+    main = next((a for a in asked if a.state == code.concluding), Action(code.concluding, None, None))
+    pga, pgv = None if main.peak is None else main.peak / GRAVITY, options.peak_velocity
+    if main.of_motion and pgv is None:
+        pgv = float(core_motion.measures(*sampled(context.motion)).pgv[0])
+    factor = code.factor if options.confidence_factor is None else options.confidence_factor
+    q = options.behaviour_factor or BEHAVIOUR.get(code.jurisdiction, 1.0)
     beside: dict[str, Any] = {
-        "peak_ground_acceleration_g": pga, "peak_ground_velocity_m_s": pgv, "confidence_factor": options.confidence_factor,
-        "behaviour_factor": options.behaviour_factor,
+        "peak_ground_acceleration_g": pga, "peak_ground_velocity_m_s": pgv, "confidence_factor": factor,
+        "behaviour_factor": q,
     }  # fmt: skip
     violated, friction = [], context.building.joints.coefficient
-    if options.confidence_factor < ntc.LC1 and context.building.material.compressive_strength is None:
-        violated.append(ntc.below_lc1(options.confidence_factor))
+    if code.jurisdiction == "NTC" and factor < ntc.LC1 and context.building.material.compressive_strength is None:
+        violated.append(ntc.below_lc1(factor))
     if friction is not None and friction < np.tan(model.alpha.min()):
         violated.append(
             f"Friction {friction:g} is below the {np.tan(model.alpha.min()):.3g} that rocking needs: the block slides first, which these "
@@ -112,68 +112,74 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
     alpha = float(model.alpha.min())
     # one body: all its mass takes part (e* = 1); d* is the displacement of the centre of mass
     alpha0 = float(np.tan(alpha))
-    a0 = alpha0 * GRAVITY / options.confidence_factor
-    lines = [
-        west(alpha0, pga), *ishiyama(width, height, pga, pgv),
-        *ntc.checks(a0, block.centre_height * alpha0, options.behaviour_factor, None if pga is None else pga * GRAVITY, spectrum,
-                    f"alpha_0 {alpha0:.4g}, e* 1"),
-        asce43(width, height, sa),
-    ]  # fmt: skip
+    below = floor_below(context)
+    place = (0.0, None) if below is None else (below.height, below.building_height)
+    part = Part("block", alpha0, height, width, *place)
+    lines: list[Line] = []
+    for action in asked or [main]:
+        match code.jurisdiction:
+            case "NTC":
+                found = ntc.Capacities(
+                    alpha0 * GRAVITY / factor,
+                    block.centre_height * alpha0,
+                    alpha0 * GRAVITY / factor,
+                    f"alpha_0 {alpha0:.4g}, e* 1",
+                )
+                rows = ntc.checks(found, q, action.state, action.peak, action.spectrum, _placed(action, below))
+            case "EN1998":
+                rows = en1998(part, action.peak, action.state)
+            case "ASCE41":
+                rows = asce41(
+                    part,
+                    None if action.spectrum is None else action.spectrum(1.0, 0.05),
+                    "one-story",
+                    None,
+                    action.state,
+                )
+            case "NZSEE":
+                rows = nzsee(part, action.spectrum, action.state)
+            case _:
+                rows = []
+        lines += dated(rows, action)
+    return lines + _formulas(context, options, main, (width, height), pgv), beside
+
+
+def _placed(action: Action, below: FloorBelow | None) -> ntc.Place:
+    """Where the block stands: on the ground, or on the floor of the deck's motion."""
+    if below is None or action.of_motion:
+        return ntc.Place(shaken=below is not None)
+    floor = None
+    if action.spectrum is not None:
+        period, damping = below.building_period, below.building_damping
+        floor = ntc.floor(action.spectrum, below.height, below.building_height, below.storeys, period, damping)
+    return ntc.Place(True, floor)
+
+
+def _formulas(
+    context: Context, options: CodeChecks, main: Action, size: tuple[float, float], pgv: float | None
+) -> list[Line]:
+    """Formulas of other origin for a rocking block that the deck requests."""
+    model, wanted = context.building.rocker().model, code_of(context).research
+    alpha = float(model.alpha.min())
+    pga = None if main.peak is None else main.peak / GRAVITY
+
+    def sa(period: float, damping: float) -> float:
+        assert main.spectrum is not None
+        return main.spectrum(period, damping) / GRAVITY
+
+    found = []
+    if "West" in wanted:
+        found.append(research.west(float(np.tan(alpha)), pga))
+    if "Ishiyama" in wanted:
+        found += research.ishiyama(*size, pga, pgv)
+    if "ASCE 43" in wanted:
+        found.append(research.asce43(*size, None if main.spectrum is None else sa))
     if options.pulse_period is not None:
-        lines.append(housner(float(model.frequency[0]), alpha, pga, options.pulse_period))
-    return lines, beside
+        found.append(research.housner(float(model.frequency[0]), alpha, pga, options.pulse_period))
+    return found
 
 
-def spectrum_of(
-    context: Context, model: CodeSpectrum | None, key: str = "spectrum"
-) -> Callable[[float, float], float] | None:
-    """Pseudo-acceleration [m/s^2] of the code over period and damping ratio, whatever the seed of the motion; None
-    without a spectrum. key: of the analysis that says it, for what is wrong with it.
-    """
-    if model is None and isinstance(context.deck.motion, Compatible):
-        model = context.deck.motion
-    if model is None:
-        return None
-
-    def at(period: float, damping: float) -> float:
-        try:
-            value = float(code_spectrum(model, context.deck.folder, damping)(np.array([period]))[0])
-        except ValueError as error:
-            raise Refused(str(error), ("analysis", key)) from None
-        # ASCE 7 and a table are of 5 %; at period zero the ground itself has no damping
-        five = model.code in ("ASCE7", "table") and period > 0.0
-        return value * (damping_factor(damping) if five else 1.0)
-
-    return at
-
-
-def demanded_spectrum(
-    context: Context, model: CodeSpectrum | None, of_motion: bool
-) -> Callable[[float, float], float] | None:
-    """That of the code, see `spectrum_of`; where the deck has none and asks for it, that of its motion."""
-    code = spectrum_of(context, model)
-    if code is not None or not of_motion:
-        return code
-    if context.deck.motion is None:
-        raise Refused("motion_spectrum needs a [motion]", ("analysis", "motion_spectrum"))
-    motion = context.motion
-    acceleration, step = _sampled(motion)
-
-    def at(period: float, damping: float) -> float:
-        if period < 10.0 * step:  # too stiff to answer otherwise than the ground
-            return motion.peak
-        return float(core_motion.response_spectra(acceleration, step, [period], [damping]).psa[0, 0])
-
-    return at
-
-
-def _sampled(motion: Motion) -> tuple[np.ndarray, float]:
-    """Accelerations [m/s^2] and their step [s]."""
-    time, acceleration = motion.series()
-    return acceleration, float(time[1] - time[0])
-
-
-def _wall(context: Context, options: CodeChecks) -> list[Line]:
+def _wall(context: Context, options: CodeChecks) -> tuple[list[Line], dict[str, Any]]:
     """The pier rules for a wall without openings, with its material's compressive strength."""
     wall = context.deck.structure
     pier = context.building.pier_blocks()
@@ -184,17 +190,48 @@ def _wall(context: Context, options: CodeChecks) -> list[Line]:
 
 def _pier(
     context: Context, options: CodeChecks, width: float, height: float, thickness: float, weight: float
-) -> list[Line]:
-    strength, joints = context.building.material.compressive_strength, context.building.joints
+) -> tuple[list[Line], dict[str, Any]]:
+    """The pier rules of the code at its limit states, and the factors by which they are made."""
+    strength, joints, code = context.building.material.compressive_strength, context.building.joints, code_of(context)
     assert strength is not None and options.axial_load is not None
-    load = options.axial_load + weight
-    if load >= 0.7 * strength * width * thickness:
+    pier = Pier(
+        width, height, thickness, options.axial_load, weight, options.fixity == "double", strength, joints.cohesion,
+        options.sliding_friction, options.diagonal_strength, options.interlocking_ratio, options.unit_strength,
+    )  # fmt: skip
+    if pier.load >= 0.7 * strength * pier.area:
         raise Refused("the vertical load alone crushes the pier (P >= 0.7 f_m A)", ("analysis", "axial_load"))
-    fixed = options.fixity == "double"
-    return [
-        *piers(width, height, thickness, load, strength, joints.cohesion, options.sliding_friction, fixed),
-        *more_piers(
-            width, height, thickness, options.axial_load, weight, strength, joints.cohesion, options.sliding_friction,
-            options.diagonal_strength, fixed,
-        ),
-    ]  # fmt: skip
+    factor = code.factor if options.confidence_factor is None else options.confidence_factor
+    q = options.behaviour_factor or BEHAVIOUR.get(code.jurisdiction, 1.0)
+    lines: list[Line] = []
+    for action in actions(context, options) or [Action(code.concluding, None, None)]:
+        demand, how = _lateral(pier, action, 1.0 if code.jurisdiction == "ASCE41" else q)
+        match code.jurisdiction:
+            case "NTC":
+                partial = options.partial_factor or (1.0 if demand is None else PARTIAL)
+                rows = ntc_piers(pier, factor, partial, demand, action.state)
+            case "EN1998":
+                rows = en1998_piers(pier, factor, demand, action.state)
+            case "ASCE41":
+                rows = asce41_piers(pier, factor, demand, q, action.state)
+            case "NZSEE":
+                rows = nzsee_piers()
+            case _:
+                rows = []
+        lines += dated([x if x.demand is None else replace(x, note=f"{x.note}, {how}") for x in rows], action)
+    formulas = research.formulas_of_piers(
+        width, height, thickness, pier.load, strength, joints.cohesion, options.sliding_friction, pier.double
+    )
+    lines += [x for x in formulas if x.rule.startswith(tuple(code.research))] if code.research else []
+    return lines, {"confidence_factor": factor, "behaviour_factor": q}
+
+
+def _lateral(pier: Pier, action: Action, q: float) -> tuple[float | None, str]:
+    """Lateral force [N] on a pier whose load sways with it, and its acceleration in words: the plateau of the spectrum, since the
+    period of the building is not known here, or a peak acceleration alone; over q."""
+    if action.spectrum is not None:
+        felt, words = max(action.spectrum(float(t), 0.05) for t in PLATEAU), "plateau of the spectrum"
+    elif action.peak is not None:
+        felt, words = action.peak, "peak acceleration, rigid pier"
+    else:
+        return None, ""
+    return felt / GRAVITY * pier.load / q, f"{words} {felt / GRAVITY:.3g} g over q {q:g}, on N {pier.load / 1e3:.4g} kN"

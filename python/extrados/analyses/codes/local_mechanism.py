@@ -5,10 +5,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from extrados.analyses.codes import ntc
-from extrados.analyses.codes.code_checks import demanded_spectrum, spectrum_of
+from extrados.analyses.codes.actions import Action, Spectrum, actions, apart, code_of, dated, floor_below
+from extrados.analyses.codes.bending import Bending
 from extrados.analyses.codes.code_rules import Line, table
 from extrados.analyses.codes.kinematics import Capacity, NoMechanism, Overturning, capacity, in_chain, spectral
-from extrados.analyses.codes.mechanisms import overturning
+from extrados.analyses.codes.mechanisms import FREE_TO_VIBRATE, body_of
 from extrados.analyses.codes.parts import Part, asce41, en1998, nzsee
 from extrados.analyses.codes.tables import LocalMechanism
 from extrados.analyses.codes.walls import WallPart, wall_parts
@@ -30,6 +31,7 @@ from extrados.results.limit import DILATANT, SAME
 from extrados.results.model import Array, Result, TableData
 from extrados.results.verdict import Bound
 from extrados.schema.constants import GRAVITY
+from extrados.schema.table import FloorBelow
 from extrados.views.building import Building
 from extrados.views.rockers.mechanism import MechanismModel, NoMotion
 from extrados.views.rockers.restraints import Restraints, members_of
@@ -54,10 +56,20 @@ class _Turning:
     place: tuple[float, float | None]
     bound: Bound | None = None
     part: WallPart | None = None
-    body: Overturning | None = None
+    body: Overturning | Bending | None = None
     links: Capacity | None = None
     slides: bool = False
     associated: Capacity | None = None
+
+
+def confidence(context: Context, options: LocalMechanism) -> float:
+    """FC: of the analysis; else of the code, which is that of LC1 by NTC where crushing is neglected (C8.7.1.2.1.3)."""
+    code = code_of(context)
+    if options.confidence_factor is not None:
+        return options.confidence_factor
+    if code.jurisdiction == "NTC" and context.building.material.compressive_strength is None:
+        return ntc.LC1
+    return code.factor if code.jurisdiction == "NTC" else 1.0
 
 
 @dataclass(frozen=True)
@@ -78,6 +90,8 @@ class _Judged:
 def run(context: Context, options: LocalMechanism) -> Result:
     """Multiplier, M*, a_0*, capacity curve, and the checks of the codes that apply, of the mechanism of least margin."""
     building, on_plan = context.building, False
+    if (below := floor_below(context)) is not None:
+        options = _on_floor(options, below)
     if options.mechanism == "building":
         on_plan = isinstance(building.structure, Plan)
         try:
@@ -90,8 +104,9 @@ def run(context: Context, options: LocalMechanism) -> Result:
             context.warnings.append(
                 "The corner is assumed to overturn about its outer edge: crushing there is neglected."
             )
-        body = overturning(options, building.material.density, building.material.compressive_strength)
+        body = body_of(options, building.material.density, building.material.compressive_strength)
         z = options.hinge_height if options.base_height is None else options.base_height
+        z += 0.0 if below is None or options.base_height is not None else below.height
         turnings = [
             _body(body, f"the {options.mechanism}", (z, (options.building_height or options.height) if z else None))
         ]
@@ -103,6 +118,14 @@ def run(context: Context, options: LocalMechanism) -> Result:
         key=lambda j: (np.inf if (least := j.results.least()) is None else least, j.results.activation_acceleration_g)
     )
     return _of_walls(context, judged) if on_plan else _result(judged[0])
+
+
+def _on_floor(options: LocalMechanism, below: FloorBelow) -> LocalMechanism:
+    """The table of a mechanism whose structure stands on a floor: the building is that of the motion."""
+    given = options.model_fields_set
+    own = {"building_height": below.building_height, "building_period": below.building_period, "storeys": below.storeys}
+    unused = {"building_period", "storeys"} if options.modes else set()
+    return options.model_copy(update={k: v for k, v in own.items() if k not in given | unused})
 
 
 def _refuse_fallen(turning: _Turning) -> None:
@@ -121,7 +144,7 @@ def _refuse_fallen(turning: _Turning) -> None:
 
 
 def _body(
-    body: Overturning, words: str, place: tuple[float, float | None], part: WallPart | None = None
+    body: Overturning | Bending, words: str, place: tuple[float, float | None], part: WallPart | None = None
 ) -> _Turning:  # fmt: skip
     """A body that turns about a hinge."""
     weight, displacement = body.swaying
@@ -178,18 +201,18 @@ def _of_walls(context: Context, judged: list[_Judged]) -> Result:
 
 def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Judged:
     """The checks of a mechanism, and its results."""
-    found, (z, building) = turning.found, turning.place
-    d0, fc = found.d0, options.confidence_factor
+    found, (z, building), code = turning.found, turning.place, code_of(context)
+    d0, fc = found.d0, confidence(context, options)
     if d0 is None and found.alone <= 0.0:
         context.warnings.append(
             "Without its ties the body would not stand at rest: the nonlinear check, which neglects them, is not made."
         )
     storeys = len(structure.storeys) if isinstance(structure := context.building.structure, Plan) else options.storeys
-    lines, more = _checks(context, options, turning, storeys)
+    lines, more = _checks(context, options, turning, storeys, fc)
     violated = []
-    if fc < ntc.LC1 and context.building.material.compressive_strength is None:
+    if code.jurisdiction == "NTC" and fc < ntc.LC1 and context.building.material.compressive_strength is None:
         violated.append(ntc.below_lc1(fc))
-    if options.mechanism in ("parapet", "gable") and not z:
+    if options.mechanism in FREE_TO_VIBRATE and not z:
         violated.append(
             f"The demand is that of the ground, but a {options.mechanism} is part of a building, which amplifies the motion. Give base_height and "
             "building_height."
@@ -201,13 +224,15 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
         equivalent_period_s=None if d0 is None else ntc.equivalent_period(found.alone / fc, d0), swaying_weight_N=found.weight,
         base_height_m=z, **({} if building is None else {"building_height_m": building}), confidence_factor=fc,
         behaviour_factor=options.behaviour_factor, **({} if turning.bound is None else {"bound": turning.bound}),
-        **({"violated": violated} if violated else {}), checks={x.rule: x.check() for x in lines}, **more,
+        **({"violated": violated} if violated else {}), checks={x.rule: x.check() for x in lines}, jurisdiction=code.jurisdiction,
+        code=code.name, by_default=context.deck.code is None, clause="", **more,
     )  # fmt: skip
+    made = made.model_copy(update=made.concluded())
 
     def by(other: Capacity) -> out.LocalMechanism:
         """The results by the checks of another capacity."""
         told = list(context.warnings)
-        rows, _ = _checks(context, options, replace(turning, found=other), storeys)
+        rows, _ = _checks(context, options, replace(turning, found=other), storeys, fc)
         context.warnings = told
         return made.model_copy(update={"checks": {x.rule: x.check() for x in rows}})
 
@@ -301,8 +326,8 @@ def _side(context: Context, options: LocalMechanism, model: MechanismModel, held
     of_links = one.mass * GRAVITY, sense * core_mechanism.follow(one, [0.0])[1][0, :, 0]
     carried = sense * float((parts[-1] - parts[0]) @ one.mass) * GRAVITY / float(of_links[0] @ of_links[1])
     links = capacity(found.alpha0, *of_links, carried, model.uplift[side])
-    apart = abs(links.part / found.part - 1.0) > ALIKE
-    if apart:
+    differ = abs(links.part / found.part - 1.0) > ALIKE
+    if differ:
         context.warnings.append(
             f"e* takes each block as a weight of its own: {found.part:.3g}. With one weight for each of the {len(one.mass)} rigid links of "
             f"the chain, as [C8.7.1.1] defines P_k, e* is {links.part:.3g}, and a_0* {100.0 * (found.part / links.part - 1.0):+.0f} %."
@@ -314,8 +339,8 @@ def _side(context: Context, options: LocalMechanism, model: MechanismModel, held
             "The mechanism is the one without dampers and added hinges, which then resist it: its multiplier is an upper bound."
         )
     return _Turning(
-        found, (np.asarray(spectral(*moving, travel)), alpha), _words(building), _place(stones, chain, options), bound,
-        links=links if apart else None,
+        found, (np.asarray(spectral(*moving, travel)), alpha), _words(building), _place(context, stones, chain, options), bound,
+        links=links if differ else None,
     )  # fmt: skip
 
 
@@ -389,7 +414,7 @@ def _at_rest(context: Context, options: LocalMechanism, side: int) -> _Turning:
                     f"the {DILATANT}. The checks use the lower value."
                 )
     return _Turning(
-        found, (np.zeros(1), np.array([found.alpha0])), words, _place(stones, chain, options), bound, slides=slides, associated=associated,
+        found, (np.zeros(1), np.array([found.alpha0])), words, _place(context, stones, chain, options), bound, slides=slides, associated=associated,
     )  # fmt: skip
 
 
@@ -416,7 +441,9 @@ def _without_dilatancy(limit: LimitAnalysis, sense: int) -> tuple[float, Mechani
     return least, mechanism
 
 
-def _place(stones: Assembly, chain: np.ndarray, options: LocalMechanism) -> tuple[float, float | None]:
+def _place(
+    context: Context, stones: Assembly, chain: np.ndarray, options: LocalMechanism
+) -> tuple[float, float | None]:
     """z and H [m]: of the deck, else of the lowest joint between the chain and what stays at rest, and of the top of all, above the
     lowest support; a mechanism that reaches the ground stands on it."""
     moves = np.append(chain, False)  # GROUND = -1 is the last
@@ -427,6 +454,8 @@ def _place(stones: Assembly, chain: np.ndarray, options: LocalMechanism) -> tupl
     z, top = 0.0, max(float(outline[:, 1].max()) for outline in stones.outlines) - foundation
     if not (border & grounded).any():
         z = float(low[border].min()) - foundation
+    if (below := floor_below(context)) is not None:
+        z += below.height
     if options.base_height is not None:
         z = options.base_height
     return z, (options.building_height or top) if z > 0.0 else None
@@ -448,63 +477,96 @@ def _held(held: Restraints, side: int, rotation: np.ndarray) -> np.ndarray:
 
 
 def _checks(
-    context: Context, options: LocalMechanism, turning: _Turning, storeys: int
+    context: Context, options: LocalMechanism, turning: _Turning, storeys: int, fc: float
 ) -> tuple[list[Line], dict[str, float]]:
+    """The rules of the code at each of its limit states, and results that stand beside them."""
+    code, asked = code_of(context), actions(context, options)
+    part = _part(context, options, turning)
+    lines: list[Line] = []
+    more: dict[str, float] = {}
+    for action in asked or [Action(code.concluding, None, None)]:
+        match code.jurisdiction:
+            case "NTC":
+                found, beside = _ntc(context, options, turning, storeys, fc, action)
+                more |= beside if action.state == code.concluding else {}
+            case "EN1998":
+                found = en1998(part, action.peak, action.state)
+            case "ASCE41":
+                found = _asce(options, part, action)
+            case "NZSEE":
+                found = nzsee(part, action.spectrum, action.state)
+            case _:
+                found = []
+        lines += dated(found, action)
+    return apart(lines), more
+
+
+def _asce(options: LocalMechanism, part: Part, action: Action) -> list[Line]:
+    one_second, short = options.one_second_acceleration, None
+    if one_second is None and action.spectrum is not None:
+        one_second, short = action.spectrum(1.0, 0.05), action.spectrum(0.2, 0.05)
+    return asce41(part, one_second, options.storey, short, action.state)
+
+
+def _ntc(
+    context: Context, options: LocalMechanism, turning: _Turning, storeys: int, fc: float, action: Action
+) -> tuple[list[Line], dict[str, float]]:
+    """The checks of NTC at a limit state, and a_Z."""
     found, (z, height) = turning.found, turning.place
-    spectrum = demanded_spectrum(context, options.spectrum, options.motion_spectrum)
-    a_g = spectrum(0.0, 0.05) if spectrum is not None else None
-    if options.peak_acceleration is not None:
-        a_g = options.peak_acceleration
-    at_height = None
     note = f"alpha_0 {found.alpha0:.4g}, e* {found.part:.3g}"
+    at_height = None
     if height is not None:
         note += f", z {z:.3g} m, z/H {z / height:.3g}"
-        if spectrum is not None:
-            at_height = ntc.floor(spectrum, z, height, storeys, options.building_period)
-        elif a_g is not None:
+        if action.spectrum is not None:
+            at_height = _floor(options, action.spectrum, z, height, storeys)
+        elif action.peak is not None:
             context.warnings.append(
                 f"at {z:.3g} m above the foundation the checks of NTC require the response of the building at its period: without a spectrum they "
                 "have no demand"
             )
-    fc, raised = options.confidence_factor, height is not None
-    free = options.mechanism in ("parapet", "gable")
-    lines = ntc.checks(
-        found.acceleration / fc,
-        found.d0,
-        options.behaviour_factor,
-        a_g,
-        spectrum,
-        note,
-        at_height,
-        found.alone / fc,
-        raised,
-        free,
-    )
-    if options.collapse_spectrum is not None and found.d0 is not None:
-        rare, above = spectrum_of(context, options.collapse_spectrum, "collapse_spectrum"), None
-        assert rare is not None
-        if height is not None:
-            above = ntc.floor(rare, z, height, storeys, options.building_period)
-        lines.append(ntc.collapse_check(found.alone / fc, found.d0, rare, above))
-    part = _part(options, turning)
-    if raised and a_g is not None:
-        lines.append(en1998(part, a_g))
-    if options.one_second_acceleration is not None:
-        lines.append(asce41(part, options.one_second_acceleration, options.storey))
-    if options.mechanism in ("parapet", "wall", "gable"):
-        lines.append(nzsee(part, spectrum))
+    free, period = options.mechanism in FREE_TO_VIBRATE, _period(context, options)
+    place = ntc.Place(height is not None, at_height, free, period)
+    if action.of_motion and floor_below(context) is not None:
+        place, at_height = ntc.Place(free=free, period=period, shaken=True), None
+    compared = ntc.Capacities(found.acceleration / fc, found.d0, found.alone / fc, note)
+    lines = ntc.checks(compared, options.behaviour_factor, action.state, action.peak, action.spectrum, place)
     return lines, {} if at_height is None else {"floor_acceleration_g": at_height.acceleration / GRAVITY}
 
 
-def _part(options: LocalMechanism, turning: _Turning) -> Part:
+def _floor(options: LocalMechanism, spectrum: Spectrum, z: float, height: float, storeys: int) -> ntc.Floor:
+    """The floor spectrum by the modes of the deck, else by the first mode."""
+    if options.modes:
+        modes = [ntc.FloorMode(m.period, m.participation * m.shape, m.damping) for m in options.modes]
+        return ntc.Floor(spectrum, tuple(sorted(modes, key=lambda m: -m.period)))
+    return ntc.floor(spectrum, z, height, storeys, options.building_period)
+
+
+def _period(context: Context, options: LocalMechanism) -> float | None:
+    """T_0 of a free part [s]: of the deck, or from a modulus of elasticity that the deck gives; None where neither is known."""
+    material = context.building.material
+    if options.period is not None or options.mechanism not in FREE_TO_VIBRATE:
+        return options.period
+    if "young" not in material.model_fields_set or options.height is None or options.thickness is None:
+        return None
+    return ntc.own_period(options.height - options.hinge_height, options.thickness, material.density, material.young)
+
+
+def _part(context: Context, options: LocalMechanism, turning: _Turning) -> Part:
     """What turns, as the other codes see it."""
     z, height = turning.place
     top = None if options.height is None else options.height - options.hinge_height
     element = "wall of a building" if turning.part is not None else options.mechanism
     if options.mechanism == "building" and turning.part is None:
-        element = "chain of stones"
-    held = options.thickness is not None and any(
-        tie.height + options.thickness >= float(options.height or 0.0) for tie in options.ties
+        element = "chain of blocks"
+    held = element == "vertical-bending" or (
+        options.thickness is not None
+        and any(tie.height + options.thickness >= float(options.height or 0.0) for tie in options.ties)
     )
-    loaded = any(floor.load > 0.0 for floor in options.floors)
-    return Part(element, turning.found.alpha0, top, options.thickness, z, height, loaded, held)
+    load = sum(floor.load for floor in options.floors)
+    first = None if height is None else options.building_period or ntc.first_period(height)
+    if options.modes:
+        first = max(m.period for m in options.modes)
+    return Part(
+        element, turning.found.alpha0, top, options.thickness, z, height, load > 0.0, held, load, weight=turning.found.weight,
+        period=_period(context, options), first=first,
+    )  # fmt: skip

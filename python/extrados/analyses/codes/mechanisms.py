@@ -1,8 +1,9 @@
-"""The local mechanisms that engineers meet, as one body that turns about a hinge: from their table to weights and pushes."""
+"""The local mechanisms of walls, from their table: one body that turns about a hinge, or two that bend."""
 
 import math
 from dataclasses import replace
 
+from extrados.analyses.codes.bending import Bending, HorizontalBending, vertical_bending
 from extrados.analyses.codes.kinematics import Overturning, Push, Weight
 from extrados.analyses.codes.ntc import toothed_edge
 from extrados.analyses.codes.tables import Floor, LocalMechanism
@@ -14,7 +15,56 @@ from extrados.schema.constants import GRAVITY
 NEEDS = {
     "facade": ("height", "thickness"), "corner": ("height", "thickness", "crack_angle"), "gable": ("height", "thickness", "width"),
     "parapet": ("height", "thickness"), "wall": ("height", "thickness"), "tower": ("height", "thickness"),
+    "chimney": ("height", "thickness"), "vertical-bending": ("height", "thickness"),
+    "horizontal-bending": ("height", "thickness", "width", "abutment_force"),
 }  # fmt: skip
+#: Keys of some mechanisms alone, with those that use them
+ONLY = {
+    "crack_angle": ("corner",), "abutment_force": ("horizontal-bending",), "wings": ("facade",), "interlocking": ("facade",),
+    "side_walls": ("facade", "gable", "parapet", "wall", "tower"),
+    "ties": ("facade", "corner", "gable", "parapet", "wall", "tower", "chimney"),
+}  # fmt: skip
+#: Parts that are free to vibrate at a period of their own [C8.7.1.9]
+FREE_TO_VIBRATE = ("parapet", "gable", "chimney")
+#: Mechanisms that are a wall of the width 1 m where none is given; others are as wide as thick
+AS_WIDE = ("tower", "chimney")
+
+
+def body_of(options: LocalMechanism, density: float, strength: float | None) -> Overturning | Bending:
+    """The mechanism of the table: a body that overturns, or two that bend; see `overturning`."""
+    if options.mechanism not in ("vertical-bending", "horizontal-bending"):
+        return overturning(options, density, strength)
+    _refuse_sizes(options)
+    return _bending(options, density, strength)
+
+
+def _bending(options: LocalMechanism, density: float, strength: float | None) -> Bending:
+    height, thickness = float(options.height or 0.0) - options.hinge_height, float(options.thickness or 0.0)
+    width = options.width or 1.0
+    weight = density * GRAVITY * thickness * width * height
+    if not weight > 0.0:
+        raise Refused("nothing that sways has weight: give a density above zero", ("material", "density"))
+    if options.mechanism == "vertical-bending":
+        for k, floor in enumerate(options.floors):
+            if floor.height < float(options.height or 0.0) or floor.pushing or floor.thrust:
+                raise Refused(
+                    "vertical bending takes the load that floors lay on the top of the wall, which they hold: give height at the top, and load",
+                    ("analysis", "floors", k),
+                )
+        load = sum(f.load for f in options.floors)
+        moment = sum(f.load * (0.5 * thickness if f.arm is None else f.arm) for f in options.floors)
+        return vertical_bending(
+            height, thickness, width, weight, load, moment / load if load else 0.5 * thickness, strength
+        )
+    sway = sum(f.load * f.sways + f.pushing for f in options.floors)
+    thrust, force = sum(f.thrust for f in options.floors), float(options.abutment_force or 0.0)
+    depth = 0.0 if strength is None else force / (strength * height)
+    if depth >= 0.5 * thickness:
+        raise Refused(
+            f"the strip cannot carry this thrust: it compresses {depth:.3g} m of its {thickness:g} m, of which half is the most",
+            ("analysis", "abutment_force"),
+        )
+    return HorizontalBending(width, thickness, weight + sway, force, thrust, depth)
 
 
 def overturning(options: LocalMechanism, density: float, strength: float | None) -> Overturning:
@@ -45,9 +95,12 @@ def _refuse_sizes(options: LocalMechanism) -> None:
                 raise Refused(
                     f"{part.height:g} m is above the top of the wall, {top:g} m", ("analysis", name, k, "height")
                 )
-    if options.mechanism == "corner" and options.side_walls is not None:
-        raise Refused("both walls of a corner turn with it: leave side_walls out", ("analysis", "side_walls"))
-    if options.interlocking is not None and (options.mechanism != "facade" or options.side_walls is not None):
+    for name, users in ONLY.items():
+        if name in options.model_fields_set and getattr(options, name) and options.mechanism not in users:
+            raise Refused(
+                f"{options.mechanism} does not use {name}: remove it ({', '.join(users)} do)", ("analysis", name)
+            )
+    if options.interlocking is not None and options.side_walls is not None:
         raise Refused(
             "teeth hold a facade that leaves its side walls behind: leave interlocking, or side_walls, out",
             ("analysis", "interlocking"),
@@ -59,13 +112,18 @@ def _refuse_sizes(options: LocalMechanism) -> None:
 def _upright(options: LocalMechanism, density: float, strength: float | None) -> Overturning:
     """A wall, a gable or a tower that turns about a hinge along it."""
     height, thickness = float(options.height or 0.0) - options.hinge_height, float(options.thickness or 0.0)
-    width = options.width or (thickness if options.mechanism == "tower" else 1.0)
+    width = options.width or (thickness if options.mechanism in AS_WIDE else 1.0)
     unit = density * GRAVITY * thickness
     if options.mechanism == "gable":
         wall = Weight(unit * width * height / 2.0, thickness / 2.0, height / 3.0)
     else:
         wall = Weight(unit * width * height, thickness / 2.0, height / 2.0)
     weights, pushes = [wall], []
+    for wing in options.wings:
+        low, high = max(0.0, wing.foot - options.hinge_height), wing.height - options.hinge_height
+        if high > low:
+            own = density * GRAVITY * wing.thickness * wing.width * (high - low)
+            weights.append(Weight(own, wing.setback + wing.thickness / 2.0, 0.5 * (low + high)))
     for floor in options.floors:
         level = floor.height - options.hinge_height
         if level < 0.0:

@@ -4,8 +4,9 @@ mechanism its sizes."""
 import contextlib
 from collections.abc import Iterator
 
+from extrados.analyses.codes.actions import actions, code_of, refuse_mixed
 from extrados.analyses.codes.kinematics import NoMechanism
-from extrados.analyses.codes.mechanisms import overturning
+from extrados.analyses.codes.mechanisms import body_of
 from extrados.analyses.codes.tables import CodeChecks, LocalMechanism
 from extrados.analyses.codes.walls import wall_parts
 from extrados.analyses.context import Context, Refused
@@ -22,6 +23,9 @@ OF_A_BODY = (
     "width",
     "hinge_height",
     "crack_angle",
+    "abutment_force",
+    "wings",
+    "period",
     "floors",
     "ties",
     "side_walls",
@@ -33,7 +37,10 @@ OF_A_PLACE = ("base_height", "building_height", "storeys")
 def needs(context: Context, options: Analysis) -> Iterator[Need]:
     """Steps that raise where the deck is wrong, see `analyses.needs`."""
     building, structure = context.building, context.building.structure
+    if isinstance(options, LocalMechanism | CodeChecks):
+        yield lambda: refuse_mixed(context, options)
     if isinstance(options, LocalMechanism):
+        yield lambda: _refuse_elsewhere(context, options)
         if not options.of_stones(building):
             for what, key in building.special_keys.items():
                 yield lambda what=what, key=key: _refuse_unheld(what, key)
@@ -46,7 +53,7 @@ def needs(context: Context, options: Analysis) -> Iterator[Need]:
             if isinstance(structure, Plan):
                 yield lambda: _read_walls(building)
         else:
-            yield lambda: overturning(options, building.material.density, building.material.compressive_strength)
+            yield lambda: body_of(options, building.material.density, building.material.compressive_strength)
     if not isinstance(options, CodeChecks):
         return
     wall = structure is not None and structure.rocks_as == "piers"
@@ -57,9 +64,7 @@ def needs(context: Context, options: Analysis) -> Iterator[Need]:
         if context.deck.motion is not None:
             yield context.refuse_motion
         if options.spectrum is not None:
-            from extrados.analyses.codes.code_checks import spectrum_of
-
-            yield lambda: spectrum_of(context, options.spectrum)(0.0, 0.05)
+            yield lambda: actions(context, options)
     if (wall or options.axial_load is not None) and building.material.compressive_strength is None:
         yield lambda: _refuse_weak()
 
@@ -79,6 +84,17 @@ def _refuse_unheld(what: str, key: Key) -> None:
 
 def _refuse_given(name: str) -> None:
     raise Refused(f'mechanism = "building" takes this value from [structure]: remove {name}', ("analysis", name))
+
+
+def _refuse_elsewhere(context: Context, options: LocalMechanism) -> None:
+    """Keys of a code that is not that of the report."""
+    own = code_of(context).jurisdiction
+    for name in ("one_second_acceleration", "storey"):
+        if name in options.model_fields_set and own != "ASCE41":
+            raise Refused(
+                f'{name} is of ASCE 41, the report is by {own}: remove it, or give [code] jurisdiction = "ASCE41"',
+                ("analysis", name),
+            )
 
 
 def _refuse_nothing(building: Building) -> None:

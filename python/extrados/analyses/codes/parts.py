@@ -1,6 +1,6 @@
-"""Rules of codes for a part of a building out of its plane, beside those of NTC: EN 1998-1 4.3.5, ASCE 41 Table 11-5, NZSEE C8.
+"""A part of a building by the rules of other codes than NTC: EN 1998-1 4.3.5, ASCE 41 out of plane, NZSEE C8.
 
-Each says what it is for, and answers that it does not apply anywhere else.
+Each rule states its scope and answers that it does not apply anywhere else.
 """
 
 from collections.abc import Callable
@@ -12,17 +12,30 @@ from extrados.analyses.codes.code_rules import Line
 from extrados.schema.constants import GRAVITY
 
 #: EN 1998-1 Table 4.4, q_a: cantilevers, and walls (the same values as Table C7.2.I of Circolare 7/2019)
-PART_FACTOR = {"parapet": 1.0, "gable": 1.0, "wall": 2.0, "facade": 2.0}
-#: ASCE 41 height over thickness up to which no out-of-plane check is asked, for S_X1 up to 0.24 g, up to 0.37 g, above
+PART_FACTOR = {
+    "parapet": 1.0,
+    "gable": 1.0,
+    "chimney": 1.0,
+    "wall": 2.0,
+    "facade": 2.0,
+    "vertical-bending": 2.0,
+    "horizontal-bending": 2.0,
+}
+#: ASCE 41 height over thickness up to which no out-of-plane check is required, for S_X1 up to 0.24 g, up to 0.37 g, above
 SLENDER = {"one-story": (20, 16, 13), "first": (20, 18, 15), "top": (14, 14, 9), "other": (20, 16, 13)}
-#: NZSEE C8: usable part of the displacement of instability of a parapet; a wall that spans between floors may use twice as much
-USABLE = 0.3
+#: ASCE 41 height over thickness of parapets: life safety in low and moderate seismicity, else
+PARAPET = (2.5, 1.5)
+#: ASCE 41 Table 2-5: S_XS and S_X1 [g] from which seismicity is high
+HIGH = (0.5, 0.2)
+#: NZSEE C8: usable part of the displacement of instability: of a parapet, and of a wall that spans between floors
+USABLE, USABLE_WALL = 0.3, 0.6
 
 
 @dataclass(frozen=True)
 class Part:
-    """What turns: its element (a mechanism of the table), alpha_0, height and thickness [m] above the hinge, None of a chain of stones;
-    z [m] and H [m], of a part of a building, else 0 and None; loaded: floors rest on it; anchored: ties hold its top."""
+    """What turns: its element (a mechanism of the table), alpha_0, height and thickness [m] above the hinge, None of a chain of blocks;
+    z [m] and H [m], of a part of a building, else 0 and None; loaded: floors rest on it; anchored: ties or floors hold its top; load [N]
+    on its top, `arm` [m] behind its outer face; weight [N]; period T_a of the part, and T_1 of the building [s], None: not known."""
 
     element: str
     multiplier: float
@@ -32,6 +45,11 @@ class Part:
     building: float | None
     loaded: bool = False
     anchored: bool = False
+    load: float = 0.0
+    arm: float = 0.0
+    weight: float = 0.0
+    period: float | None = None
+    first: float | None = None
 
     @property
     def elevated(self) -> bool:
@@ -39,9 +57,10 @@ class Part:
         return self.place > 0.0 and self.building is not None
 
 
-def en1998(part: Part, peak: float | None) -> Line:
+def en1998(part: Part, peak: float | None, state: str = "SD") -> list[Line]:
     """Action on a non-structural element, F_a = S_a W_a/q_a, against the weight that holds it; peak: a_g S [m/s^2]."""
     q_a, barred, asked = PART_FACTOR.get(part.element), "", None
+    tuned = 0.0 if part.period is None or part.first is None else part.period / part.first
     if q_a is None:
         barred = f"Table 4.4 gives no q_a for this element ({part.element})"
     elif part.loaded:
@@ -50,31 +69,58 @@ def en1998(part: Part, peak: float | None) -> Line:
         barred = "the part does not stand on a building, above the ground"
     elif peak is not None:
         assert part.building is not None
-        asked = peak / GRAVITY * (3.0 * (1.0 + part.place / part.building) / 2.0 - 0.5)
-    return Line(
-        "EN 1998-1 part of a building", "S_a", None if q_a is None else part.multiplier * q_a, asked, "g",
-        "EN 1998-1:2004 4.3.5.2: S_a = a_g S (3 (1 + z/H)/(1 + (1 - T_a/T_1)^2) - 0.5), T_a = 0; Table 4.4: q_a 1 of cantilevers, 2 of "
-        "walls (verify clause)", "rigid until it rocks" + ("" if q_a is None else f", q_a {q_a:g}"), "EN 1998-1",
-        scope="non-structural element (parapet, gable, wall without floors on it); fixed at its foot; on a building, at z > 0", barred=barred,
-    )  # fmt: skip
+        shape = 3.0 * (1.0 + part.place / part.building) / (1.0 + (1.0 - tuned) ** 2) - 0.5
+        asked = peak / GRAVITY * max(shape, 1.0)
+    return [
+        Line(
+            "EN 1998-1 part of a building", "S_a", None if q_a is None else part.multiplier * q_a, asked, "g",
+            "EN 1998-1:2004 4.3.5.2 Eqs (4.24), (4.25): F_a = S_a W_a gamma_a/q_a, S_a = a_g S (3 (1 + z/H)/(1 + (1 - T_a/T_1)^2) - 0.5) "
+            ">= a_g S, gamma_a 1; Table 4.4 (verify clause)",
+            f"T_a/T_1 {tuned:.3g}" + ("" if q_a is None else f", q_a {q_a:g}"), "EN 1998-1", state=state, barred=barred,
+            scope="non-structural element (parapet, gable, chimney, wall without floors on it); fixed at its foot; on a building, at z > 0",
+        ),
+        Line(
+            "EN 1998-3 local mechanism", "", None, None, "", "EN 1998-3:2005 Annex C (verify clause)", "", "EN 1998-3", state=state,
+            scope="masonry walls in their plane", barred="Annex C of the 2005 edition has rules for walls in their plane alone, none for "
+            "rigid-body mechanisms out of plane",
+        ),
+    ]  # fmt: skip
 
 
-def asce41(part: Part, s_x1: float, storey: str) -> Line:
-    """Height over thickness up to which no out-of-plane check is required; s_x1: spectral acceleration at 1 s [m/s^2]."""
-    barred, demand = "", None
-    if part.element != "facade" or not part.anchored:
+def asce41(
+    part: Part, s_x1: float | None, storey: str, s_xs: float | None = None, state: str = "LS", edition: str = "13"
+) -> list[Line]:
+    """Height over thickness up to which no out-of-plane check is required, and that of parapets; s_x1, s_xs: spectral acceleration at 1 s
+    and of short periods [m/s^2]."""
+    slender = None if part.height is None or part.thickness is None else part.height / part.thickness
+    barred = ""
+    if part.element not in ("facade", "vertical-bending") or not part.anchored:
         barred = (
             "Table 11-5 is for walls between anchored diaphragms: "
             + ("nothing anchors the top of this facade" if part.element == "facade" else f"this is none ({part.element})")
         )  # fmt: skip
-    if part.height is not None and part.thickness is not None:
-        demand = part.height / part.thickness
-    limit = SLENDER[storey][0 if s_x1 <= 0.24 * GRAVITY else 1 if s_x1 <= 0.37 * GRAVITY else 2]
-    return Line(
-        "ASCE 41 slenderness", "h/t", float(limit), demand, "", "ASCE 41-13 Table 11-5 (verify clause)",
-        f"{storey}, S_X1 {s_x1 / GRAVITY:.3g} g", "ASCE 41", scope="wall between anchored diaphragms; held at foot and top; any storey",
-        barred=barred,
-    )  # fmt: skip
+    elif state == "IO":
+        barred = "Table 11-5 is of stability, at LS and CP: at IO the wall may not crack"
+    limit = (
+        None if s_x1 is None else SLENDER[storey][0 if s_x1 <= 0.24 * GRAVITY else 1 if s_x1 <= 0.37 * GRAVITY else 2]
+    )
+    told = "S_X1 is not known" if s_x1 is None else f"S_X1 {s_x1 / GRAVITY:.3g} g"
+    free = "" if part.element == "parapet" else f"the limit is of parapets, this is none ({part.element})"
+    high = s_x1 is not None and (s_x1 >= HIGH[1] * GRAVITY or (s_xs or 0.0) >= HIGH[0] * GRAVITY)
+    most = None if s_x1 is None else PARAPET[1 if high or state == "CP" else 0]
+    return [
+        Line(
+            "ASCE 41 slenderness", "h/t", None if limit is None else float(limit), slender, "",
+            f"ASCE 41-{edition} 11.3.3.3 Table 11-5 (verify clause)", f"{storey}, {told}", "ASCE 41",
+            scope="wall between anchored diaphragms; held at foot and top; any storey", state=state, barred=barred,
+        ),
+        Line(
+            "ASCE 41 parapet", "h/t", most, slender, "",
+            f"ASCE 41-{edition} 13.6.5: h/t at most 2.5 at life safety in low and moderate seismicity, else 1.5 (verify clause)",
+            f"{told}, {'high' if high else 'low or moderate'} seismicity" if s_x1 is not None else told, "ASCE 41",
+            scope="parapet of unreinforced masonry, laterally unsupported; on a building", state=state, barred=free,
+        ),
+    ]  # fmt: skip
 
 
 def height_coefficient(height: float, building: float) -> float:
@@ -92,25 +138,89 @@ def shape_coefficient(period: float) -> float:
     return float(np.clip(2.0 * (1.75 - period), 0.5, 2.0))
 
 
-def nzsee(part: Part, spectrum: Callable[[float, float], float] | None) -> Line:
-    """A parapet: displacement of its top, gamma (T_p/2 pi)^2 C_p g with C_p = C(0) C_Hi C_i(T_p), at 0.3 of instability."""
+def nzsee(part: Part, spectrum: Callable[[float, float], float] | None, state: str = "ULS") -> list[Line]:
+    """A parapet, and a wall that spans one way between floors: displacement against the usable part of that of instability."""
+    return [_nz_parapet(part, spectrum, state), _nz_wall(part, spectrum, state)]
+
+
+def _nz_parapet(part: Part, spectrum: Callable[[float, float], float] | None, state: str) -> Line:
     h, t = float(part.height or 0.0), float(part.thickness or 0.0)
-    slope = 1.0 + (t / h) ** 2
-    period = float(np.sqrt(0.65 * h * slope))
-    barred, demand, note = "", None, f"T_p {period:.3f} s"
+    barred, demand, note, capacity = "", None, "", None
     if part.element != "parapet":
-        note = ""
         barred = f"the constants are those of a parapet of one thickness, this is none ({part.element})"
-    elif not part.elevated:
-        barred = "the height of the parapet above the ground is not given (base_height, building_height): its demand is not known"
     else:
-        assert part.building is not None
-        at, by = height_coefficient(part.place, part.building), shape_coefficient(period)
-        note += f", C_Hi {at:.3g}, C_i {by:.3g}"
-        if spectrum is not None:
-            demand = 1.5 / slope * spectrum(0.0, 0.05) * at * by * (period / (2.0 * np.pi)) ** 2
+        slope, capacity = 1.0 + (t / h) ** 2, USABLE * t
+        period = float(np.sqrt(0.65 * h * slope))
+        note = f"T_p {period:.3f} s"
+        if not part.elevated:
+            barred = "the height of the parapet above the ground is not given (base_height, building_height): its demand is not known"
+        else:
+            felt, told = _part_coefficient(part.place, float(part.building or 0.0), period, spectrum)
+            note += told
+            demand = None if felt is None else 1.5 / slope * felt * (period / (2.0 * np.pi)) ** 2
     return Line(
-        "NZSEE C8 parapet", "displacement", USABLE * t if part.element == "parapet" else None, demand, "m",
-        "NZSEE/MBIE 2017 C8: D_m = 0.3 D_i, D_i = t, T_p = sqrt(0.65 h (1 + (t/h)^2)), gamma = 1.5/(1 + (t/h)^2) (verify clause); "
-        "NZS 1170.5 section 8: C_p = C(0) C_Hi C_i", note, "NZSEE", scope="parapet; cantilever; on a building, at z > 0", barred=barred,
+        "NZSEE C8 parapet", "displacement", capacity, demand, "m",
+        "NZSEE/MBIE 2017 C8: %NBS = 30 D_i/D_ph, D_i = t, T_p = sqrt(0.65 h (1 + (t/h)^2)), gamma = 1.5/(1 + (t/h)^2) (verify clause); "
+        "NZS 1170.5 section 8: C_p = C(0) C_Hi C_i", note, "NZSEE", scope="parapet; cantilever; on a building, at z > 0", state=state,
+        barred=barred,
     )  # fmt: skip
+
+
+def _nz_wall(part: Part, spectrum: Callable[[float, float], float] | None, state: str) -> Line:
+    """The wall cracks at mid height into two halves of one thickness; the load on top acts at the middle of the wall's half."""
+    barred, demand, capacity, note = "", None, None, ""
+    if part.element != "vertical-bending":
+        barred = f"the rule is for walls that span one way between floors, this is none ({part.element})"
+    elif part.load < 0.0 or part.height is None or part.thickness is None:
+        barred = "the sizes of the wall are not known"
+    else:
+        found = one_way(part.height, part.thickness, part.weight, part.load)
+        capacity = USABLE_WALL * found.instability
+        felt, told = _part_coefficient(
+            part.place + 0.5 * part.height, part.building or part.place + part.height, found.period, spectrum
+        )
+        note = f"T_p {found.period:.3f} s, gamma {found.participation:.3g}, D_i {found.instability:.3g} m{told}"
+        demand = None if felt is None else found.participation * felt * (found.period / (2.0 * np.pi)) ** 2
+    return Line(
+        "NZSEE C8 one-way wall", "displacement", capacity, demand, "m",
+        "NZSEE/MBIE 2017 C8: %NBS = 60 D_i/D_ph, D_i = b h/(2 a), T_p = 4.07 sqrt(J/a), D_ph = gamma (T_p/2 pi)^2 C_p g, hinge at mid height, "
+        "e_o = e_b = e_t = t_e/2, e_p = 0 (verify clause); NZS 1170.5 section 8: C_p = C(0) C_Hi C_i", note, "NZSEE",
+        scope="wall that spans one way between floors; held at foot and top by stiff diaphragms; any storey", state=state, barred=barred,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class OneWay:
+    """A one-way wall: effective thickness t_e, displacement of instability [m], period T_p [s], participation gamma; a [N m], b [N m], J [kg m^2]."""
+
+    effective: float
+    instability: float
+    period: float
+    participation: float
+    a: float
+    b: float
+    inertia: float
+
+
+def one_way(height: float, thickness: float, weight: float, load: float) -> OneWay:
+    """NZSEE C8: a wall of weight W [N] under a load P [N], cracked at mid height, at rest without inclination (psi 0)."""
+    effective = thickness * (0.975 - 0.025 * load / weight)
+    half, arm = 0.5 * weight, 0.25 * height
+    offset = 0.5 * effective  # e_o, e_b, e_t
+    a = half * arm + half * (height - 0.25 * height) + load * height
+    b = half * offset + half * 3.0 * offset + load * 3.0 * offset
+    own = 2.0 * half / GRAVITY / 12.0 * ((0.5 * height) ** 2 + effective**2)
+    inertia = own + half / GRAVITY * (offset**2 + arm**2) + half / GRAVITY * ((3.0 * offset) ** 2 + arm**2)
+    inertia += load / GRAVITY * (3.0 * offset) ** 2
+    participation = 2.0 * half * arm * height / (2.0 * GRAVITY * inertia)
+    return OneWay(
+        effective, b * height / (2.0 * a), float(4.07 * np.sqrt(inertia / a)), participation, a, b, inertia
+    )  # fmt: skip
+
+
+def _part_coefficient(
+    height: float, building: float, period: float, spectrum: Callable[[float, float], float] | None
+) -> tuple[float | None, str]:
+    """C_p(T_p) [m/s^2] of a part at a height [m], None without a spectrum, and its factors in words."""
+    at, by = height_coefficient(height, building), shape_coefficient(period)
+    return (None if spectrum is None else spectrum(0.0, 0.05) * at * by), f", C_Hi {at:.3g}, C_i {by:.3g}"

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class CodeChecks(BuildingAnalysis):
-    """Rules for rocking bodies, and for walls as piers, beside the dynamics; each with its source."""
+    """The rules of the code of the deck for a rocking body, or for a wall as a pier, beside the dynamics; each with its source."""
 
     kind: Literal["code-checks"]
     uses: ClassVar = (
@@ -35,14 +35,20 @@ class CodeChecks(BuildingAnalysis):
     pulse_period: Time | None = key(
         None, "period of the sine whose half cycle Housner's formula takes; adds this check", gt=0
     )
-    behaviour_factor: float = key(
-        2.0,
-        "q of the linear check, which is for mechanisms without a displacement check",
+    behaviour_factor: float | None = key(
+        None,
+        "q of the linear check of a mechanism, and of the demand on a pier (of ASCE 41 its m); default 2 (NTC), 1.5 (EN 1998), 1 (ASCE 41)",
         ge=1,
         le=6,
         source="Circ. 7/2019, C8.7.1.2.1.7",
     )
-    confidence_factor: float = key(1.35, "FC", ge=1, le=2, source="Circ. 7/2019, Table C8.5.IV")
+    confidence_factor: float | None = key(
+        None, "FC; default that of [code]", ge=1, le=2, source="Circ. 7/2019, Table C8.5.IV"
+    )
+    partial_factor: float | None = key(
+        None, "gamma_M of a pier by NTC; default 2 where a demand is compared (linear analysis with q), else 1", ge=1, le=3,
+        source="NTC 2018 7.8.1.1",
+    )  # fmt: skip
     axial_load: Force | None = key(None, "vertical load on top of the wall; adds the pier rules", ge=0)
     thickness: Length | None = key(None, "thickness of the pier; default the depth of the block", gt=0)
     sliding_friction: float = key(
@@ -50,6 +56,16 @@ class CodeChecks(BuildingAnalysis):
     )
     diagonal_strength: Stress | None = key(
         None, "tau_0, shear strength of the masonry without compression; adds the rule of diagonal cracking", gt=0
+    )
+    interlocking_ratio: float | None = key(
+        None,
+        "phi = h_b/l of a pier of regular masonry: adds the rule of stepped cracking",
+        gt=0,
+        le=5,
+        source="Circ. 7/2019 [C8.7.1.17]",
+    )
+    unit_strength: Stress | None = key(
+        None, "f_b, compressive strength of the units of a pier, which limits its shear", gt=0
     )
     fixity: Literal["cantilever", "double"] = key("cantilever", "rotation of the top: free or held")
 
@@ -92,6 +108,31 @@ class WallTie(Table):
     force: Force = key(about="strength: the least of steel, anchorage and masonry", gt=0)
 
 
+class Wing(Table):
+    """A further part of a facade that overturns with it: a wing of another height, or an upper wall of another thickness."""
+
+    height: Length = key(about="its top, above the foot of the wall", gt=0)
+    thickness: Length = key(about="its thickness", gt=0)
+    width: Length = key(about="its length", gt=0)
+    foot: Length = key(0.0, "its foot, above that of the wall", ge=0)
+    setback: Length = key(0.0, "distance of its outer face behind that of the wall", ge=0)
+
+    @model_validator(mode="after")
+    def _upright(self) -> "Wing":
+        if self.foot >= self.height:
+            raise ValueError(f"foot: {self.foot:g} m is not below its top, {self.height:g} m")
+        return self
+
+
+class Mode(Table):
+    """A mode of the building that carries the part, for the floor spectrum."""
+
+    period: Time = key(about="period T_k", gt=0)
+    participation: float = key(about="modal participation factor gamma_k")
+    shape: float = key(about="psi_k(z), of the mode at the height of the part")
+    damping: float = key(0.05, "damping ratio xi_k", gt=0, le=0.3)
+
+
 class SideWalls(Table):
     """Walls at right angles of which wedges go with the facade."""
 
@@ -114,17 +155,20 @@ class LocalMechanism(BuildingAnalysis):
 
     kind: Literal["local-mechanism"]
     uses: ClassVar = ("material.density", "material.compressive_strength")
-    beside: ClassVar = ("joints.friction", "supports.abutting_wall")
+    beside: ClassVar = ("joints.friction", "supports.abutting_wall", "material.young")
     view: ClassVar = ""
     bears: ClassVar = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
     starter: ClassVar = {
         "mechanism": '"facade"', "height": "6.0", "thickness": '"60 cm"', "width": "1.0", "peak_acceleration": '"0.15 g"',
         "floors": '[{ height = 5.8, load = "10 kN", arm = 0.4 }]',
     }  # fmt: skip
-    mechanism: Literal["facade", "corner", "gable", "parapet", "wall", "tower", "building"] = key(
-        about="facade, corner of two walls, gable, parapet on a building, free-standing wall, tower as one body; or `building`, "
+    mechanism: Literal[
+        "facade", "corner", "gable", "parapet", "chimney", "wall", "tower", "vertical-bending", "horizontal-bending", "building",
+    ] = key(
+        about="facade, corner of two walls, gable, parapet or chimney on a building, free-standing wall, tower as one body; wall that bends "
+        "between held floors, or level between side walls; or `building`, "
         "the collapse mechanism of the deck's [structure] (triumphal arches, bridges, vaults), of a building on a plan its walls"
-    )
+    )  # fmt: skip
     height: Length | None = key(None, "top of the body that overturns, above the foot of the wall", gt=0)
     thickness: Length | None = key(None, "thickness at the hinge", gt=0)
     width: Length | None = key(None, "length of wall that overturns; default 1 m, of a tower its thickness", gt=0)
@@ -133,6 +177,12 @@ class LocalMechanism(BuildingAnalysis):
     floors: list[Floor] = key([], "floors, roofs and vaults on it", max_length=50)
     ties: list[WallTie] = key([], "ties that hold it", max_length=50)
     side_walls: SideWalls | None = key(None, "wedges of side walls that go with it")
+    wings: list[Wing] = key([], "further parts of a facade that overturn with it", max_length=20)
+    abutment_force: Force | None = key(
+        None,
+        "of horizontal bending: force H that each side wall, or its tie, resists against the thrust of the strip",
+        gt=0,
+    )
     interlocking: Interlocking | None = key(
         None, "teeth of side walls that hold a facade by friction", source="Circ. 7/2019 [C8.7.1.2]"
     )
@@ -152,14 +202,14 @@ class LocalMechanism(BuildingAnalysis):
     )
     behaviour_factor: float = key(
         2.0,
-        "q of the linear check, which is for mechanisms without a displacement check",
+        "q of the linear check of NTC, which is for mechanisms without a displacement check",
         ge=1,
         le=6,
         source="Circ. 7/2019, C8.7.1.2.1.7",
     )
-    confidence_factor: float = key(
-        1.35,
-        "FC; where compression strength is neglected that of LC1, 1.35",
+    confidence_factor: float | None = key(
+        None,
+        "FC; default that of [code], where compression strength is neglected that of LC1, 1.35",
         ge=1,
         le=2,
         source="Circ. 7/2019, C8.7.1.2.1.3, Table C8.5.IV",
@@ -179,10 +229,24 @@ class LocalMechanism(BuildingAnalysis):
         None, "first period T_1 of the building; default 0.05 H^0.75", gt=0, source="EN 1998-1 Eq. 4.6"
     )
     storeys: int = key(1, "storeys N of the building, for the modal participation", ge=1, le=50)
+    modes: list[Mode] = key(
+        [], "modes of the building for the floor spectrum; default its first mode alone, linear over the height",
+        source="Circ. 7/2019 C7.2.3", max_length=20,
+    )  # fmt: skip
+    period: Time | None = key(
+        None, "period T_0 of a part that is free to vibrate; default from [material] young, where the deck gives it", gt=0,
+        source="Circ. 7/2019 [C8.7.1.7]",
+    )  # fmt: skip
     one_second_acceleration: Acceleration | None = key(
         None, "S_X1; adds the slenderness limits of ASCE 41 for walls anchored at their top", gt=0
     )
     storey: Literal["one-story", "first", "top", "other"] = key("one-story", "place of the wall, for ASCE 41")
+
+    @model_validator(mode="after")
+    def _one_building(self) -> "LocalMechanism":
+        if self.modes and (given := sorted({"building_period", "storeys"} & self.model_fields_set)):
+            raise ValueError(f"{given[0]}: the modes give this value")
+        return self
 
     @model_validator(mode="after")
     def _elevated(self) -> "LocalMechanism":
@@ -193,6 +257,8 @@ class LocalMechanism(BuildingAnalysis):
     def reckons_with(self, building: "Building") -> set[str]:
         """Joints, and a wall beside them, are of the stones that turn as the deck draws them."""
         found = super().reckons_with(building)
+        if self.mechanism not in ("parapet", "gable", "chimney") or self.period is not None:
+            found -= {"material.young"}
         return found if self.of_stones(building) else found - {"joints.friction", "supports.abutting_wall"}
 
     def of_stones(self, building: "Building") -> bool:

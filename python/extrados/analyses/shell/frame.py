@@ -4,7 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from extrados.analyses.codes.code_rules import more_piers, piers
+from extrados.analyses.codes.piers import Pier, ntc_piers
+from extrados.analyses.codes.research import formulas_of_piers
 from extrados.analyses.context import Refused
 from extrados.analyses.shell.model import ShellModel
 from extrados.analyses.shell.sections import sections_at
@@ -16,7 +17,7 @@ ALONG = 0.1
 #: Formulas of each code, of which the least counts for a pier
 CODES = {
     "FEMA 356": ("FEMA 356 rocking", "FEMA 356 bed-joint sliding", "FEMA 356 toe crushing"),
-    "NTC 2018": ("Magenes-Calvi rocking", "NTC diagonal cracking"),
+    "NTC 2018": ("NTC flexure", "NTC diagonal cracking"),
 }
 
 
@@ -87,9 +88,11 @@ def _piers(
                 )
             double = rules.fixity == "double"
             lines = [
-                *piers(width, height, thickness, load, strength, rules.cohesion, rules.friction, double),
-                *more_piers(
-                    width, height, thickness, load, 0.0, strength, rules.cohesion, rules.friction, rules.diagonal_strength, double
+                *formulas_of_piers(width, height, thickness, load, strength, rules.cohesion, rules.friction, double),
+                *ntc_piers(
+                    Pier(
+                        width, height, thickness, load, 0.0, double, strength, rules.cohesion, rules.friction, rules.diagonal_strength
+                    ), 1.0, 1.0, None, "SLV",
                 ),
             ]  # fmt: skip
             value = {line.rule: line.capacity for line in lines}

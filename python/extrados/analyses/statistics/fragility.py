@@ -249,7 +249,7 @@ def _describe(
         "median_pgv_m_s": middle["pgv"],
         "median_arias_m_s": middle["arias"],
     }
-    if isinstance(job.source, GeneratedSource):
+    if isinstance(job.source, GeneratedSource) and job.source.made.floor is None:
         expected = job.source.made.expected()
         r |= {"expected_pga_g": expected["pga"] / GRAVITY, "expected_pgv_m_s": expected["pgv"]}
         ratio = r["median_pga_g"] / r["expected_pga_g"]
