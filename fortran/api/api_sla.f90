@@ -6,7 +6,7 @@ module api_sla
    implicit none
    private
    public :: loads, supports, reactions, stop_at, run, relax, displacement, measure, report, damage, set_damage
-   public :: standing, resume, follow, continues
+   public :: standing, resume, follow, continues, histories, go_on
 
 contains
 
@@ -163,6 +163,53 @@ contains
       yes = merge(1_c_int, 0_c_int, model_continues(model))
       call handle_leave(handle)
    end subroutine continues
+
+   !> Histories of all points in the last state of equilibrium iterations
+   subroutine histories(handle, points, values, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_invalid_argument
+      use sla_continuation, only : path_histories
+      use sla_handle, only : model_take, stage_loaded
+      use sla_model, only : element_model
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: points
+      real(c_double), intent(out) :: values(2, points)
+      integer(c_int), intent(out) :: status
+      type(element_model), pointer :: model
+      values = 0.0_c_double
+      call model_take(handle, stage_loaded, stage_loaded, model, status)
+      if (status /= status_ok) return
+      if (points /= model%mesh%points .or. .not. model%path%active) then
+         status = status_invalid_argument
+      else
+         call path_histories(model, values)
+      end if
+      call handle_leave(handle)
+   end subroutine histories
+
+   !> Begin a stage with equilibrium iterations, at the displacements and histories that another ended with
+   subroutine go_on(handle, freedoms, nodes, displacement, points, values, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_invalid_argument
+      use sla_continuation, only : model_continues, resume_path
+      use sla_handle, only : model_take, stage_loaded
+      use sla_model, only : element_model
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: freedoms            !! of a node
+      integer(c_int), intent(in) :: nodes
+      real(c_double), intent(in) :: displacement(freedoms, nodes)     !! [m], [rad]
+      integer(c_int), intent(in) :: points
+      real(c_double), intent(in) :: values(2, points)   !! see histories
+      integer(c_int), intent(out) :: status
+      type(element_model), pointer :: model
+      call model_take(handle, stage_loaded, stage_loaded, model, status)
+      if (status /= status_ok) return
+      status = status_invalid_argument
+      if (points == model%mesh%points .and. nodes == model%mesh%nodes .and. freedoms == size(model%mesh%equation, 1) &
+         .and. all(values >= 0.0_c_double) .and. model_continues(model)) &
+         call resume_path(model, displacement, values, status)
+      call handle_leave(handle)
+   end subroutine go_on
 
    !> A batch of events
    subroutine run(handle, room, monitors, entries, first, freedom, share, counts, reals, integers, monitored, cracked, &

@@ -31,7 +31,7 @@ module sla_continuation
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: model_continues, begin_path, run_steps
+   public :: model_continues, begin_path, resume_path, run_steps, path_histories
 
    !> Residual over the largest nodal force; of the convex problems
    real(wp), parameter :: tolerance = 1.0e-4_wp, inner_tolerance = 1.0e-5_wp
@@ -39,6 +39,9 @@ module sla_continuation
    !> Iterations of a step after which the next may be longer
    integer, parameter :: few = 10
    real(wp), parameter :: growth = 1.5_wp
+   !> Steps that are tried to end at a target, and how near to it a step must end, of its length
+   integer, parameter :: most_trials = 8
+   real(wp), parameter :: near = 1.0e-4_wp
    !> First step over the longest
    real(wp), parameter :: first_step = 0.1_wp
    !> Displacement over that of the control beyond which a structure has run away
@@ -111,6 +114,67 @@ contains
       end associate
    end subroutine begin_path
 
+   !> Go on from the displacements and histories that a path of other loads and supports ended with
+   subroutine resume_path(model, displacement, histories, status)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: displacement(:, :)     !! (freedoms of a node, nodes) [m], [rad]
+      real(wp), intent(in) :: histories(:, :)        !! (2, points)
+      integer(c_int), intent(out) :: status
+      real(wp), allocatable :: most(:)
+      integer :: i, k, g, n, m, info
+      n = model%mesh%equations
+      m = size(model%support%moved, 1)
+      call begin_path(model, status)
+      if (status /= status_ok) return
+      allocate (most(0:n + m), stat=info)
+      if (info /= 0) status = status_out_of_memory
+      if (info /= 0) return
+      most = 0.0_wp
+      associate (path => model%path, mesh => model%mesh)
+         do i = 1, mesh%nodes
+            do k = 1, size(mesh%equation, 1)
+               associate (q => mesh%equation(k, i), factor => mesh%factor(k, i))
+                  if (q == 0 .or. abs(factor) <= most(q)) cycle
+                  most(q) = abs(factor)
+                  path%u(q) = displacement(k, i) / factor
+               end associate
+            end do
+         end do
+         path%u(n + 1:) = model%support%moved(:, 1)
+         path%now = path%u
+         path%before = path%u
+         path%lambda = 0.0_wp
+         path%lambda_now = 0.0_wp
+         path%lambda_before = 0.0_wp
+         path%drive = 0.0_wp
+         if (.not. is_driven(model)) path%drive = dot_product(model%load%fb, path%u(0:n))
+         path%constant = dot_product(model%load%fa, path%u(0:n))
+      end associate
+      do g = 1, size(model%mesh%holders)
+         select type (group => model%mesh%holders(g)%group)
+         class is (history_group)
+            group%history(:, :) = histories(:, group%offset + 1:group%offset + group%points)
+            call group%keep()
+            group%rate = 0.0_wp
+         end select
+      end do
+      model%ledger%recorded = .true.
+   end subroutine resume_path
+
+   !> Histories of all points in the last state
+   pure subroutine path_histories(model, histories)
+      type(element_model), intent(in) :: model
+      real(wp), intent(out) :: histories(:, :)       !! (2, points)
+      integer :: g
+      histories = 0.0_wp
+      do g = 1, size(model%mesh%holders)
+         select type (group => model%mesh%holders(g)%group)
+         class is (history_group)
+            if (allocated(group%kept)) histories(:, group%offset + 1:group%offset + group%points) = group%kept
+         end select
+      end do
+   end subroutine path_histories
+
    !> Do supports move with the multiplier?
    pure function is_driven(model) result(yes)
       type(element_model), intent(in) :: model
@@ -127,7 +191,8 @@ contains
       integer(c_int), intent(out) :: status
       real(wp) :: lost, load, length
       integer(c_int) :: code
-      integer :: iterations, g
+      real(wp) :: part
+      integer :: iterations, trials, g
       logical :: carried, fallen
       reason = stop_none
       status = status_ok
@@ -137,13 +202,20 @@ contains
             if (status /= status_ok) exit
             length = path%step
             if (path%steps == 0) length = 0.0_wp
-            lost = 0.0_wp
-            if (path%implicit .or. path%steps < 2) then
-               call implicit_step(model, length, code, iterations, carried, lost, status)
-            else
-               call explicit_step(model, length, code, carried, lost, status)
-               iterations = few
-            end if
+            do trials = 1, most_trials
+               lost = 0.0_wp
+               if (path%implicit .or. path%steps < 2) then
+                  call implicit_step(model, length, code, iterations, carried, lost, status)
+               else
+                  call explicit_step(model, length, code, carried, lost, status)
+                  iterations = few
+               end if
+               if (status /= status_ok .or. .not. carried) exit
+               part = part_to_target(model, monitors)
+               if (part >= 1.0_wp - near .or. trials == most_trials) exit
+               call restore_state(model)
+               length = part * length
+            end do
             if (.not. carried) reason = stop_axial
             if (status /= status_ok .or. .not. carried) then
                call restore_state(model)
@@ -165,10 +237,10 @@ contains
                call judge_fall(model, load, way, fallen)
                if (fallen) reason = stop_fraction
                if (abs(way - loop%start_displacement) > model%rules%far) reason = stop_far
-               if (abs(way) >= model%rules%displacement) reason = stop_displacement
-               if (model%rules%side * (way - model%rules%target) >= 0.0_wp .and. abs(model%rules%side) > 0.0_wp) &
-                  reason = stop_displacement
-               if (.not. is_driven(model) .and. loop%lambda >= model%rules%lambda) reason = stop_load
+               if (abs(way) >= model%rules%displacement * (1.0_wp - near)) reason = stop_displacement
+               if (abs(model%rules%side) > 0.0_wp .and. model%rules%side * (way - model%rules%target) >= &
+                  -near * abs(way - loop%start_displacement)) reason = stop_displacement
+               if (loop%lambda >= model%rules%lambda * (1.0_wp - near)) reason = stop_load
             end associate
             if (path%implicit .and. path%steps > 1 .and. iterations < few) &
                path%step = min(growth * path%step, path%longest)
@@ -184,6 +256,31 @@ contains
          call regions_settled(model%search%tree, model%solution%ua, model%solution%ub)
       end associate
    end subroutine run_steps
+
+   !> The part of a step after which the run ends at a displacement or a multiplier, by linear interpolation; 1 of others
+   pure function part_to_target(model, monitors) result(part)
+      type(element_model), intent(in) :: model
+      type(monitor_set), intent(in) :: monitors
+      real(wp) :: part, was, is
+      part = 1.0_wp
+      was = monitors%sum_of(1, model%path%now)
+      is = monitors%sum_of(1, model%path%u)
+      associate (rules => model%rules, path => model%path)
+         if (abs(rules%side) > 0.0_wp) part = min(part, share(rules%side * was, rules%side * is, rules%side * rules%target))
+         if (rules%displacement < unbounded) part = min(part, share(abs(was), abs(is), rules%displacement))
+         if (rules%lambda < unbounded) part = min(part, share(path%lambda_now, path%lambda, rules%lambda))
+      end associate
+
+   contains
+
+      pure function share(from, to, at) result(of)
+         real(wp), intent(in) :: from, to, at
+         real(wp) :: of
+         of = 1.0_wp
+         if (to > at .and. from < at) of = (at - from) / (to - from)
+      end function share
+
+   end function part_to_target
 
    !> Back to the last state
    subroutine restore_state(model)

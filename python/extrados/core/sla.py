@@ -464,6 +464,22 @@ class Model(Owner):
         check(status, "continuation")
         return bool(yes)
 
+    def histories(self) -> np.ndarray:
+        """The histories of all points (2, points) in the last state of equilibrium iterations: greatest strains in tension and in
+        compression."""
+        values, status = _core.api_sla.histories(self.handle, self.points)
+        check(status, "histories of the points")
+        return np.array(values, order="F")
+
+    def go_on(self, displacement: npt.ArrayLike, histories: npt.ArrayLike) -> None:
+        """Begin a stage with equilibrium iterations, at displacements (nodes, freedoms) [m] and histories (2, points) of another."""
+        status = _core.api_sla.go_on(
+            self.handle, real("displacement", np.transpose(displacement), (self.freedoms, self.nodes)),
+            real("histories", histories, (2, self.points)),
+        )  # fmt: skip
+        check(status, "continuation")
+        self.iterates = True
+
     def run_whole(self, room: int, monitor: Monitor, stop: Stop | None = None, *, variant: str = VARIANTS[0]) -> Events:
         """As `run`, of events that are of no use in part: Cancelled where the user asked to stop."""
         events = self.run(room, [monitor], stop, variant=variant)

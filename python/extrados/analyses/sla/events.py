@@ -66,6 +66,7 @@ class Curve:
     already: float = 0.0  # load in the direction of the reference load that was on before [N]
     driven: bool = False  # the multiplier is a displacement of supports, the load their force
     residual: float | None = None  # measured at the end; None where the end is a mechanism without displacements
+    histories: np.ndarray | None = None  # (2, points) at the end, of a run that ended with equilibrium iterations
     last_line: tuple[float, float] | None = (
         None  # control displacement [m] after the last event: constant, per multiplier
     )
@@ -483,6 +484,8 @@ def run_reference_loads(
                 else:
                     kept_states.append(state)
         kept_states.sort(key=lambda s: s.event)
+    if core_model.iterates and len(events):
+        curve.histories = core_model.histories()
     curve.seconds = spent_before + time.perf_counter() - begin
     return curve
 
