@@ -48,6 +48,8 @@ module sla_continuation
    real(wp), parameter :: farthest = 5.0_wp
    !> Force that extrapolated damage may leave out of balance, over the largest nodal force
    real(wp), parameter :: explicit_tolerance = 5.0e-3_wp
+   !> Times that force beyond which such a step is no state in equilibrium
+   real(wp), parameter :: largest_error = 4.0_wp
 
 contains
 
@@ -87,7 +89,7 @@ contains
       if (status /= status_ok) return
       associate (path => model%path, solution => model%solution, ledger => model%ledger)
          if (.not. allocated(path%u)) allocate (path%u(0:n + m), path%now(0:n + m), path%before(0:n + m), &
-            path%push(0:n + m), stat=info)
+            path%push(0:n + m), path%start(0:n + m), stat=info)
          if (allocated(path%push)) info = 0
          if (info /= 0) status = status_out_of_memory
          if (info /= 0) return
@@ -97,7 +99,7 @@ contains
          path%drive = ledger%lambda
          if (.not. is_driven(model)) path%drive = last%ba + ledger%lambda * last%bb
          path%constant = last%aa + ledger%lambda * last%ab
-         path%step = first_step * path%longest
+         path%drive_start = path%drive
          path%last_step = 0.0_wp
          path%steps = 0
          path%solutions = 0
@@ -107,6 +109,7 @@ contains
             if (abs(slope) > 0.0_wp) path%lambda = (path%drive - dot_product(model%load%fb, solution%ua(0:n))) / slope
          end if
          path%u = solution%ua + path%lambda * solution%ub
+         path%start = path%u
          path%now = path%u
          path%before = path%u
          path%lambda_now = path%lambda
@@ -141,6 +144,7 @@ contains
             end do
          end do
          path%u(n + 1:) = model%support%moved(:, 1)
+         path%start = path%u
          path%now = path%u
          path%before = path%u
          path%lambda = 0.0_wp
@@ -148,6 +152,7 @@ contains
          path%lambda_before = 0.0_wp
          path%drive = 0.0_wp
          if (.not. is_driven(model)) path%drive = dot_product(model%load%fb, path%u(0:n))
+         path%drive_start = path%drive
          path%constant = dot_product(model%load%fa, path%u(0:n))
       end associate
       do g = 1, size(model%mesh%holders)
@@ -223,6 +228,11 @@ contains
             end if
             call account_step(model, length, lost, status)
             if (status /= status_ok) exit
+            if (path%steps == 0) then
+               path%start = path%now
+               path%drive_start = path%drive
+               path%step = first_step * path%longest
+            end if
             path%steps = path%steps + 1
             loop%events = loop%events + 1
             call record_step(model, monitors, code, log)
@@ -612,6 +622,7 @@ contains
       call update_all(model, lost)
       call evaluate(model, by_frozen, .false., energy, scale)
       model%path%residual = residual_of(model, scale)
+      if (model%path%residual > largest_error * explicit_tolerance) code = code_unbalanced
       ratio = sqrt(explicit_tolerance / max(model%path%residual, 1.0e-12_wp))
       model%path%step = min(model%path%step * min(max(ratio, 1.0_wp / growth), growth), model%path%longest)
    end subroutine explicit_step
@@ -622,8 +633,8 @@ contains
       real(wp), intent(in) :: length
       logical :: yes
       associate (path => model%path)
-         yes = maxval(abs(path%u(1:model%mesh%equations))) > max(farthest * abs(path%drive + length) / path%unit, &
-            path%least_runaway)
+         yes = maxval(abs(path%u(1:model%mesh%equations) - path%start(1:model%mesh%equations))) > &
+            max(farthest * abs(path%drive + length - path%drive_start) / path%unit, path%least_runaway)
       end associate
    end function has_run_away
 

@@ -166,7 +166,8 @@ contains
             if (law%crushes) group%crush(:, p) = group%teeth%tooth_of(group%crush_table(e), modulus(2))
             if (group%cracked(p) == 0) then
                if (all(modulus >= law%young)) cycle
-               group%cracked(p) = 1
+               if (law%cracks) call fix_band(group, e, p, law, state%normal)
+               group%cracked(p) = max(group%cracked(p), 1_c_int)
             end if
             group%turn(:, p) = state%normal
             group%shut(:, p) = merge(1_c_int, 0_c_int, state%principal <= 0.0_wp)

@@ -112,6 +112,8 @@ module sla_state
       logical :: implicit = .true.                       !! else implicit-explicit integration
       real(wp), allocatable :: u(:)                      !! (0:n + moved) displacements of the iteration [m]
       real(wp), allocatable :: now(:), before(:)         !! (0:n + moved) of the last two states [m]
+      real(wp), allocatable :: start(:)                  !! (0:n + moved) of the first state [m]
+      real(wp) :: drive_start = 0.0_wp                   !! control there [J]
       real(wp), allocatable :: push(:)                   !! (0:n + moved) forces per multiplier of moved supports [N]
       real(wp) :: lambda = 0.0_wp                        !! of the iteration
       real(wp) :: lambda_now = 0.0_wp, lambda_before = 0.0_wp

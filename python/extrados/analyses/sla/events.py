@@ -450,6 +450,8 @@ def run_reference_loads(
     curve = Curve(
         events, None, kept_states, NOTHING, damage_end, 0.0, sign, [], core_model.equations, core_model.points
     )
+    if core_model.iterates and len(events):
+        curve.histories = core_model.histories()
     curve.already, curve.driven, curve.releases = model.already, model.driven, release
     curve.before, curve.unit, curve.extent = before, model.unit, model.extent
     if len(events) and not model.driven:
@@ -471,7 +473,7 @@ def run_reference_loads(
         if not (done - 1 in wanted and kept_states):
             kept_states.append(_state(core_model, len(events) - 1, events))
         peak = curve.peak
-        if best_step is not None and best_step.event == peak:
+        if best_step is not None and best_step.event == peak != len(events) - 1:
             kept_states.append(best_step)
         elif peak >= 0 and peak not in {s.event for s in kept_states} and not (events.interrupted or release):
             try:
@@ -484,8 +486,6 @@ def run_reference_loads(
                 else:
                     kept_states.append(state)
         kept_states.sort(key=lambda s: s.event)
-    if core_model.iterates and len(events):
-        curve.histories = core_model.histories()
     curve.seconds = spent_before + time.perf_counter() - begin
     return curve
 
