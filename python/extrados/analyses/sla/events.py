@@ -13,7 +13,7 @@ import numpy as np
 from extrados.analyses.batches import Chain
 from extrados.analyses.context import Refused
 from extrados.analyses.sla.contact import NotCarried, settle
-from extrados.analyses.sla.curve import FALLEN, FAR, FELL, TOO_FAR, envelope, fallen, states
+from extrados.analyses.sla.curve import AXIAL, FALLEN, FAR, FELL, TOO_FAR, envelope, fallen, states
 from extrados.analyses.sla.incremental import run_incremental
 from extrados.analyses.sla.kept import State, UnderWay
 from extrados.analyses.sla.model import MECHANISM, MECHANISM_OF_STONES, SlaModel
@@ -23,6 +23,7 @@ from extrados.core import sla as core
 from extrados.core.errors import Cancelled, CoreError, status_code
 from extrados.core.sla import EVENT
 from extrados.model.errors import WHOLE
+from extrados.results.sla import DROP
 
 BATCH_SECONDS = 0.7
 #: Events between two states that are kept; a new factor takes as long as some tens of events of a large wall.
@@ -135,7 +136,7 @@ class Curve:
         """Was the greatest load a peak: did the load fall after it, or the structure become a mechanism under it?"""
         if self.peak < 0 or (self.name and not self.force(unit)[self.peak] > 0.0):
             return False  # a stage may begin under a load of the opposite sense and never leave it
-        if self.events.reason in ("mechanism", FELL) or self.flat():
+        if self.events.reason in ("mechanism", FELL, AXIAL) or self.flat():
             return True
         return fallen(*self.envelope(unit))
 
@@ -382,6 +383,7 @@ def run_reference_loads(
     floor = MECHANISM_OF_STONES if model.mesh.has_joints else MECHANISM
     batch, start = GRID, way.before_best
     best_step: State | None = None
+    drop_step: State | None = None
     while (done := way.done) < options.events:
         # What is on its way from one point to others has no name
         # Steps of equilibrium iterations are found again from the events before them
@@ -430,6 +432,9 @@ def run_reference_loads(
             if load.max() > way.best:
                 way.best, way.before_best = float(load.max()), start
                 best_step = _state(core_model, done + len(part) - 1, part) if part.steps[-1] else None
+                drop_step = None
+            elif part.steps[-1] and drop_step is None and load[-1] < DROP * way.best:
+                drop_step = _state(core_model, done + len(part) - 1, part)
         done += len(part)
         if len(part) and done - 1 in wanted:
             way.states.append(_state(core_model, done - 1, part))
@@ -485,6 +490,8 @@ def run_reference_loads(
                     curve.warnings.append("the state at the peak could not be reproduced from the batch before it")
                 else:
                     kept_states.append(state)
+        if drop_step is not None and drop_step.event not in {s.event for s in kept_states}:
+            kept_states.append(drop_step)
         kept_states.sort(key=lambda s: s.event)
     curve.seconds = spent_before + time.perf_counter() - begin
     return curve
