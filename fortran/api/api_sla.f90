@@ -206,8 +206,9 @@ contains
       if (status /= status_ok) return
       status = status_invalid_argument
       if (points == model%mesh%points .and. nodes == model%mesh%nodes .and. freedoms == size(model%mesh%equation, 1) &
-         .and. all(values >= 0.0_c_double) .and. model_continues(model)) &
-         call resume_path(model, displacement, values, status)
+         .and. all(values >= 0.0_c_double) .and. model_continues(model)) then
+        call resume_path(model, displacement, values, status)
+      end if
       call handle_leave(handle)
    end subroutine go_on
 
@@ -225,8 +226,8 @@ contains
       integer(c_int), intent(in) :: first(monitors + 1)  !! entry at which each monitor begins
       integer(c_int), intent(in) :: freedom(2, entries)  !! node and which of its freedoms
       real(c_double), intent(in) :: share(entries)
-      !> Events, residual checks, re-solutions, new factors, reason (list sla_stop), 1 where equilibrium iterations go on,
-      !> linear systems they have solved
+      !> Events, residual checks, re-solutions, new factors, reason (list sla_stop), 1 where equilibrium iterations go
+      !> on, linear systems they have solved
       integer(c_int), intent(out) :: counts(7)
       real(c_double), intent(out) :: reals(11, room)      !! see event_log of sla_ledger
       integer(c_int), intent(out) :: integers(4, room)
@@ -281,8 +282,9 @@ contains
          model%threads = threads_available(model%threads)
          reason = stop_none
          if (.not. model%path%active) call run_events(model, watched, log, reason, fate)
-         if (fate == status_ok .and. reason == stop_none .and. model%path%active) &
-            call run_steps(model, watched, log, reason, fate)
+         if (fate == status_ok .and. reason == stop_none .and. model%path%active) then
+           call run_steps(model, watched, log, reason, fate)
+         end if
          counts = [int(log%count, c_int), int(model%checks%checks, c_int), int(model%checks%solutions, c_int), &
             int(model%checks%factors, c_int), reason, &
             merge(1_c_int, 0_c_int, model%path%active), int(model%path%solutions, c_int)]

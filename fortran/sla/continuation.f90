@@ -1,17 +1,18 @@
 !> Equilibrium iterations where sequentially linear analysis finds no equilibrium under the constant loads.
 !>
-!> The run goes on from the last state of the events, with their points, laws and damage, under displacement control: each
-!> step prescribes the displacement on which the reference load does its work (fb.u, or the movement of supports) and
-!> finds displacements and multiplier in equilibrium by the total law of the points (sla_coaxial).
+!> The run goes on from the last state of the events, with their points, laws and damage, under displacement control:
+!> each step prescribes the displacement on which the reference load does its work (fb.u, or the movement of supports)
+!> and finds displacements and multiplier in equilibrium by the total law of the points (sla_coaxial).
 !>
-!>   Newton      with the tangent of histories that grow with the strain, halving a step that does not lower the residual;
-!>               where no step does, three iterations with the secant matrix
-!>   staggered   where Newton stalls: damage frozen, Newton on the convex energy with Armijo's rule; histories follow; again
-!>               until the new damage leaves no force out of balance. Damage only grows and is bounded, so this ends
+!>   Newton      with the tangent of histories that grow with the strain, halving a step that does not lower the
+!>               residual; where no step does, three iterations with the secant matrix
+!>   staggered   where Newton stalls: damage frozen, Newton on the convex energy with Armijo's rule; histories follow;
+!>               again until the new damage leaves no force out of balance. Damage only grows and is bounded
 !>
 !> A step in which displacements run away from the control has no equilibrium: the constant loads are no longer
-!> carried. Implicit-explicit integration (Oliver, Huespe and Cante 2008) is the alternative: histories that go on at the
-!> rate of the last step, one convex problem a step, and a step length from the force that this leaves out of balance.
+!> carried. Implicit-explicit integration (Oliver, Huespe and Cante 2008) is the alternative: histories that go on at
+!> the rate of the last step, one convex problem a step, and a step length from the force that this leaves out of
+!> balance.
 module sla_continuation
    use common_cancel, only : cancel_requested
    use common_kinds, only : wp
@@ -69,8 +70,8 @@ contains
       end do
    end function model_continues
 
-   !> Take over the damage and the last state of the events; the first step, of no length, then finds equilibrium. Displacements
-   !> that wait to be brought up to date are good enough to begin with
+   !> Take over the damage and the last state of the events; the first step, of no length, then finds equilibrium.
+   !> Displacements that wait to be brought up to date are good enough to begin with
    subroutine begin_path(model, status)
       type(element_model), intent(inout) :: model
       integer(c_int), intent(out) :: status
@@ -88,11 +89,12 @@ contains
       end do
       if (status /= status_ok) return
       associate (path => model%path, solution => model%solution, ledger => model%ledger)
-         if (.not. allocated(path%u)) allocate (path%u(0:n + m), path%now(0:n + m), path%before(0:n + m), &
-            path%push(0:n + m), path%start(0:n + m), stat=info)
-         if (allocated(path%push)) info = 0
-         if (info /= 0) status = status_out_of_memory
-         if (info /= 0) return
+         if (.not. allocated(path%start)) then
+            allocate (path%u(0:n + m), path%now(0:n + m), path%before(0:n + m), path%push(0:n + m), &
+               path%start(0:n + m), stat=info)
+            if (info /= 0) status = status_out_of_memory
+            if (info /= 0) return
+         end if
          path%active = .true.
          last = ledger%work - ledger%support_work
          path%lambda = ledger%lambda
@@ -252,8 +254,9 @@ contains
                   -near * abs(way - loop%start_displacement)) reason = stop_displacement
                if (loop%lambda >= model%rules%lambda * (1.0_wp - near)) reason = stop_load
             end associate
-            if (path%implicit .and. path%steps > 1 .and. iterations < few) &
-               path%step = min(growth * path%step, path%longest)
+            if (path%implicit .and. path%steps > 1 .and. iterations < few) then
+              path%step = min(growth * path%step, path%longest)
+            end if
          end do
          do g = 1, size(model%mesh%holders)
             select type (group => model%mesh%holders(g)%group)
@@ -267,7 +270,7 @@ contains
       end associate
    end subroutine run_steps
 
-   !> The part of a step after which the run ends at a displacement or a multiplier, by linear interpolation; 1 of others
+   !> The part of a step after which the run ends at a displacement or a multiplier, by linear interpolation; else 1
    pure function part_to_target(model, monitors) result(part)
       type(element_model), intent(in) :: model
       type(monitor_set), intent(in) :: monitors
@@ -276,7 +279,8 @@ contains
       was = monitors%sum_of(1, model%path%now)
       is = monitors%sum_of(1, model%path%u)
       associate (rules => model%rules, path => model%path)
-         if (abs(rules%side) > 0.0_wp) part = min(part, share(rules%side * was, rules%side * is, rules%side * rules%target))
+         if (abs(rules%side) > 0.0_wp) part = min(part, &
+            share(rules%side * was, rules%side * is, rules%side * rules%target))
          if (rules%displacement < unbounded) part = min(part, share(abs(was), abs(is), rules%displacement))
          if (rules%lambda < unbounded) part = min(part, share(path%lambda_now, path%lambda, rules%lambda))
       end associate
@@ -333,7 +337,7 @@ contains
       if (status == status_ok .and. carried) call update_all(model, lost)
    end subroutine implicit_step
 
-   !> Displacements and multiplier at the end of a step: those of the last two states extrapolated, or by the secant matrix
+   !> Displacements and multiplier at the end of a step: the last two states extrapolated, or by the secant matrix
    subroutine predict(model, length, status)
       type(element_model), intent(inout) :: model
       real(wp), intent(in) :: length
@@ -667,7 +671,7 @@ contains
          force = path%lambda
          was = path%lambda_now
          if (is_driven(model)) then
-            force = dot_product(model%solution%force(n + 1:n + m) - model%load%fo(n + 1:n + m), model%support%moved(:, 2))
+            force = dot_product(model%solution%force(n + 1:n + m), model%support%moved(:, 2))
             was = path%force
          end if
          if (path%steps == 0) was = force

@@ -37,7 +37,8 @@ module sla_group
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: element_group, point_group, history_group, friction_group, group_holder, slider, point_place, point_event, bound
+   public :: element_group, point_group, history_group, friction_group, group_holder, slider, point_place, point_event
+   public :: bound
    public :: scan_result, event_vectors, material_options
    public :: below, unbounded, most_entries, most_rank, offer_hi, offer_lo, offer_empty, linear_bound, &
       component, along, admitted, report_rows, state_rows

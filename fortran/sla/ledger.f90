@@ -10,7 +10,8 @@ module sla_ledger
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: account_state, follow_supports, record_state, watch_monitors, event_log, judge_fall, log_reals, log_integers
+   public :: account_state, follow_supports, record_state, watch_monitors, judge_fall
+   public :: event_log, log_reals, log_integers
 
    integer, parameter :: log_reals = 11, log_integers = 4
    !> Of the way to the peak: so much further the load must stay below a fraction of the peak to have fallen below it

@@ -10,15 +10,15 @@ module sla_plane_history
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: plane_history
+   public :: plane_history, respond_plane, update_plane, show_plane
 
    type, abstract, extends(plane_points) :: plane_history
    contains
       procedure :: continues
       procedure :: begin
-      procedure :: respond
-      procedure :: update
-      procedure :: show
+      procedure :: respond => respond_plane
+      procedure :: update => update_plane
+      procedure :: show => show_plane
    end type plane_history
 
 contains
@@ -75,7 +75,7 @@ contains
       group%rate = 0.0_wp
    end subroutine begin
 
-   pure subroutine respond(group, e, local, how, f, k, energy)
+   pure subroutine respond_plane(group, e, local, how, f, k, energy)
       class(plane_history), intent(in) :: group
       integer, intent(in) :: e
       real(wp), intent(in) :: local(:)
@@ -103,11 +103,11 @@ contains
             k(1:n, i) = k(1:n, i) + db(1:n, 1) * b(i, 1) + db(1:n, 2) * b(i, 2) + db(1:n, 3) * b(i, 3)
          end do
       end do
-   end subroutine respond
+   end subroutine respond_plane
 
-   !> See history_group. The energy of one open crack is that of its law; a second one in tension shares the damage of the
-   !> first and loses in proportion to the square of its strain
-   pure subroutine update(group, u, lost)
+   !> See history_group. The energy of one open crack is that of its law; a second one in tension shares the damage of
+   !> the first and loses in proportion to the square of its strain
+   pure subroutine update_plane(group, u, lost)
       class(plane_history), intent(inout) :: group
       real(wp), intent(in) :: u(0:)
       real(wp), intent(inout) :: lost
@@ -124,11 +124,12 @@ contains
             gain = law%lost_energy(state%history) - law%lost_energy(group%history(:, p))
             lost = lost + group%weight(p) * (gain(1) * (1.0_wp + state%shared) + gain(2))
             group%history(:, p) = state%history
-            if (law%cracks .and. group%cracked(p) == 0 .and. state%history(1) > law%tension%peak) &
-               call fix_band(group, e, p, law, state%normal)
+            if (law%cracks .and. group%cracked(p) == 0 .and. state%history(1) > law%tension%peak) then
+              call fix_band(group, e, p, law, state%normal)
+            end if
          end do
       end do
-   end subroutine update
+   end subroutine update_plane
 
    !> The crack band of a point that has cracked; the damage stays
    pure subroutine fix_band(group, e, p, law, normal)
@@ -148,7 +149,7 @@ contains
       group%history(1, p) = new%tension%strain_at(modulus(1))
    end subroutine fix_band
 
-   pure subroutine show(group, u)
+   pure subroutine show_plane(group, u)
       class(plane_history), intent(inout) :: group
       real(wp), intent(in) :: u(0:)
       real(wp) :: local(most_entries), eps(3, most_per), modulus(2)
@@ -174,6 +175,6 @@ contains
             group%stiff(:, p) = state%stiff
          end do
       end do
-   end subroutine show
+   end subroutine show_plane
 
 end module sla_plane_history

@@ -196,7 +196,8 @@ contains
       end select
    end function slope
 
-   !> Energy lost once the total strain `eps` has been reached: the area under the law less what the secant stores [J/m^3]
+   !> Energy lost once the total strain `eps` has been reached: the area under the law less what the secant stores
+   !> [J/m^3]
    pure function lost(law, eps) result(area)
       class(softening), intent(in) :: law
       real(wp), intent(in) :: eps

@@ -101,7 +101,9 @@ class SlaCurve(ResultModel):
     equilibrium_steps: int = maybe(
         "steps of equilibrium iterations among the events, after equilibrium was lost under the constant loads"
     )
-    staggered_steps: int = maybe("steps among them in which damage was frozen and updated, because Newton's method stalled")
+    staggered_steps: int = maybe(
+        "steps among them in which damage was frozen and updated, because Newton's method stalled"
+    )
     unbalanced_steps: int = maybe("steps among them that exceed the tolerance of the residual: no states")
     equilibrium_solutions: int = maybe("linear systems solved in these steps")
     equilibrium_from_m: float = maybe("control displacement from which equilibrium iterations went on", "m")
@@ -111,20 +113,25 @@ class SlaCurve(ResultModel):
     step_balance_ratio: float = maybe(
         "greatest error of the energies in these states: work of all loads less stored and dissipated energy, over the work"
     )
-    drift_height_m: float = maybe("extent of the structure across the control displacement: drifts are displacements over it", "m")
+    drift_height_m: float = maybe(
+        "extent of the structure across the control displacement: drifts are displacements over it", "m"
+    )
     peak_drift: float | None = maybe("drift at the peak")
     drop_displacement_m: float | None = maybe(
         "control displacement at which the envelope has dropped to 80 % of the peak; null if it has not", "m"
     )
     drop_drift: float | None = maybe("drift there")
     axial_loss_displacement_m: float | None = maybe(
-        "control displacement of the last state before the constant loads were no longer carried; null if they were", "m"
+        "control displacement of the last state before the constant loads were no longer carried; null if they were",
+        "m",
     )
     axial_loss_drift: float | None = maybe("drift there")
     seconds_per_event: float = fact("computing time of an event", "s")
     events_of_constant_loads: int = fact("events while the constant loads were brought on")
     probe_loads_N: list[float | None] = maybe("load of the envelope at the probed displacements; null beyond it", "N")
-    initial_stiffness_N_m: float = maybe("stiffness before the first event; none of a stage that began with equilibrium iterations", "N/m")
+    initial_stiffness_N_m: float = maybe(
+        "stiffness before the first event; none of a stage that began with equilibrium iterations", "N/m"
+    )
     peak_acceleration_g: float | None = maybe(
         "the peak as a horizontal acceleration, where the load is an acceleration of the masses", "g"
     )

@@ -445,7 +445,11 @@ def run_reference_loads(
         batch = int(np.clip(len(part) * BATCH_SECONDS / max(spent, 1e-3), 10, GRID))
     events, kept_states = core.Events.join(way.parts), way.states
     events.monitors[:, 0] *= sign  # positive in the sense of the load
-    collapsed = events.reason == "mechanism" and len(events) > 0 and events.compliance[-1] > model.mechanism_ratio * events.compliance[0]
+    collapsed = (
+        events.reason == "mechanism"
+        and len(events) > 0
+        and events.compliance[-1] > model.mechanism_ratio * events.compliance[0]
+    )
     if events.reason == "mechanism" and len(events) and model.driven:
         events.equilibrium[-1] = False  # the constant loads carry it away
     if collapsed and model.mesh.has_joints:
@@ -499,7 +503,8 @@ def run_reference_loads(
 
 def follow(core_model: core.Model, model: SlaModel, how: str | None) -> None:
     """How a stage goes on without equilibrium under its constant loads, see core.Model.follow."""
-    core_model.follow(how, LONGEST_STEP * model.reach, RUNAWAY * model.reach, 1.0 if model.driven else abs(model.unit))
+    reach = 1.0 if how is None else model.reach
+    core_model.follow(how, LONGEST_STEP * reach, RUNAWAY * reach, 1.0 if model.driven else abs(model.unit))
 
 
 def _incremental_stage(

@@ -33,7 +33,9 @@ class Wall:
     events: int
     fixed: np.ndarray
     loads: list[tuple[np.ndarray, float]]
-    histories: np.ndarray | None = None  # (2, points), of a stage that ended with equilibrium iterations: the next begins so
+    histories: np.ndarray | None = (
+        None  # (2, points), of a stage that ended with equilibrium iterations: the next begins so
+    )
 
 
 class Supports:
