@@ -42,7 +42,7 @@ module sla_continuation
    real(wp), parameter :: growth = 1.5_wp
    !> Steps that are tried to end at a target, and how near to it a step must end, of its length
    integer, parameter :: most_trials = 8
-   real(wp), parameter :: near = 1.0e-4_wp
+   real(wp), parameter :: near = 1.0e-6_wp
    !> First step over the longest
    real(wp), parameter :: first_step = 0.1_wp
    !> Displacement over that of the control beyond which a structure has run away

@@ -465,6 +465,13 @@ def run_reference_loads(
     curve.before, curve.unit, curve.extent = before, model.unit, model.extent
     if len(events) and not model.driven:
         curve.most_compliance = floor * float(events.compliance[0])
+    lost = np.flatnonzero(~events.equilibrium)
+    if options.without_equilibrium == "continue" and not (goes_on or model.mesh.has_joints) and len(lost):
+        curve.warnings.append(
+            f"Equilibrium under the constant loads is lost at event {lost[0] + 1}. Equilibrium iterations follow rotating cracks of "
+            "isotropic masonry alone (no bed joints, lateral reduction, confinement, shear retention or bars): the events beyond "
+            "are those of load-unload."
+        )
     if events.reason in (TOO_FAR, UNBOUNDED) and not events.steps[-1:].any():
         watch, ends = model.control, [core_model.displacement(load) for load in (0.0, 1.0)]
         constant, one = (sign * float(watch.share @ u[watch.node, watch.direction]) for u in ends)

@@ -218,7 +218,11 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
         unit = resultant(reference) if not options.stages else 1.0  # each stage has its own
     if not options.stages and (freedoms.equation[np.abs(reference) > 0] < 0).all():
         raise BadGeometry("the reference load acts on held nodes only")
-    if mesh.has_joints and not options.crack_closure:
+    closure = options.crack_closure
+    if closure is None:  # a single growing load hardly closes a crack
+        rotates = options.cracking == "rotating"
+        closure = mesh.has_joints or (rotates and bool(constant_loads or options.stages))
+    if mesh.has_joints and not closure:
         raise BadGeometry("joints between stones open and close: crack_closure = false is for walls without stones")
     floor = FLOOR_OF_JOINTS if mesh.has_joints else core.Behaviour.floor
     ratio = options.mechanism_ratio or (MECHANISM_OF_STONES if mesh.has_joints else MECHANISM)
@@ -235,7 +239,7 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     return SlaModel(
         mesh, freedoms, groups,
         core.Behaviour(
-            options.cracking, options.shear_retention, options.crack_closure,
+            options.cracking, options.shear_retention, closure,
             MOST_CHANGES_OF_JOINTS if mesh.has_joints else core.Behaviour.most_changes,
             floor,
         ),

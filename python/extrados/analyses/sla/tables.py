@@ -290,8 +290,10 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         ge=0.001,
         le=0.1,
     )
-    crack_closure: bool = key(
-        True, "cracks that close regain their stiffness; default true for stones, whose joints must, false for walls"
+    crack_closure: bool | None = key(
+        None,
+        "cracks that close regain their stiffness; default true, except for walls of fixed or isotropic cracks and for walls "
+        "under one growing load alone, without constant loads or stages",
     )
     solution: Literal["events", "incremental"] = key(
         "events",
