@@ -153,6 +153,8 @@ def run_stages(
                 core_model, staged, own, 1, before, told, False, chain and chain([k, wall.damage]), stop
             )
             curve.name, curve.damage_start = name, wall.damage
+            if wall.histories is not None and staged.driven and len(curve.events):
+                curve.already = float(curve.events.pull[0])
             curve.acceleration = staged.acceleration
             if not curves:
                 curve.stage_a = stage_a
