@@ -214,7 +214,7 @@ contains
 
    !> A batch of events
    subroutine run(handle, room, monitors, entries, first, freedom, share, counts, reals, integers, monitored, cracked, &
-                  status)
+                  released, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok
       use sla_handle, only : model_take, stage_loaded
@@ -233,6 +233,7 @@ contains
       integer(c_int), intent(out) :: integers(4, room)
       real(c_double), intent(out) :: monitored(monitors, room)
       real(c_double), intent(out) :: cracked             !! crack energy, the last event's included [J]
+      real(c_double), intent(out) :: released            !! energy lost as motion between states of equilibrium iterations [J]
       integer(c_int), intent(out) :: status              !! cancelled leaves what was recorded
       type(element_model), pointer :: model
       !f2py threadsafe
@@ -241,6 +242,7 @@ contains
       monitored = 0.0_c_double
       counts = 0
       cracked = 0.0_c_double
+      released = 0.0_c_double
       call model_take(handle, stage_loaded, stage_loaded, model, status)
       if (status /= status_ok) return
       call events(status)
@@ -292,6 +294,7 @@ contains
          integers(:, 1:log%count) = log%integers(:, 1:log%count)
          monitored(:, 1:log%count) = log%monitors(:, 1:log%count)
          cracked = model%ledger%cracked
+         released = model%path%released
       end subroutine events
 
    end subroutine run

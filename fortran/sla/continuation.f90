@@ -43,6 +43,8 @@ module sla_continuation
    !> Steps that are tried to end at a target, and how near to it a step must end, of its length
    integer, parameter :: most_trials = 8
    real(wp), parameter :: near = 1.0e-6_wp
+   !> Of the greatest displacement: no step is longer
+   real(wp), parameter :: part_of_way = 0.1_wp
    !> First step over the longest
    real(wp), parameter :: first_step = 0.1_wp
    !> Displacement over that of the control beyond which a structure has run away
@@ -103,6 +105,8 @@ contains
          path%constant = last%aa + ledger%lambda * last%ab
          path%drive_start = path%drive
          path%last_step = 0.0_wp
+         path%gap = 0.0_wp
+         path%released = 0.0_wp
          path%steps = 0
          path%solutions = 0
          if (.not. is_driven(model)) then
@@ -110,10 +114,10 @@ contains
             slope = dot_product(model%load%fb, solution%ub(0:n))
             if (abs(slope) > 0.0_wp) path%lambda = (path%drive - dot_product(model%load%fb, solution%ua(0:n))) / slope
          end if
-         path%u = solution%ua + path%lambda * solution%ub
-         path%start = path%u
-         path%now = path%u
-         path%before = path%u
+         path%u(:) = solution%ua + path%lambda * solution%ub
+         path%start(:) = path%u
+         path%now(:) = path%u
+         path%before(:) = path%u
          path%lambda_now = path%lambda
          path%lambda_before = path%lambda
       end associate
@@ -134,7 +138,7 @@ contains
       allocate (most(0:n + m), stat=info)
       if (info /= 0) status = status_out_of_memory
       if (info /= 0) return
-      most = 0.0_wp
+      most(:) = 0.0_wp
       associate (path => model%path, mesh => model%mesh)
          do i = 1, mesh%nodes
             do k = 1, size(mesh%equation, 1)
@@ -146,9 +150,9 @@ contains
             end do
          end do
          path%u(n + 1:) = model%support%moved(:, 1)
-         path%start = path%u
-         path%now = path%u
-         path%before = path%u
+         path%start(:) = path%u
+         path%now(:) = path%u
+         path%before(:) = path%u
          path%lambda = 0.0_wp
          path%lambda_now = 0.0_wp
          path%lambda_before = 0.0_wp
@@ -162,7 +166,7 @@ contains
          class is (history_group)
             group%history(:, :) = histories(:, group%offset + 1:group%offset + group%points)
             call group%keep()
-            group%rate = 0.0_wp
+            group%rate(:, :) = 0.0_wp
          end select
       end do
       model%ledger%recorded = .true.
@@ -228,12 +232,12 @@ contains
                call restore_state(model)
                exit
             end if
-            call account_step(model, length, lost, status)
+            call account_step(model, length, code, lost, status)
             if (status /= status_ok) exit
             if (path%steps == 0) then
-               path%start = path%now
+               path%start(:) = path%now
                path%drive_start = path%drive
-               path%step = first_step * path%longest
+               path%step = first_step * longest_step(model)
             end if
             path%steps = path%steps + 1
             loop%events = loop%events + 1
@@ -306,7 +310,7 @@ contains
             call group%restore()
          end select
       end do
-      model%path%u = model%path%now
+      model%path%u(:) = model%path%now
       model%path%lambda = model%path%lambda_now
    end subroutine restore_state
 
@@ -345,12 +349,12 @@ contains
       real(wp) :: ratio, scale, energy
       status = status_ok
       associate (path => model%path)
-         path%u = path%now
+         path%u(:) = path%now
          path%lambda = path%lambda_now
          if (.not. abs(length) > 0.0_wp) return
          if (path%last_step > 0.0_wp) then
             ratio = length / path%last_step
-            path%u = path%now + ratio * (path%now - path%before)
+            path%u(:) = path%now + ratio * (path%now - path%before)
             path%lambda = path%lambda_now + ratio * (path%lambda_now - path%lambda_before)
             return
          end if
@@ -372,10 +376,10 @@ contains
       n = model%mesh%equations
       energy = 0.0_wp
       scale = 0.0_wp
-      model%solution%force = 0.0_wp
+      model%solution%force(:) = 0.0_wp
       if (whole) then
-         model%stiffness%value = 0.0_wp
-         model%path%push = 0.0_wp
+         model%stiffness%value(:) = 0.0_wp
+         model%path%push(:) = 0.0_wp
       end if
       do g = 1, size(model%mesh%holders)
          associate (group => model%mesh%holders(g)%group, force => model%solution%force)
@@ -404,14 +408,16 @@ contains
       real(wp), intent(out) :: f(:)
       real(wp), intent(out) :: k(:, :)
       real(wp), intent(out) :: energy
-      integer :: n
+      integer :: i, n
       select type (group)
       class is (history_group)
          call group%respond(e, local, how, f, k, energy)
       class default
          n = group%freedoms
          call group%matrix(e, k)
-         f(1:n) = matmul(k(1:n, 1:n), local(1:n))
+         do i = 1, n
+            f(i) = dot_product(k(i, 1:n), local(1:n))
+         end do
          energy = 0.5_wp * dot_product(f(1:n), local(1:n))
       end select
    end subroutine respond
@@ -628,8 +634,18 @@ contains
       model%path%residual = residual_of(model, scale)
       if (model%path%residual > largest_error * explicit_tolerance) code = code_unbalanced
       ratio = sqrt(explicit_tolerance / max(model%path%residual, 1.0e-12_wp))
-      model%path%step = min(model%path%step * min(max(ratio, 1.0_wp / growth), growth), model%path%longest)
+      model%path%step = min(model%path%step * min(max(ratio, 1.0_wp / growth), growth), longest_step(model))
    end subroutine explicit_step
+
+   !> No step is longer than a part of the displacements so far: stiff structures lose equilibrium early
+   pure function longest_step(model) result(step)
+      type(element_model), intent(in) :: model
+      real(wp) :: step
+      associate (path => model%path)
+         step = min(path%longest, part_of_way * path%unit * maxval(abs(path%now(1:model%mesh%equations))))
+         if (.not. step > 0.0_wp) step = path%longest
+      end associate
+   end function longest_step
 
    !> Have displacements left those of the control behind?
    pure function has_run_away(model, length) result(yes)
@@ -656,12 +672,13 @@ contains
    end subroutine update_all
 
    !> The state is taken: energies, and what the next step begins with
-   subroutine account_step(model, length, lost, status)
+   subroutine account_step(model, length, code, lost, status)
       type(element_model), intent(inout) :: model
       real(wp), intent(in) :: length
+      integer(c_int), intent(in) :: code       !! of the list sla_event
       real(wp), intent(in) :: lost             !! [J]
       integer(c_int), intent(out) :: status
-      real(wp) :: energy, scale, force, was
+      real(wp) :: energy, scale, force, was, released
       integer :: g, n, m
       n = model%mesh%equations
       m = size(model%support%moved, 1)
@@ -680,11 +697,18 @@ contains
          path%constant = dot_product(model%load%fa, path%u(0:n))
          ledger%dissipated = ledger%dissipated + lost
          ledger%cracked = ledger%cracked + lost
+         ! A staggered step may drop to another equilibrium: the energy between both becomes motion, and is lost
+         released = ledger%external - energy - ledger%dissipated - path%gap
+         if ((code == code_staggered .or. code == code_unbalanced) .and. path%steps > 0 .and. released > 0.0_wp) then
+            ledger%dissipated = ledger%dissipated + released
+            path%released = path%released + released
+         end if
+         path%gap = ledger%external - energy - ledger%dissipated
          path%force = force
          path%stored = energy
-         path%before = path%now
+         path%before(:) = path%now
          path%lambda_before = path%lambda_now
-         path%now = path%u
+         path%now(:) = path%u
          path%lambda_now = path%lambda
          path%last_step = length
          path%drive = path%drive + length

@@ -427,29 +427,29 @@ contains
          group%rate(2, group%points), stat=info)
       status = merge(status_ok, status_out_of_memory, info == 0)
       if (info /= 0) return
-      group%history = 0.0_wp
-      group%kept = 0.0_wp
-      group%rate = 0.0_wp
+      group%history(:, :) = 0.0_wp
+      group%kept(:, :) = 0.0_wp
+      group%rate(:, :) = 0.0_wp
    end subroutine new_histories
 
    !> A state in equilibrium: its histories are those of the next step's start
    pure subroutine keep(group)
       class(history_group), intent(inout) :: group
-      group%rate = group%history - group%kept
-      group%kept = group%history
+      group%rate(:, :) = group%history - group%kept
+      group%kept(:, :) = group%history
    end subroutine keep
 
    !> Back to the last state in equilibrium
    pure subroutine restore(group)
       class(history_group), intent(inout) :: group
-      group%history = group%kept
+      group%history(:, :) = group%kept
    end subroutine restore
 
    !> On from the last state in equilibrium at the rate of the last step
    pure subroutine extrapolate(group, ratio)
       class(history_group), intent(inout) :: group
       real(wp), intent(in) :: ratio        !! of this step to the last
-      group%history = group%kept + ratio * group%rate
+      group%history(:, :) = group%kept + ratio * group%rate
    end subroutine extrapolate
 
    !> Displacements of an element's own freedoms

@@ -72,7 +72,7 @@ contains
          end associate
       end do
       call group%keep()
-      group%rate = 0.0_wp
+      group%rate(:, :) = 0.0_wp
    end subroutine begin
 
    pure subroutine respond_plane(group, e, local, how, f, k, energy)
@@ -97,8 +97,10 @@ contains
          call group%nodal(e, p, [0.0_wp, 1.0_wp, 0.0_wp], b(:, 2))
          call group%nodal(e, p, [0.0_wp, 0.0_wp, 1.0_wp], b(:, 3))
          energy = energy + group%weight(p) * state%energy
-         f(1:n) = f(1:n) + group%weight(p) * matmul(b(1:n, :), state%sigma)
-         db(1:n, :) = group%weight(p) * matmul(b(1:n, :), state%matrix)
+         do i = 1, n
+            f(i) = f(i) + group%weight(p) * dot_product(b(i, :), state%sigma)
+            db(i, :) = group%weight(p) * matmul(b(i, :), state%matrix)
+         end do
          do i = 1, n
             k(1:n, i) = k(1:n, i) + db(1:n, 1) * b(i, 1) + db(1:n, 2) * b(i, 2) + db(1:n, 3) * b(i, 3)
          end do

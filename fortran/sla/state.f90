@@ -126,6 +126,8 @@ module sla_state
       real(wp) :: constant = 0.0_wp                      !! fa.u in the last state [J]
       real(wp) :: force = 0.0_wp                         !! on what the multiplier moves, in the last state [N]
       real(wp) :: stored = 0.0_wp                        !! [J]
+      real(wp) :: gap = 0.0_wp                           !! work less stored and dissipated energy in the last state [J]
+      real(wp) :: released = 0.0_wp                      !! energy lost as motion in drops to another equilibrium [J]
       real(wp) :: residual = 0.0_wp                      !! over the largest nodal force
       integer :: solutions = 0                           !! linear systems solved
       integer :: steps = 0

@@ -429,7 +429,7 @@ class Model(Owner):
             min(stop.far, huge),
         )  # fmt: skip
         check(status, "where the events end")
-        counts, reals, ints, watched, cracked, status = long_call(
+        counts, reals, ints, watched, cracked, released, status = long_call(
             _core.api_sla.run, self.handle, int(room), first, _rows(node, direction),
             real("share", np.concatenate([m.share for m in monitors]), node.shape),
         )  # fmt: skip
@@ -445,6 +445,7 @@ class Model(Owner):
             point=ints[0] - 1, code=ints[1], number=ints[2], equilibrium=ints[3].astype(bool),
             monitors=watched[:, :count].T.copy(), reason=STOPS[reason], guard=(checks, solutions, factors),
             interrupted=interrupted, crack_total=float(cracked), solutions=solved,
+            released=float(released),
         )  # fmt: skip
 
     def follow(self, how: str | None, longest: float, least: float, unit: float) -> None:

@@ -384,6 +384,7 @@ class Events:
     interrupted: bool = False
     crack_total: float = 0.0  # with the last event applied [J]
     solutions: int = 0  # linear systems of equilibrium iterations
+    released: float = 0.0  # energy lost as motion between their states [J]
 
     def __len__(self) -> int:
         return len(self.load)
@@ -425,9 +426,9 @@ class Events:
         }
         return Events(
             **columns, reason=last.reason, guard=last.guard, interrupted=last.interrupted, crack_total=last.crack_total,
-            solutions=last.solutions,
+            solutions=last.solutions, released=last.released,
         )  # fmt: skip
 
 
 #: What events have once, not each
-ONCE = ("reason", "guard", "interrupted", "crack_total", "solutions")
+ONCE = ("reason", "guard", "interrupted", "crack_total", "solutions", "released")

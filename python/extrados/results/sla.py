@@ -113,6 +113,10 @@ class SlaCurve(ResultModel):
     step_balance_ratio: float = maybe(
         "greatest error of the energies in these states: work of all loads less stored and dissipated energy, over the work"
     )
+    released_energy_J: float = maybe(
+        "energy lost as motion in these steps, where the load drops to another equilibrium; part of dissipated_energy_J",
+        "J",
+    )
     drift_height_m: float = maybe(
         "extent of the structure across the control displacement: drifts are displacements over it", "m"
     )

@@ -28,9 +28,6 @@ from extrados.results.sla import DROP
 BATCH_SECONDS = 0.7
 #: Events between two states that are kept; a new factor takes as long as some tens of events of a large wall.
 KEPT = 1000
-#: Drift to which a run goes on that has lost equilibrium under its constant loads; longest step of equilibrium iterations, and
-#: displacement below which nothing counts as running away, over the extent across the control displacement
-DRIFT, LONGEST_STEP, RUNAWAY = 0.01, 1e-4, 2.5e-3
 #: The peak's state is run again from the damage at the multiple of this number before it.
 GRID = 100
 #: Events beyond the peak's number among which its load is looked for, where it comes in another order
@@ -38,8 +35,14 @@ MORE = 30
 NOTHING = np.zeros(0)
 NOTHING_DONE = (0.0, 0.0, 0.0)  # of the energies of a ledger
 STRAINS_AND_STRESSES = core.REPORT[:6]
-#: How a run ends in which the load can grow for ever
-UNBOUNDED, MECHANISM_REACHED = (core.STOPS[lists.number("sla_stop", name)] for name in ("unbounded", "mechanism"))
+#: Drift to which a run goes on that has lost equilibrium under its constant loads; longest step of equilibrium iterations, and
+#: displacement below which nothing counts as running away, over the extent across the control displacement
+DRIFT, LONGEST_STEP, RUNAWAY = 0.01, 1e-4, 2.5e-3
+#: How a run ends in which the load can grow for ever, and one that has reached a displacement
+UNBOUNDED, MECHANISM_REACHED, REACHED = (
+    core.STOPS[lists.number("sla_stop", name)] for name in ("unbounded", "mechanism", "displacement")
+)
+DRIFTED = f"a drift of {100 * DRIFT:g} %"
 
 
 @dataclass
@@ -158,7 +161,7 @@ class Curve:
         events = self.events
         if events.interrupted:
             return False
-        if len(events) and self.state[-1] and events.reason != "mechanism":
+        if len(events) and self.state[-1] and events.reason not in ("mechanism", AXIAL, DRIFTED):
             return True
         if left:
             self.warnings.append(
@@ -377,7 +380,8 @@ def run_reference_loads(
     goes_on = options.without_equilibrium == "continue" and core_model.continues
     variant = "load-unload" if options.without_equilibrium == "continue" else options.without_equilibrium
     follow(core_model, model, options.continuation if goes_on else None)
-    if goes_on and stop.displacement == np.inf and not stop.side:
+    ends_by_drift = goes_on and stop.displacement == np.inf and not stop.side
+    if ends_by_drift:
         stop = replace(stop, displacement=DRIFT * model.reach)
     release = variant == "force-release"
     floor = MECHANISM_OF_STONES if model.mesh.has_joints else MECHANISM
@@ -465,6 +469,8 @@ def run_reference_loads(
     curve.before, curve.unit, curve.extent = before, model.unit, model.extent
     if len(events) and not model.driven:
         curve.most_compliance = floor * float(events.compliance[0])
+    if ends_by_drift and events.reason == REACHED:
+        events.reason = DRIFTED
     lost = np.flatnonzero(~events.equilibrium)
     if options.without_equilibrium == "continue" and not (goes_on or model.mesh.has_joints) and len(lost):
         curve.warnings.append(

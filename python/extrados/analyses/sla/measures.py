@@ -105,6 +105,7 @@ def _of_steps(model: SlaModel, curve: Curve, peak: int, d: np.ndarray, p: np.nda
         "equilibrium_from_m": float(events.monitors[np.flatnonzero(steps)[0], 0]),
         "step_residual_ratio": float(events.residual[states].max(initial=0.0)),
         "step_balance_ratio": float(gap[states].max(initial=0.0)),
+        "released_energy_J": events.released,
         "drift_height_m": height,
         "peak_drift": drift(float(events.monitors[peak, 0]) if peak >= 0 else None),
         "drop_displacement_m": drop,

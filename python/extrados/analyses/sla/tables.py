@@ -310,7 +310,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     )
     continuation: Literal["newton", "implicit-explicit"] = key(
         "newton",
-        "equilibrium iterations: Newton's method and staggered steps where it stalls, or damage extrapolated from the last step "
+        "equilibrium iterations: Newton's method, and staggered steps if it stalls; or damage extrapolated from the last step "
         "(one convex problem a step, cheaper and less accurate)",
         source="Oliver, Huespe and Cante 2008",
     )
