@@ -80,7 +80,8 @@
   ENTRY(2, rotating, "rotating") \
   ENTRY(3, isotropic, "isotropic")
 
-/* What happens to a point in an event, by direction: n first crack's normal, s across it */
+/* What happens to a point in an event, by direction: n first crack's normal, s across it; last the steps of
+ * sla_continuation */
 #define EXTRADOS_SLA_EVENT_LIST(ENTRY) \
   ENTRY(1, tension, "tension n") \
   ENTRY(2, tension_s, "tension s") \
@@ -92,7 +93,11 @@
   ENTRY(8, open_s, "opening s") \
   ENTRY(9, wear, "cohesion") \
   ENTRY(10, slide, "sliding") \
-  ENTRY(11, stick, "sticking")
+  ENTRY(11, stick, "sticking") \
+  ENTRY(12, newton, "Newton step") \
+  ENTRY(13, staggered, "staggered step") \
+  ENTRY(14, extrapolated, "implicit-explicit step") \
+  ENTRY(15, unbalanced, "step out of balance")
 
 /* What happens after a tooth and where equilibrium is lost, see stop_rules in fortran/sla/state.f90 */
 #define EXTRADOS_SLA_VARIANT_LIST(ENTRY) \
@@ -110,7 +115,8 @@
   ENTRY(5, load, "target load") \
   ENTRY(6, fraction, "load fell below the fraction of its peak") \
   ENTRY(7, lost, "no equilibrium is found any more") \
-  ENTRY(8, far, "the displacement exceeds a tenth of the structure's size")
+  ENTRY(8, far, "the displacement exceeds a tenth of the structure's size") \
+  ENTRY(9, axial, "axial capacity lost")
 
 /* Where the layers of a shell lie: Gauss's points, or Lobatto's with one on each face */
 #define EXTRADOS_SHELL_THROUGH_LIST(ENTRY) \

@@ -30,6 +30,7 @@ struct extrados_sparse {
   double *d, *column;        /* D; most_changes dense columns in factor order, zero between calls */
   double *buffer;            /* most_changes + most_vectors rows of one supernode */
   cholmod_dense *y, *e, *answer; /* workspace of the plain solves of the refactorising algorithm */
+  cholmod_factor *simplicial; /* LDL' of matrices that need not be positive definite, made when first wanted */
 };
 
 static int code_of(const cholmod_common *common) {
@@ -123,6 +124,7 @@ void extrados_sparse_free(void **handle) {
   cholmod_l_free_dense(&self->e, &self->common);
   cholmod_l_free_dense(&self->answer, &self->common);
   cholmod_l_free_factor(&self->factor, &self->common);
+  cholmod_l_free_factor(&self->simplicial, &self->common);
   cholmod_l_finish(&self->common);
   free(self);
 }
@@ -430,12 +432,8 @@ int extrados_sparse_change(void *handle, int changes, const int *sign, int count
   return code;
 }
 
-int extrados_sparse_plain(void *handle, const double *value, int vectors, double *z) {
-  struct extrados_sparse *self = handle;
-  double ratio;
-  int64_t weakest;
-  int code = factorise(self, value, &ratio, &weakest);
-  if (code != EXTRADOS_ok) return code;
+/* Solutions for `vectors` right-hand sides by the present factor `of`, in place of these. */
+static int solve_by(struct extrados_sparse *self, cholmod_factor *of, int vectors, double *z) {
   cholmod_dense b = {0};
   b.nrow = b.d = (size_t)self->n;
   b.ncol = (size_t)vectors;
@@ -445,9 +443,35 @@ int extrados_sparse_plain(void *handle, const double *value, int vectors, double
   b.dtype = CHOLMOD_DOUBLE;
   const int room = extrados_blas_enter();
   if (room != EXTRADOS_ok) return room;
-  cholmod_l_solve2(CHOLMOD_A, self->factor, &b, NULL, &self->answer, NULL, &self->y, &self->e, &self->common);
+  cholmod_l_solve2(CHOLMOD_A, of, &b, NULL, &self->answer, NULL, &self->y, &self->e, &self->common);
   extrados_blas_leave();
   if (self->common.status != CHOLMOD_OK) return code_of(&self->common);
   memcpy(z, self->answer->x, b.nzmax * sizeof *z);
   return EXTRADOS_ok;
+}
+
+int extrados_sparse_plain(void *handle, const double *value, int vectors, double *z) {
+  struct extrados_sparse *self = handle;
+  double ratio;
+  int64_t weakest;
+  int code = factorise(self, value, &ratio, &weakest);
+  return code == EXTRADOS_ok ? solve_by(self, self->factor, vectors, z) : code;
+}
+
+/* As extrados_sparse_plain, by a factor of its own without square roots: tangent matrices past a peak have negative pivots.
+ * Without exchanges of rows, as the pattern is fixed; the caller measures the residual. not_positive_definite: a zero pivot. */
+int extrados_sparse_indefinite(void *handle, const double *value, int vectors, double *z) {
+  struct extrados_sparse *self = handle;
+  if (!all_finite((int64_t)self->matrix.nzmax, value)) return EXTRADOS_not_finite;
+  self->matrix.x = (void *)(uintptr_t)value;
+  self->matrix.xtype = CHOLMOD_REAL;
+  self->common.supernodal = CHOLMOD_SIMPLICIAL;
+  self->common.final_ll = 0;
+  if (!self->simplicial) self->simplicial = cholmod_l_analyze(&self->matrix, &self->common);
+  if (self->simplicial) cholmod_l_factorize(&self->matrix, self->simplicial, &self->common);
+  self->common.supernodal = CHOLMOD_SUPERNODAL;
+  self->common.final_ll = 1;
+  if (!self->simplicial || self->common.status != CHOLMOD_OK) return code_of(&self->common);
+  if (self->simplicial->minor < self->simplicial->n) return EXTRADOS_not_positive_definite;
+  return solve_by(self, self->simplicial, vectors, z);
 }

@@ -6,7 +6,7 @@ module api_sla
    implicit none
    private
    public :: loads, supports, reactions, stop_at, run, relax, displacement, measure, report, damage, set_damage
-   public :: standing, resume
+   public :: standing, resume, follow, continues, histories, go_on
 
 contains
 
@@ -112,15 +112,109 @@ contains
       type(element_model), pointer :: model
       call model_take(handle, stage_new, stage_loaded, model, status)
       if (status /= status_ok) return
-      model%rules = stop_rules(lambda=load, displacement=displacement, fraction=fraction, compliance=compliance, &
+      model%rules = stop_rules(continues=model%rules%continues, lambda=load, &
+         displacement=displacement, fraction=fraction, compliance=compliance, &
          refuse_overload=refuse_overload /= 0, proportional=variant == proportional, release=variant == release, &
          target=target, side=side, already=already, far=far)
       call handle_leave(handle)
    end subroutine stop_at
 
+   !> How the next batches go on where events find no equilibrium, see equilibrium_path of sla_state
+   subroutine follow(handle, how, longest, least, unit, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_invalid_argument
+      use sla_handle, only : model_take, stage_new, stage_loaded
+      use sla_model, only : element_model
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: how                !! 0 not at all, 1 Newton and staggered, 2 implicit-explicit
+      real(c_double), intent(in) :: longest            !! step of the control [m]
+      real(c_double), intent(in) :: least              !! displacement below which nothing runs away [m]
+      real(c_double), intent(in) :: unit               !! resultant of the reference load, 1 where supports move [N]
+      integer(c_int), intent(out) :: status
+      type(element_model), pointer :: model
+      call model_take(handle, stage_new, stage_loaded, model, status)
+      if (status /= status_ok) return
+      if (how < 0 .or. how > 2 .or. .not. longest > 0.0_c_double .or. .not. unit > 0.0_c_double) then
+         status = status_invalid_argument
+      else
+         model%rules%continues = how > 0
+         model%path%implicit = how == 1
+         model%path%unit = unit
+         model%path%longest = longest * unit
+         model%path%least_runaway = least
+      end if
+      call handle_leave(handle)
+   end subroutine follow
+
+   !> Can all groups be followed by equilibrium iterations?
+   subroutine continues(handle, yes, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use sla_continuation, only : model_continues
+      use sla_handle, only : model_take, stage_prepared, stage_loaded
+      use sla_model, only : element_model
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(out) :: yes
+      integer(c_int), intent(out) :: status
+      type(element_model), pointer :: model
+      yes = 0
+      call model_take(handle, stage_prepared, stage_loaded, model, status)
+      if (status /= status_ok) return
+      yes = merge(1_c_int, 0_c_int, model_continues(model))
+      call handle_leave(handle)
+   end subroutine continues
+
+   !> Histories of all points in the last state of equilibrium iterations
+   subroutine histories(handle, points, values, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_invalid_argument
+      use sla_continuation, only : path_histories
+      use sla_handle, only : model_take, stage_loaded
+      use sla_model, only : element_model
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: points
+      real(c_double), intent(out) :: values(2, points)
+      integer(c_int), intent(out) :: status
+      type(element_model), pointer :: model
+      values = 0.0_c_double
+      call model_take(handle, stage_loaded, stage_loaded, model, status)
+      if (status /= status_ok) return
+      if (points /= model%mesh%points .or. .not. model%path%active) then
+         status = status_invalid_argument
+      else
+         call path_histories(model, values)
+      end if
+      call handle_leave(handle)
+   end subroutine histories
+
+   !> Begin a stage with equilibrium iterations, at the displacements and histories that another ended with
+   subroutine go_on(handle, freedoms, nodes, displacement, points, values, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_invalid_argument
+      use sla_continuation, only : model_continues, resume_path
+      use sla_handle, only : model_take, stage_loaded
+      use sla_model, only : element_model
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: freedoms            !! of a node
+      integer(c_int), intent(in) :: nodes
+      real(c_double), intent(in) :: displacement(freedoms, nodes)     !! [m], [rad]
+      integer(c_int), intent(in) :: points
+      real(c_double), intent(in) :: values(2, points)   !! see histories
+      integer(c_int), intent(out) :: status
+      type(element_model), pointer :: model
+      call model_take(handle, stage_loaded, stage_loaded, model, status)
+      if (status /= status_ok) return
+      status = status_invalid_argument
+      if (points == model%mesh%points .and. nodes == model%mesh%nodes .and. freedoms == size(model%mesh%equation, 1) &
+         .and. all(values >= 0.0_c_double) .and. model_continues(model)) then
+        call resume_path(model, displacement, values, status)
+      end if
+      call handle_leave(handle)
+   end subroutine go_on
+
    !> A batch of events
    subroutine run(handle, room, monitors, entries, first, freedom, share, counts, reals, integers, monitored, cracked, &
-                  status)
+                  released, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok
       use sla_handle, only : model_take, stage_loaded
@@ -132,12 +226,14 @@ contains
       integer(c_int), intent(in) :: first(monitors + 1)  !! entry at which each monitor begins
       integer(c_int), intent(in) :: freedom(2, entries)  !! node and which of its freedoms
       real(c_double), intent(in) :: share(entries)
-      !> Events, residual checks, re-solutions, new factors, reason (list sla_stop)
-      integer(c_int), intent(out) :: counts(5)
+      !> Events, residual checks, re-solutions, new factors, reason (list sla_stop), 1 where equilibrium iterations go
+      !> on, linear systems they have solved
+      integer(c_int), intent(out) :: counts(7)
       real(c_double), intent(out) :: reals(11, room)      !! see event_log of sla_ledger
       integer(c_int), intent(out) :: integers(4, room)
       real(c_double), intent(out) :: monitored(monitors, room)
       real(c_double), intent(out) :: cracked             !! crack energy, the last event's included [J]
+      real(c_double), intent(out) :: released            !! energy lost as motion between states of equilibrium iterations [J]
       integer(c_int), intent(out) :: status              !! cancelled leaves what was recorded
       type(element_model), pointer :: model
       !f2py threadsafe
@@ -146,6 +242,7 @@ contains
       monitored = 0.0_c_double
       counts = 0
       cracked = 0.0_c_double
+      released = 0.0_c_double
       call model_take(handle, stage_loaded, stage_loaded, model, status)
       if (status /= status_ok) return
       call events(status)
@@ -154,8 +251,10 @@ contains
    contains
 
       subroutine events(fate)
+         use common_lists, only : stop_none => sla_stop_none
          use common_status, only : status_bad_index, status_out_of_memory
          use common_threads, only : threads_available
+         use sla_continuation, only : run_steps
          use sla_events, only : run_events
          use sla_ledger, only : event_log, log_integers, log_reals
          use sla_handle, only : check_nodes
@@ -171,23 +270,31 @@ contains
          if (any(freedom(2, :) < 1) .or. any(freedom(2, :) > size(model%mesh%equation, 1))) return
          if (first(1) /= 1 .or. first(monitors + 1) /= entries + 1 .or. any(first(2:) < first(:monitors))) return
          fate = status_out_of_memory
+         log%count = 0
          allocate (watched%first(monitors + 1), watched%equation(entries), watched%share(entries), &
             watched%ratio(monitors), log%reals(log_reals, room), log%integers(log_integers, room), &
             log%monitors(monitors, room), stat=info)
          if (info /= 0) return
+         fate = status_ok
          watched%first(:) = first
          do k = 1, entries
             watched%equation(k) = model%mesh%equation(freedom(2, k), freedom(1, k))
             watched%share(k) = share(k) * model%mesh%factor(freedom(2, k), freedom(1, k))
          end do
          model%threads = threads_available(model%threads)
-         call run_events(model, watched, log, reason, fate)
+         reason = stop_none
+         if (.not. model%path%active) call run_events(model, watched, log, reason, fate)
+         if (fate == status_ok .and. reason == stop_none .and. model%path%active) then
+           call run_steps(model, watched, log, reason, fate)
+         end if
          counts = [int(log%count, c_int), int(model%checks%checks, c_int), int(model%checks%solutions, c_int), &
-            int(model%checks%factors, c_int), reason]
+            int(model%checks%factors, c_int), reason, &
+            merge(1_c_int, 0_c_int, model%path%active), int(model%path%solutions, c_int)]
          reals(:, 1:log%count) = log%reals(:, 1:log%count)
          integers(:, 1:log%count) = log%integers(:, 1:log%count)
          monitored(:, 1:log%count) = log%monitors(:, 1:log%count)
          cracked = model%ledger%cracked
+         released = model%path%released
       end subroutine events
 
    end subroutine run

@@ -17,6 +17,7 @@ module shell_group
    use sla_element, only : most_points
    use sla_group, only : event_vectors, material_options, most_entries
    use sla_plane_damage, only : plane_damage, damage_point
+   use sla_plane_history, only : respond_plane, show_plane, update_plane
    use sla_plane_points, only : points_new, points_ready, direction_modulus, refresh_plane, axis_joint
    use sla_tables, only : tooth_tables
    use, intrinsic :: iso_c_binding, only : c_int
@@ -56,6 +57,8 @@ module shell_group
       procedure :: force
       procedure :: damage
       procedure :: refresh
+      procedure :: respond
+      procedure :: update
    end type shell_points
 
 contains
@@ -444,10 +447,16 @@ contains
    pure subroutine refresh(group, p)
       class(shell_points), intent(inout) :: group
       integer, intent(in) :: p
+      call refresh_plane(group, p)
+      if (group%section%bends) call set_transverse(group, p)
+   end subroutine refresh
+
+   !> Transverse shear moduli across both cracks from their teeth
+   pure subroutine set_transverse(group, p)
+      class(shell_points), intent(inout) :: group
+      integer, intent(in) :: p
       real(wp) :: e0, nu, modulus
       integer :: e, k
-      call refresh_plane(group, p)
-      if (.not. group%section%bends) return
       e = (p - 1) / group%per + 1
       e0 = group%young(e)
       nu = group%nu(e)
@@ -463,7 +472,53 @@ contains
             group%transverse(k, p) = group%options%retention * 0.5_wp * e0 / (1.0_wp + nu)
          end if
       end do
-   end subroutine refresh
+   end subroutine set_transverse
+
+   !> As of plane points, with transverse shear and the rotations about the normal, which are linear within a step
+   pure subroutine respond(group, e, local, how, f, k, energy)
+      class(shell_points), intent(in) :: group
+      integer, intent(in) :: e
+      real(wp), intent(in) :: local(:)
+      integer, intent(in) :: how
+      real(wp), intent(out) :: f(:)
+      real(wp), intent(out) :: k(:, :)
+      real(wp), intent(out) :: energy
+      real(wp) :: one(most_entries), v(6, most_corners), part(6, most_corners), column(most_entries)
+      real(wp) :: none(3, 3, most_points), g(2, 2, most_points), a(3, 3), b(3, 3), d(3, 3)
+      integer :: i, n
+      call respond_plane(group, e, local, how, f, k, energy)
+      if (.not. group%section%bends) return
+      n = group%freedoms
+      none = 0.0_wp
+      do i = 1, group%rule%points
+         call of_section(group, e, i, a, b, d, g(:, :, i))
+      end do
+      do i = 1, n
+         one = 0.0_wp
+         one(i) = 1.0_wp
+         call to_element(group, e, one, v)
+         part = 0.0_wp
+         call add_forces(group, e, none, none, none, g, v, part)
+         call from_element(group, e, part, column)
+         k(1:n, i) = k(1:n, i) + column(1:n)
+         f(1:n) = f(1:n) + column(1:n) * local(i)
+         energy = energy + 0.5_wp * dot_product(local(1:n), column(1:n)) * local(i)
+      end do
+   end subroutine respond
+
+   !> As of plane points; the transverse shear follows the cracks
+   pure subroutine update(group, u, lost)
+      class(shell_points), intent(inout) :: group
+      real(wp), intent(in) :: u(0:)
+      real(wp), intent(inout) :: lost
+      integer :: p
+      call update_plane(group, u, lost)
+      if (.not. group%section%bends) return
+      call show_plane(group, u)
+      do p = 1, group%points
+         call set_transverse(group, p)
+      end do
+   end subroutine update
 
    !> As of plane points, with the vectors of the transverse shear
    pure subroutine damage(group, point, code, lambda, ua, ub, event, tooth)

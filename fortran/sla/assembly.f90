@@ -6,7 +6,7 @@ module sla_assembly
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: build_pattern, assemble, add_event
+   public :: build_pattern, assemble, add_event, position
 
 contains
 

@@ -17,11 +17,12 @@ module sla_events
       status_beyond_strength
    use sla_assembly, only : add_event
    use sla_c_bindings, only : extrados_sparse_change
+   use sla_continuation, only : begin_path, model_continues
    use sla_friction, only : find_sliders
    use sla_group, only : bound, component, friction_group, most_entries, most_rank, point_event, point_group, &
       point_place, scan_result, slider, unbounded
    use sla_guard, only : guard_every, guard_residual
-   use sla_ledger, only : account_state, event_log, follow_supports, log_reals, record_state, watch_monitors
+   use sla_ledger, only : account_state, event_log, follow_supports, judge_fall, log_reals, record_state, watch_monitors
    use sla_model, only : element_model, model_balance, model_follow, model_settled, model_slips, model_solve, &
       model_turns
    use sla_regions, only : regions_bring, regions_home
@@ -36,8 +37,6 @@ module sla_events
    real(wp), parameter :: least_pivot = 1.0e-10_wp    !! of I - W' inv(K) W: below it the structure is a mechanism
    !> Multiplier of an event without equilibrium over the peak before, from which no state is sought any more
    real(wp), parameter :: farthest = 1.0e3_wp
-   !> Of the way to the peak: so much further the load must stay below a fraction of the peak to have fallen below it
-   real(wp), parameter :: further = 0.1_wp
 
    !> What happens to a joint without a force beside its stiffness
    integer(c_int), parameter :: in_place(3) = [code_tension, code_compression, code_open]
@@ -72,7 +71,8 @@ contains
          if (status /= status_ok) return
          if (model%loop%pending%group /= 0) then
             call change_state(model, driven, turned, reason, status)
-            if (status /= status_ok .or. reason /= stop_none) return
+            if (status == status_ok .and. reason == stop_mechanism) call hand_over(model, reason, status)
+            if (status /= status_ok .or. reason /= stop_none .or. model%path%active) return
          end if
          if (model%release%active) then
             call set_free(model, found, status)
@@ -92,6 +92,12 @@ contains
          if (model%rules%refuse_overload .and. .not. model%ledger%recorded .and. .not. equilibrium) then
             status = status_beyond_strength
             return
+         end if
+         if (model%ledger%recorded .and. .not. equilibrium) then
+            reason = stop_lost
+            call hand_over(model, reason, status)
+            if (status /= status_ok .or. model%path%active) return
+            reason = stop_none
          end if
          if (.not. found%bounded) reason = stop_unbounded
          model%loop%scale = 1.0_wp
@@ -161,32 +167,23 @@ contains
          if (too_soft(model, driven)) then
             if (turned .or. model%loop%pending%code /= code_stick) reason = stop_mechanism   ! whatever it says besides
          end if
+         if (reason == stop_mechanism) call hand_over(model, reason, status)
+         if (status /= status_ok .or. model%path%active) return
          if (reason /= stop_none) return
       end do
    end subroutine run_events
 
-   !> Does the envelope of load over displacement stay below a fraction of its peak, over a tenth of the way to it? So
-   !> do all states from the first one below it that is the furthest so far; a single tooth gives one such state
-   subroutine judge_fall(model, reached, displacement, fallen)
+   !> Equilibrium iterations go on from here, where the rules want them and all groups can
+   subroutine hand_over(model, reason, status)
       type(element_model), intent(inout) :: model
-      real(wp), intent(in) :: reached          !! load, or its multiplier
-      real(wp), intent(in) :: displacement     !! of monitor 1 [m]
-      logical, intent(out) :: fallen
-      real(wp) :: way
-      fallen = .false.
-      associate (loop => model%loop, fraction => model%rules%fraction)
-         if (fraction < 0.0_wp .or. .not. loop%peak > 0.0_wp) return
-         way = sign(1.0_wp, loop%slope) * (displacement - loop%start_displacement)
-         if (reached >= fraction * loop%peak) then
-            loop%fallen_from = unbounded
-         else if (loop%fallen_from < unbounded) then
-            fallen = way >= loop%fallen_from + further * abs(loop%peak_displacement - loop%start_displacement)
-         else if (way > loop%furthest) then
-            loop%fallen_from = way
-         end if
-         loop%furthest = max(loop%furthest, way)
-      end associate
-   end subroutine judge_fall
+      integer(c_int), intent(inout) :: reason     !! for which the events end; none where they are gone on with
+      integer(c_int), intent(out) :: status
+      status = status_ok
+      if (.not. model%rules%continues) return
+      if (.not. model_continues(model)) return
+      call begin_path(model, status)
+      reason = stop_none
+   end subroutine hand_over
 
    !> Has the compliance to the growing load grown by a ratio; supports that move also move what has no stiffness left,
    !> unless the constant loads carry it away

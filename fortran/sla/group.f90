@@ -22,6 +22,9 @@
 !>   margin        a lower bound of what a range of elements carries, by which regions may wait. A bound of -1 makes
 !>                 them looked at in each event: right, and slow.
 !>
+!> A law that can be followed by the strain itself, without teeth, goes on by equilibrium iterations where events find
+!> no equilibrium (sla_continuation): its group extends history_group. What has no points is linear there.
+!>
 !> Points that slide have forces beside their stiffness: their groups extend friction_group, see there.
 !>
 !> A constructor returns the offending element and a status of extrados_status.h (bad geometry, out of memory, invalid
@@ -30,10 +33,12 @@
 module sla_group
    use common_kinds, only : wp
    use common_lists, only : orthotropic => sla_cracking_orthotropic
+   use common_status, only : status_ok, status_out_of_memory
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: element_group, point_group, friction_group, group_holder, slider, point_place, point_event, bound
+   public :: element_group, point_group, history_group, friction_group, group_holder, slider, point_place, point_event
+   public :: bound
    public :: scan_result, event_vectors, material_options
    public :: below, unbounded, most_entries, most_rank, offer_hi, offer_lo, offer_empty, linear_bound, &
       component, along, admitted, report_rows, state_rows
@@ -139,6 +144,23 @@ module sla_group
       procedure(state_interface), deferred :: state
       procedure(margin_interface), deferred :: margin
    end type point_group
+
+   !> Elements whose points keep histories: the greatest strains so far, which decide their damage
+   type, abstract, extends(point_group) :: history_group
+      real(wp), allocatable :: history(:, :)   !! (2, points)
+      real(wp), allocatable :: kept(:, :)      !! (2, points) of the last state in equilibrium
+      real(wp), allocatable :: rate(:, :)      !! (2, points) growth in the last step
+   contains
+      procedure(continues_interface), deferred :: continues
+      procedure(begin_interface), deferred :: begin
+      procedure(respond_interface), deferred :: respond
+      procedure(update_interface), deferred :: update
+      procedure(show_interface), deferred :: show
+      procedure :: new_histories
+      procedure :: keep
+      procedure :: restore
+      procedure :: extrapolate
+   end type history_group
 
    !> Elements whose points can slide: their stress is k d - k0 + h, with a force h that follows the displacements, see
    !> sla_friction, and k0 that of a spring whose origin moved
@@ -250,6 +272,52 @@ module sla_group
          real(wp), intent(inout) :: least(:)     !! sqrt(2 U) by multiplier [J^1/2]
       end subroutine margin_interface
 
+      !> Can the law be followed without teeth?
+      pure function continues_interface(group) result(yes)
+         import :: history_group
+         implicit none (type, external)
+         class(history_group), intent(in) :: group
+         logical :: yes
+      end function continues_interface
+
+      !> The histories that the teeth lost so far have come from
+      subroutine begin_interface(group, status)
+         import :: c_int, history_group
+         implicit none (type, external)
+         class(history_group), intent(inout) :: group
+         integer(c_int), intent(out) :: status
+      end subroutine begin_interface
+
+      !> Forces, matrix and stored energy of an element
+      pure subroutine respond_interface(group, e, local, how, f, k, energy)
+         import :: history_group, wp
+         implicit none (type, external)
+         class(history_group), intent(in) :: group
+         integer, intent(in) :: e
+         real(wp), intent(in) :: local(:)    !! displacements of its freedoms
+         integer, intent(in) :: how          !! by_... of sla_coaxial
+         real(wp), intent(out) :: f(:)
+         real(wp), intent(out) :: k(:, :)
+         real(wp), intent(out) :: energy     !! [J]
+      end subroutine respond_interface
+
+      !> The histories follow the displacements; the energy that this costs is added
+      pure subroutine update_interface(group, u, lost)
+         import :: history_group, wp
+         implicit none (type, external)
+         class(history_group), intent(inout) :: group
+         real(wp), intent(in) :: u(0:)
+         real(wp), intent(inout) :: lost     !! [J]
+      end subroutine update_interface
+
+      !> Axes, teeth and stiffness of the points by their histories, for `report` and `state`
+      pure subroutine show_interface(group, u)
+         import :: history_group, wp
+         implicit none (type, external)
+         class(history_group), intent(inout) :: group
+         real(wp), intent(in) :: u(0:)
+      end subroutine show_interface
+
       !> Add the forces of k0 and of -h, and the energy that k0 alone leaves
       pure subroutine origins_interface(group, springs, held, energy)
          import :: friction_group, wp
@@ -348,6 +416,41 @@ module sla_group
    end interface
 
 contains
+
+   !> Histories of undamaged points
+   subroutine new_histories(group, status)
+      class(history_group), intent(inout) :: group
+      integer(c_int), intent(out) :: status
+      integer :: info
+      info = 0
+      if (.not. allocated(group%history)) allocate (group%history(2, group%points), group%kept(2, group%points), &
+         group%rate(2, group%points), stat=info)
+      status = merge(status_ok, status_out_of_memory, info == 0)
+      if (info /= 0) return
+      group%history(:, :) = 0.0_wp
+      group%kept(:, :) = 0.0_wp
+      group%rate(:, :) = 0.0_wp
+   end subroutine new_histories
+
+   !> A state in equilibrium: its histories are those of the next step's start
+   pure subroutine keep(group)
+      class(history_group), intent(inout) :: group
+      group%rate(:, :) = group%history - group%kept
+      group%kept(:, :) = group%history
+   end subroutine keep
+
+   !> Back to the last state in equilibrium
+   pure subroutine restore(group)
+      class(history_group), intent(inout) :: group
+      group%history(:, :) = group%kept
+   end subroutine restore
+
+   !> On from the last state in equilibrium at the rate of the last step
+   pure subroutine extrapolate(group, ratio)
+      class(history_group), intent(inout) :: group
+      real(wp), intent(in) :: ratio        !! of this step to the last
+      group%history(:, :) = group%kept + ratio * group%rate
+   end subroutine extrapolate
 
    !> Displacements of an element's own freedoms
    pure subroutine gather(group, element, u, local)

@@ -4,15 +4,18 @@
 !> and what the elements store must close the balance.
 module sla_ledger
    use common_kinds, only : wp
-   use sla_group, only : along, point_group, scan_result
+   use sla_group, only : along, point_group, scan_result, unbounded
    use sla_model, only : element_model, held_work, load_products, model_reactions, model_recorded
    use sla_state, only : load_work, monitor_set
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: account_state, follow_supports, record_state, watch_monitors, event_log, log_reals, log_integers
+   public :: account_state, follow_supports, record_state, watch_monitors, judge_fall
+   public :: event_log, log_reals, log_integers
 
    integer, parameter :: log_reals = 11, log_integers = 4
+   !> Of the way to the peak: so much further the load must stay below a fraction of the peak to have fallen below it
+   real(wp), parameter :: further = 0.1_wp
 
    !> What is recorded; monitors are weighted sums of equations
    type :: event_log
@@ -227,5 +230,28 @@ contains
          end associate
       end do
    end subroutine watch_supports
+
+   !> Does the envelope of load over displacement stay below a fraction of its peak, over a tenth of the way to it? So
+   !> do all states from the first one below it that is the furthest so far; a single tooth gives one such state
+   subroutine judge_fall(model, reached, displacement, fallen)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: reached          !! load, or its multiplier
+      real(wp), intent(in) :: displacement     !! of monitor 1 [m]
+      logical, intent(out) :: fallen
+      real(wp) :: way
+      fallen = .false.
+      associate (loop => model%loop, fraction => model%rules%fraction)
+         if (fraction < 0.0_wp .or. .not. loop%peak > 0.0_wp) return
+         way = sign(1.0_wp, loop%slope) * (displacement - loop%start_displacement)
+         if (reached >= fraction * loop%peak) then
+            loop%fallen_from = unbounded
+         else if (loop%fallen_from < unbounded) then
+            fallen = way >= loop%fallen_from + further * abs(loop%peak_displacement - loop%start_displacement)
+         else if (way > loop%furthest) then
+            loop%fallen_from = way
+         end if
+         loop%furthest = max(loop%furthest, way)
+      end associate
+   end subroutine judge_fall
 
 end module sla_ledger

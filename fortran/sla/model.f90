@@ -13,8 +13,8 @@ module sla_model
    use sla_mesh, only : element_mesh
    use sla_turns, only : friction_turns
    use sla_regions, only : regions_new, regions_measure, regions_settled, regions_made_up
-   use sla_state, only : energy_ledger, force_release, limit_search, load_vectors, load_work, loop_state, &
-      moved_supports, residual_checks, sliding_state, solution_vectors, stop_rules
+   use sla_state, only : energy_ledger, equilibrium_path, force_release, limit_search, load_vectors, load_work, &
+      loop_state, moved_supports, residual_checks, sliding_state, solution_vectors, stop_rules
    use sla_stiffness, only : stiffness_matrix, stiffness_solve
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
@@ -43,6 +43,7 @@ module sla_model
       type(energy_ledger) :: ledger
       type(force_release) :: release
       type(residual_checks) :: checks
+      type(equilibrium_path) :: path
       type(stop_rules) :: rules
    end type element_model
 
@@ -460,6 +461,7 @@ contains
       model%search%upper = point_place()
       model%search%lower = point_place()
       model%release%active = .false.
+      model%path%active = .false.
       model%checks%residual = 0.0_wp
       model%ledger%scale = 1.0_wp
       model%ledger%recorded = .false.

@@ -15,7 +15,8 @@ module sla_plane_damage
    use common_lists, only : code_tension => sla_event_tension, code_compression => sla_event_compression, &
       code_close => sla_event_close
    use sla_group, only : scan_result, event_vectors, most_entries, admitted
-   use sla_plane_points, only : plane_points, axis_free, in_crack_axes, in_element_axes, stress_at, scan_point, &
+   use sla_plane_history, only : plane_history
+   use sla_plane_points, only : axis_free, in_crack_axes, in_element_axes, stress_at, scan_point, &
       is_bedded, most_per, open_bedded, share_of, direction_modulus, set_pair, set_band, width_across
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -28,7 +29,7 @@ module sla_plane_damage
    !> Stiffness along a rotating crack over that across it, at most; not where it is pressed by more than its strength
    real(wp), parameter :: most_contrast = 10.0_wp
 
-   type, abstract, extends(plane_points) :: plane_damage
+   type, abstract, extends(plane_history) :: plane_damage
    contains
       procedure :: damage => damage_point
       procedure :: report

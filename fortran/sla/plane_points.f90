@@ -24,7 +24,7 @@ module sla_plane_points
    use common_status, only : status_ok, status_out_of_memory
    use sla_bedding, only : bedding, between, hill, hill_strength, in_joint_axes
    use sla_element, only : element_rule
-   use sla_group, only : point_group, scan_result, material_options, most_entries, unbounded, offer_hi, offer_lo, &
+   use sla_group, only : history_group, scan_result, material_options, most_entries, unbounded, offer_hi, offer_lo, &
       offer_empty, linear_bound
    use sla_interval, only : cone_interval, overload, quadratic_interval
    use sla_tables, only : tooth_tables, tooth_tables_copy
@@ -48,7 +48,7 @@ module sla_plane_points
    real(wp), parameter :: share_steps = 1.0e6_wp
 
    !> Points of plane-stress elements, and of the layers of shells. A kind of element provides `strains` and `nodal`.
-   type, abstract, extends(point_group) :: plane_points
+   type, abstract, extends(history_group) :: plane_points
       type(element_rule) :: rule
       integer :: per = 0                                 !! points of an element
       logical :: selective = .false.                     !! shear strain from the element's middle

@@ -45,6 +45,10 @@ module sla_sawtooth
       procedure :: strain
       procedure :: stress
       procedure :: energy
+      procedure :: secant
+      procedure :: slope
+      procedure :: lost
+      procedure :: strain_at
    end type softening
 
 contains
@@ -142,6 +146,94 @@ contains
             + 0.5_wp * law%stress(x)**2 / law%e
       end select
    end function energy
+
+   !> Parameter of a total strain beyond the peak
+   pure function parameter_of(law, eps) result(x)
+      class(softening), intent(in) :: law
+      real(wp), intent(in) :: eps
+      real(wp) :: x, low, high
+      integer :: k
+      x = eps
+      if (law%kind /= law_hordijk) return
+      low = 0.0_wp
+      high = eps
+      do k = 1, 100    ! the strain grows with the crack strain, as the law does not snap back
+         x = 0.5_wp * (low + high)
+         if (x <= low .or. x >= high) exit
+         if (law%strain(x) < eps) then
+            low = x
+         else
+            high = x
+         end if
+      end do
+   end function parameter_of
+
+   !> Secant modulus once the total strain `eps` has been reached [Pa]
+   pure function secant(law, eps) result(modulus)
+      class(softening), intent(in) :: law
+      real(wp), intent(in) :: eps
+      real(wp) :: modulus
+      modulus = law%e
+      if (eps > law%peak) modulus = law%stress(parameter_of(law, eps)) / eps
+   end function secant
+
+   !> Slope of the law at the total strain `eps` [Pa]
+   pure function slope(law, eps) result(modulus)
+      class(softening), intent(in) :: law
+      real(wp), intent(in) :: eps
+      real(wp) :: modulus, step, x
+      modulus = law%e
+      if (eps <= law%peak) return
+      select case (law%kind)
+      case (law_linear)
+         modulus = merge(-law%ft / (law%range - law%peak), 0.0_wp, eps < law%range)
+      case (law_exponential)
+         modulus = -law%stress(eps) / law%range
+      case default
+         x = parameter_of(law, eps)
+         step = 1.0e-6_wp * law%range
+         modulus = (law%stress(x + step) - law%stress(x)) / (law%strain(x + step) - law%strain(x))
+      end select
+   end function slope
+
+   !> Energy lost once the total strain `eps` has been reached: the area under the law less what the secant stores
+   !> [J/m^3]
+   pure function lost(law, eps) result(area)
+      class(softening), intent(in) :: law
+      real(wp), intent(in) :: eps
+      real(wp) :: area, x
+      area = 0.0_wp
+      if (eps <= law%peak) return
+      x = parameter_of(law, eps)
+      if (law%kind == law_linear) x = min(x, law%range)
+      area = law%energy(x) - 0.5_wp * law%stress(x) * eps
+   end function lost
+
+   !> Total strain that leaves a secant modulus, 0 for the whole one
+   pure function strain_at(law, modulus) result(eps)
+      class(softening), intent(in) :: law
+      real(wp), intent(in) :: modulus      !! [Pa]
+      real(wp) :: eps, low, high
+      integer :: k
+      eps = 0.0_wp
+      if (modulus >= law%e) return
+      low = law%peak
+      high = 2.0_wp * law%peak
+      do k = 1, 1000
+         if (law%secant(high) <= modulus) exit
+         low = high
+         high = 1.5_wp * high
+      end do
+      do k = 1, 100
+         eps = 0.5_wp * (low + high)
+         if (eps <= low .or. eps >= high) exit
+         if (law%secant(eps) > modulus) then
+            low = eps
+         else
+            high = eps
+         end if
+      end do
+   end function strain_at
 
    !> Integral of Hordijk's curve from 0 to r, both axes relative
    pure function hordijk_integral(r) result(area)

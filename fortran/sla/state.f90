@@ -9,7 +9,7 @@ module sla_state
    implicit none
    private
    public :: load_work, load_vectors, moved_supports, solution_vectors, limit_search, sliding_state, loop_state
-   public :: energy_ledger, force_release, residual_checks, stop_rules, monitor_set
+   public :: energy_ledger, force_release, residual_checks, stop_rules, monitor_set, equilibrium_path
 
    !> Products of two loads, constant (a) and per multiplier (b), with the displacements of both [J]
    type :: load_work
@@ -106,6 +106,33 @@ module sla_state
       real(wp) :: force = 0.0_wp                         !! that moves supports there [N]
    end type force_release
 
+   !> The path that equilibrium iterations follow where events find no equilibrium, see sla_continuation
+   type :: equilibrium_path
+      logical :: active = .false.
+      logical :: implicit = .true.                       !! else implicit-explicit integration
+      real(wp), allocatable :: u(:)                      !! (0:n + moved) displacements of the iteration [m]
+      real(wp), allocatable :: now(:), before(:)         !! (0:n + moved) of the last two states [m]
+      real(wp), allocatable :: start(:)                  !! (0:n + moved) of the first state [m]
+      real(wp) :: drive_start = 0.0_wp                   !! control there [J]
+      real(wp), allocatable :: push(:)                   !! (0:n + moved) forces per multiplier of moved supports [N]
+      real(wp) :: lambda = 0.0_wp                        !! of the iteration
+      real(wp) :: lambda_now = 0.0_wp, lambda_before = 0.0_wp
+      real(wp) :: drive = 0.0_wp                         !! work-conjugate displacement of load B in the last state [J]
+      real(wp) :: step = 0.0_wp, last_step = 0.0_wp      !! of `drive` [J]
+      real(wp) :: longest = 0.0_wp                       !! step [J]
+      real(wp) :: runaway = unbounded                    !! displacement that no state in equilibrium has [m]
+      real(wp) :: least_runaway = 0.0_wp                 !! [m]
+      real(wp) :: unit = 1.0_wp                          !! of `drive` per displacement [N]
+      real(wp) :: constant = 0.0_wp                      !! fa.u in the last state [J]
+      real(wp) :: force = 0.0_wp                         !! on what the multiplier moves, in the last state [N]
+      real(wp) :: stored = 0.0_wp                        !! [J]
+      real(wp) :: gap = 0.0_wp                           !! work less stored and dissipated energy in the last state [J]
+      real(wp) :: released = 0.0_wp                      !! energy lost as motion in drops to another equilibrium [J]
+      real(wp) :: residual = 0.0_wp                      !! over the largest nodal force
+      integer :: solutions = 0                           !! linear systems solved
+      integer :: steps = 0
+   end type equilibrium_path
+
    !> See sla_guard
    type :: residual_checks
       real(wp) :: residual = 0.0_wp                      !! the last that was found, over the loads
@@ -129,6 +156,8 @@ module sla_state
       real(wp) :: target = unbounded               !! of monitor 1 [m]: the stage ends in the state that has it
       real(wp) :: side = 0.0_wp                    !! +1: it is reached from below, -1: from above, 0: there is none
       real(wp) :: already = 0.0_wp                 !! loads like B that are on already, over B
+      !> Where no multiplier suits all points, or the factor is lost, equilibrium iterations go on
+      logical :: continues = .false.
       real(wp) :: far = unbounded                  !! way of monitor 1 beyond which displacements are not small [m]
    end type stop_rules
 

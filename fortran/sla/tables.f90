@@ -2,7 +2,8 @@
 module sla_tables
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
-   use sla_sawtooth, only : make_teeth
+   use common_lists, only : law_yielding => sla_law_yielding
+   use sla_sawtooth, only : make_teeth, softening, softening_new
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -13,6 +14,7 @@ module sla_tables
       real(wp), allocatable :: modulus(:)    !! [Pa]
       real(wp), allocatable :: strength(:)   !! [Pa]
       real(wp), allocatable :: band(:)       !! (tables) crack band [m]
+      type(softening), allocatable :: law(:) !! (tables) of the teeth; none of a yielding one
    contains
       procedure :: tables
       procedure :: modulus_of
@@ -37,7 +39,8 @@ contains
 
       bad = 0
       status = status_ok
-      allocate (teeth%first(size(rows, 2) + 1), teeth%band(size(rows, 2)), modulus(most_teeth), strength(most_teeth), &
+      allocate (teeth%first(size(rows, 2) + 1), teeth%band(size(rows, 2)), teeth%law(size(rows, 2)), &
+         modulus(most_teeth), strength(most_teeth), &
          all_moduli(64 * (size(rows, 2) + 64)), all_strengths(64 * (size(rows, 2) + 64)), stat=info)
       if (info /= 0) then
          status = status_out_of_memory
@@ -53,6 +56,8 @@ contains
             bad = int(k, c_int)
             return
          end if
+         if (nint(rows(1, k), c_int) /= law_yielding) call softening_new(nint(rows(1, k), c_int), rows(2, k), &
+            rows(3, k), rows(4, k), rows(5, k), teeth%law(k), status)
          if (used + n > size(all_moduli)) then
             allocate (longer(2 * size(all_moduli) + n), stat=info)
             if (info /= 0) exit
@@ -86,7 +91,7 @@ contains
       status = status_ok
       if (.not. allocated(teeth%first)) return
       allocate (copy%first(size(teeth%first)), copy%modulus(size(teeth%modulus)), &
-         copy%strength(size(teeth%strength)), copy%band(size(teeth%band)), stat=info)
+         copy%strength(size(teeth%strength)), copy%band(size(teeth%band)), copy%law(size(teeth%law)), stat=info)
       if (info /= 0) then
          status = status_out_of_memory
          return
@@ -95,6 +100,7 @@ contains
       copy%modulus(:) = teeth%modulus
       copy%strength(:) = teeth%strength
       copy%band(:) = teeth%band
+      copy%law(:) = teeth%law
    end subroutine tooth_tables_copy
 
    !> How many there are

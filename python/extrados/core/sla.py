@@ -38,6 +38,7 @@ from extrados.core.sla_parts import (
 )  # fmt: skip
 
 __all__ = [
+    "CONTINUATIONS",
     "CRACKING",
     "DIRECTIONS",
     "ELEMENTS",
@@ -83,6 +84,8 @@ MOST_TEETH = 4096
 START, HELD, HELD_RATE, MARK, MODE = 0, 1, 6, 8, 10
 #: What happens after a tooth and where equilibrium is lost, see Model.run
 VARIANTS = tuple(lists.numbers("sla_variant"))
+#: How a run goes on without equilibrium, in the order of fortran/api/api_sla.f90 (follow)
+CONTINUATIONS = ("newton", "implicit-explicit")
 #: Ratio of neighbouring bands where the band follows from the crack: the energy is right to a percent
 BAND_STEP = 1.02
 
@@ -189,6 +192,7 @@ class Model(Owner):
         if algorithm not in ("update", "refactor"):
             raise ValueError(f"algorithm is {algorithm!r}, expected 'update' or 'refactor'")
         self.behaviour = behaviour = behaviour or Behaviour()
+        self.iterates = False
         self.plane_points: list[tuple[Plane | Joints, int, int]] = []  # group, first point, points per element
         retention = -1.0 if behaviour.retention is None else float(behaviour.retention)
         axes, self.freedoms = np.shape(xy)[-1], freedoms.of_node
@@ -385,6 +389,7 @@ class Model(Owner):
             *(float(energy) for energy in real("ledger", ledger, (3,))),
         )
         check(status, "loads")
+        self.iterates = False
 
     def supports(self, constant: npt.ArrayLike, rate: npt.ArrayLike) -> None:
         """Displacements (moved) [m] of the supports that move, constant and their rate per multiplier; before the loads."""
@@ -424,22 +429,57 @@ class Model(Owner):
             min(stop.far, huge),
         )  # fmt: skip
         check(status, "where the events end")
-        counts, reals, ints, watched, cracked, status = long_call(
+        counts, reals, ints, watched, cracked, released, status = long_call(
             _core.api_sla.run, self.handle, int(room), first, _rows(node, direction),
             real("share", np.concatenate([m.share for m in monitors]), node.shape),
         )  # fmt: skip
         interrupted = status == status_code("cancelled")
         if not interrupted:
             check(status, "events")
-        count, checks, solutions, factors, reason = (int(k) for k in counts)
+        count, checks, solutions, factors, reason, iterates, solved = (int(k) for k in counts)
+        self.iterates = bool(iterates)
         reals, ints = reals[:, :count].copy(), ints[:, :count].copy()
         load, limit_t, limit_c, stored, external, lost, crack, compliance, residual, scale, pull = reals
         return Events(
             load, limit_t, limit_c, stored, external, lost, crack, compliance, residual, scale, pull,
             point=ints[0] - 1, code=ints[1], number=ints[2], equilibrium=ints[3].astype(bool),
             monitors=watched[:, :count].T.copy(), reason=STOPS[reason], guard=(checks, solutions, factors),
-            interrupted=interrupted, crack_total=float(cracked),
+            interrupted=interrupted, crack_total=float(cracked), solutions=solved,
+            released=float(released),
         )  # fmt: skip
+
+    def follow(self, how: str | None, longest: float, least: float, unit: float) -> None:
+        """How the next batches go on where events find no equilibrium under the constant loads: by equilibrium iterations in
+        displacement control, `how` one of CONTINUATIONS, or None not at all. `iterates` then becomes true.
+
+        longest: step of the control [m]; least: displacement below which nothing counts as running away [m]; unit: resultant of
+        the reference load [N], 1 where supports move.
+        """
+        number = 0 if how is None else 1 + CONTINUATIONS.index(how)
+        check(_core.api_sla.follow(self.handle, number, float(longest), float(least), float(unit)), "continuation")
+
+    @property
+    def continues(self) -> bool:
+        """Whether every group has a law that equilibrium iterations can follow."""
+        yes, status = _core.api_sla.continues(self.handle)
+        check(status, "continuation")
+        return bool(yes)
+
+    def histories(self) -> np.ndarray:
+        """The histories of all points (2, points) in the last state of equilibrium iterations: greatest strains in tension and in
+        compression."""
+        values, status = _core.api_sla.histories(self.handle, self.points)
+        check(status, "histories of the points")
+        return np.array(values, order="F")
+
+    def go_on(self, displacement: npt.ArrayLike, histories: npt.ArrayLike) -> None:
+        """Begin a stage with equilibrium iterations, at displacements (nodes, freedoms) [m] and histories (2, points) of another."""
+        status = _core.api_sla.go_on(
+            self.handle, real("displacement", np.transpose(displacement), (self.freedoms, self.nodes)),
+            real("histories", histories, (2, self.points)),
+        )  # fmt: skip
+        check(status, "continuation")
+        self.iterates = True
 
     def run_whole(self, room: int, monitor: Monitor, stop: Stop | None = None, *, variant: str = VARIANTS[0]) -> Events:
         """As `run`, of events that are of no use in part: Cancelled where the user asked to stop."""

@@ -17,6 +17,8 @@ THROUGH = lists.numbers("shell_through")
 #: Name of an event -> its number
 EVENT = {entry.name: entry.number for entry in lists.entries("sla_event")}
 STOPS = lists.words("sla_stop")
+#: Rows of a curve from this code on are steps of equilibrium iterations
+FIRST_STEP = EVENT["newton"]
 
 
 @dataclass(frozen=True)
@@ -381,6 +383,8 @@ class Events:
     guard: tuple[int, int, int] = (0, 0, 0)
     interrupted: bool = False
     crack_total: float = 0.0  # with the last event applied [J]
+    solutions: int = 0  # linear systems of equilibrium iterations
+    released: float = 0.0  # energy lost as motion between their states [J]
 
     def __len__(self) -> int:
         return len(self.load)
@@ -389,6 +393,11 @@ class Events:
     def ledger(self) -> tuple[float, float, float]:
         """Work of the loads, energy lost and area of the teeth at the last event [J]; 0 without events."""
         return tuple(float(e[-1]) if len(e) else 0.0 for e in (self.external, self.lost, self.crack))  # type: ignore[return-value]
+
+    @property
+    def steps(self) -> np.ndarray:
+        """Which rows are steps of equilibrium iterations, not events (bool)."""
+        return self.code >= FIRST_STEP
 
     @property
     def ledger_error(self) -> float:
@@ -416,9 +425,10 @@ class Events:
             if name not in ONCE
         }
         return Events(
-            **columns, reason=last.reason, guard=last.guard, interrupted=last.interrupted, crack_total=last.crack_total
-        )
+            **columns, reason=last.reason, guard=last.guard, interrupted=last.interrupted, crack_total=last.crack_total,
+            solutions=last.solutions, released=last.released,
+        )  # fmt: skip
 
 
 #: What events have once, not each
-ONCE = ("reason", "guard", "interrupted", "crack_total")
+ONCE = ("reason", "guard", "interrupted", "crack_total", "solutions", "released")

@@ -7,6 +7,8 @@ from extrados.results.verdict import Demand, KindResults, Verdict, capacity_alon
 
 #: How the names of arrays begin that belong to the first sense of the load, and to the second
 PREFIXES = ("", "minus_")
+#: Part of the peak to which the load drops at the ultimate displacement
+DROP = 0.8
 
 
 class Bilinear(ResultModel):
@@ -96,10 +98,44 @@ class SlaCurve(ResultModel):
     guard_checks: int = fact("times that the residual was measured on the way")
     guard_resolutions: int = fact("times that the equations were solved again for it")
     guard_new_factors: int = fact("times that the factor was made anew for it")
+    equilibrium_steps: int = maybe(
+        "steps of equilibrium iterations among the events, after equilibrium was lost under the constant loads"
+    )
+    staggered_steps: int = maybe(
+        "steps among them in which damage was frozen and updated, because Newton's method stalled"
+    )
+    unbalanced_steps: int = maybe("steps among them that exceed the tolerance of the residual: no states")
+    equilibrium_solutions: int = maybe("linear systems solved in these steps")
+    equilibrium_from_m: float = maybe("control displacement from which equilibrium iterations went on", "m")
+    step_residual_ratio: float = maybe(
+        "greatest residual of a state of these steps, over the largest nodal force of an element"
+    )
+    step_balance_ratio: float = maybe(
+        "greatest error of the energies in these states: work of all loads less stored and dissipated energy, over the work"
+    )
+    released_energy_J: float = maybe(
+        "energy lost as motion in these steps, where the load drops to another equilibrium; part of dissipated_energy_J",
+        "J",
+    )
+    drift_height_m: float = maybe(
+        "extent of the structure across the control displacement: drifts are displacements over it", "m"
+    )
+    peak_drift: float | None = maybe("drift at the peak")
+    drop_displacement_m: float | None = maybe(
+        "control displacement at which the envelope has dropped to 80 % of the peak; null if it has not", "m"
+    )
+    drop_drift: float | None = maybe("drift there")
+    axial_loss_displacement_m: float | None = maybe(
+        "control displacement of the last state before the constant loads were no longer carried; null if they were",
+        "m",
+    )
+    axial_loss_drift: float | None = maybe("drift there")
     seconds_per_event: float = fact("computing time of an event", "s")
     events_of_constant_loads: int = fact("events while the constant loads were brought on")
     probe_loads_N: list[float | None] = maybe("load of the envelope at the probed displacements; null beyond it", "N")
-    initial_stiffness_N_m: float = maybe("stiffness before the first event", "N/m")
+    initial_stiffness_N_m: float = maybe(
+        "stiffness before the first event; none of a stage that began with equilibrium iterations", "N/m"
+    )
     peak_acceleration_g: float | None = maybe(
         "the peak as a horizontal acceleration, where the load is an acceleration of the masses", "g"
     )

@@ -8,13 +8,13 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Normalize
 
 from extrados.results.model import Array
-from extrados.results.sla import PREFIXES, Sla
+from extrados.results.sla import DROP, PREFIXES, Sla
 from extrados.results.store import Stored
 from extrados.show import style
 from extrados.show.cracked import CORNERS, CRACKS, at_points, polygons, scale
 from extrados.show.sla_film import film_sla
 
-LOST, ENVELOPE = "#d9822b", "#1f4e79"
+LOST, ENVELOPE, STEPS = "#d9822b", "#1f4e79", "#3a7d44"
 #: Panels that stand beside each other at most; one more does before the next row begins
 MOST_BESIDE = 3
 STAGES = ("#7b93ab", "#b3342d", "#1f4e79", "#d9822b", "#3a7d44", "#7b2d8b")
@@ -160,6 +160,16 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 lost = True
             ax.plot(get(f"{prefix}envelope_displacement") * 1e3, get(f"{prefix}envelope_load") / 1e3, color=color,
                     linewidth=1.4, label=f"envelope, load to {numbers.sense}")  # fmt: skip
+            step = (get(f"{prefix}event_step") > 0) & fine
+            if step.any():
+                ax.plot(d[step], p[step], ".", color=STEPS, markersize=4, zorder=3,
+                        label="equilibrium iterations" if not prefix else None)  # fmt: skip
+            if numbers.get("drop_displacement_m") is not None:
+                ax.axvline(1e3 * numbers.drop_displacement_m, color="#777", linestyle=":", linewidth=0.9,
+                           label="drop to 80 % of the peak" if not prefix else None)  # fmt: skip
+            if numbers.get("axial_loss_displacement_m") is not None:
+                ax.axvline(1e3 * numbers.axial_loss_displacement_m, color=style.THRUST, linestyle="--", linewidth=0.9,
+                           label="axial capacity lost" if not prefix else None)  # fmt: skip
             idea = numbers.bilinear
             if idea:
                 shift = get(f"{prefix}envelope_displacement")[0]
@@ -188,7 +198,8 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_ylabel("load [kN]")
         ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
-            f"Load against displacement: every state (thin), the envelope and its bilinear idealisation; grey, the steps of "
+            f"Load against displacement: every state (thin; dots are those of equilibrium iterations), the envelope and its "
+            f"bilinear idealisation; grey, the steps of "
             f"an incremental solution of the same deck, if there is one.{_dropped(r)}"
         )
 
@@ -228,15 +239,19 @@ def _measured(run: Stored, name: str, ax: Axes, here: bool) -> None:
 
 def _incremental(run: Stored, name: str) -> list[str]:
     """The incremental analyses of the same run, to be drawn behind a curve of events."""
-    steps = [n for n, a in run.arrays.items() if "event_scale" in a and (run.array(n, "event_point") < 0).all()]
+    steps = [n for n, a in run.arrays.items() if "event_scale" in a and not run.array(n, "event_code").any()]
     return [] if name in steps else steps
 
 
 def _peak_state(run: Stored, name: str, prefix: str) -> list[int]:
-    """The states to draw: at the greatest load and the last that is in equilibrium."""
+    """The states to draw: at the greatest load, at the drop from it where it was kept, and the last in equilibrium."""
     events = run.array(name, f"{prefix}state_event")
     held = np.flatnonzero(run.array(name, f"{prefix}event_state")[events - 1] > 0)
-    return sorted({_peak(run, name, prefix), *held[-1:].tolist()})
+    peak = _peak(run, name, prefix)
+    load = run.array(name, f"{prefix}state_load")
+    step = run.array(name, f"{prefix}event_step")[events - 1] > 0
+    drop = [int(s) for s in held if s > peak and step[s] and load[s] < DROP * load[peak]]
+    return sorted({peak, *drop[:1], *held[-1:].tolist()})
 
 
 def _peak(run: Stored, name: str, prefix: str) -> int:

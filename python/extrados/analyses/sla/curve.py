@@ -6,6 +6,7 @@ import numpy as np
 
 from extrados.core import lists
 from extrados.core import sla as core
+from extrados.results.sla import DROP
 
 #: Displacements at which an envelope is given, and at most as many points: with the peak and the start
 BINS = 400
@@ -19,8 +20,9 @@ FAR_ABOVE = 10.0
 #: Of the way to the peak: so much further a load must stay below a fraction of the peak to have fallen below it; what lies
 #: this much behind the furthest state is no part of the envelope (fortran/sla/events.f90 has the same)
 FURTHER = 0.1
-#: How a run ends whose load fell below `stop_fraction` of its peak, and one whose displacements are no longer small
-FELL, TOO_FAR = (core.STOPS[lists.number("sla_stop", name)] for name in ("fraction", "far"))
+#: How a run ends whose load fell below `stop_fraction` of its peak, one whose displacements are no longer small, and one whose constant
+#: loads are no longer carried
+FELL, TOO_FAR, AXIAL = (core.STOPS[lists.number("sla_stop", name)] for name in ("fraction", "far", "axial"))
 
 
 @dataclass(frozen=True)
@@ -117,6 +119,17 @@ def fallen(d: np.ndarray, p: np.ndarray) -> bool:
     return bool(end.max() < (1.0 - FALLEN) * p.max())
 
 
+def drop_of(d: np.ndarray, p: np.ndarray) -> float | None:
+    """Displacement at which an envelope has dropped to DROP times its peak; None where it does not."""
+    peak = int(p.argmax())
+    below = np.flatnonzero(p[peak:] < DROP * p[peak])
+    if not len(below):
+        return None
+    i = peak + int(below[0])
+    share = (p[i - 1] - DROP * p[peak]) / (p[i - 1] - p[i])
+    return float(d[i - 1] + share * (d[i] - d[i - 1]))
+
+
 def bilinear(d: np.ndarray, p: np.ndarray) -> Bilinear | None:
     """Idealisation of an envelope that starts at the origin; None where it has no rising branch."""
     peak = int(p.argmax())
@@ -127,12 +140,10 @@ def bilinear(d: np.ndarray, p: np.ndarray) -> Bilinear | None:
     if not at > 0.0:
         return None
     stiffness = 0.6 * p[peak] / at
-    below = np.flatnonzero(p[peak:] < 0.8 * p[peak])
-    if len(below):
-        i = peak + int(below[0])
-        share = (p[i - 1] - 0.8 * p[peak]) / (p[i - 1] - p[i])
-        ultimate = float(d[i - 1] + share * (d[i] - d[i - 1]))
-        d, p = np.append(d[:i], ultimate), np.append(p[:i], 0.8 * p[peak])
+    ultimate = drop_of(d, p)
+    if ultimate is not None:
+        i = peak + int(np.flatnonzero(p[peak:] < DROP * p[peak])[0])
+        d, p = np.append(d[:i], ultimate), np.append(p[:i], DROP * p[peak])
     else:
         ultimate = float(d[-1])
     area = float(np.trapezoid(p, d))

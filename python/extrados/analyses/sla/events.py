@@ -13,7 +13,7 @@ import numpy as np
 from extrados.analyses.batches import Chain
 from extrados.analyses.context import Refused
 from extrados.analyses.sla.contact import NotCarried, settle
-from extrados.analyses.sla.curve import FALLEN, FAR, FELL, TOO_FAR, envelope, fallen, states
+from extrados.analyses.sla.curve import AXIAL, FALLEN, FAR, FELL, TOO_FAR, envelope, fallen, states
 from extrados.analyses.sla.incremental import run_incremental
 from extrados.analyses.sla.kept import State, UnderWay
 from extrados.analyses.sla.model import MECHANISM, MECHANISM_OF_STONES, SlaModel
@@ -23,6 +23,7 @@ from extrados.core import sla as core
 from extrados.core.errors import Cancelled, CoreError, status_code
 from extrados.core.sla import EVENT
 from extrados.model.errors import WHOLE
+from extrados.results.sla import DROP
 
 BATCH_SECONDS = 0.7
 #: Events between two states that are kept; a new factor takes as long as some tens of events of a large wall.
@@ -34,8 +35,14 @@ MORE = 30
 NOTHING = np.zeros(0)
 NOTHING_DONE = (0.0, 0.0, 0.0)  # of the energies of a ledger
 STRAINS_AND_STRESSES = core.REPORT[:6]
-#: How a run ends in which the load can grow for ever
-UNBOUNDED, MECHANISM_REACHED = (core.STOPS[lists.number("sla_stop", name)] for name in ("unbounded", "mechanism"))
+#: Drift to which a run goes on that has lost equilibrium under its constant loads; longest step of equilibrium iterations, and
+#: displacement below which nothing counts as running away, over the extent across the control displacement
+DRIFT, LONGEST_STEP, RUNAWAY = 0.01, 1e-4, 2.5e-3
+#: How a run ends in which the load can grow for ever, and one that has reached a displacement
+UNBOUNDED, MECHANISM_REACHED, REACHED = (
+    core.STOPS[lists.number("sla_stop", name)] for name in ("unbounded", "mechanism", "displacement")
+)
+DRIFTED = f"a drift of {100 * DRIFT:g} %"
 
 
 @dataclass
@@ -63,6 +70,7 @@ class Curve:
     already: float = 0.0  # load in the direction of the reference load that was on before [N]
     driven: bool = False  # the multiplier is a displacement of supports, the load their force
     residual: float | None = None  # measured at the end; None where the end is a mechanism without displacements
+    histories: np.ndarray | None = None  # (2, points) at the end, of a run that ended with equilibrium iterations
     last_line: tuple[float, float] | None = (
         None  # control displacement [m] after the last event: constant, per multiplier
     )
@@ -131,7 +139,7 @@ class Curve:
         """Was the greatest load a peak: did the load fall after it, or the structure become a mechanism under it?"""
         if self.peak < 0 or (self.name and not self.force(unit)[self.peak] > 0.0):
             return False  # a stage may begin under a load of the opposite sense and never leave it
-        if self.events.reason in ("mechanism", FELL) or self.flat():
+        if self.events.reason in ("mechanism", FELL, AXIAL) or self.flat():
             return True
         return fallen(*self.envelope(unit))
 
@@ -153,7 +161,7 @@ class Curve:
         events = self.events
         if events.interrupted:
             return False
-        if len(events) and self.state[-1] and events.reason != "mechanism":
+        if len(events) and self.state[-1] and events.reason not in ("mechanism", AXIAL, DRIFTED):
             return True
         if left:
             self.warnings.append(
@@ -184,7 +192,9 @@ def run_curves(
     chain: where the states of the curve of a sense, +1 or -1, are kept on its way, and of 0, of the constant loads;
     none are without it.
     """
-    if model.slides and (options.solution == "incremental" or options.without_equilibrium != "load-unload"):
+    if model.slides and (
+        options.solution == "incremental" or options.without_equilibrium not in ("continue", "load-unload")
+    ):
         raise Refused(
             "joints that slide keep forces that neither an incremental solution nor other variants can "
             'follow: give them no friction coefficient (friction = "no-sliding"), or take events with load-unload',
@@ -367,13 +377,21 @@ def run_reference_loads(
         way = UnderWay.of(kept)
         core_model.renew(kept["damage"], kept["standing"])
     spent_before, begun = way.seconds, way.done
-    variant = options.without_equilibrium
+    goes_on = options.without_equilibrium == "continue" and core_model.continues
+    variant = "load-unload" if options.without_equilibrium == "continue" else options.without_equilibrium
+    follow(core_model, model, options.continuation if goes_on else None)
+    ends_by_drift = goes_on and stop.displacement == np.inf and not stop.side
+    if ends_by_drift:
+        stop = replace(stop, displacement=DRIFT * model.reach)
     release = variant == "force-release"
     floor = MECHANISM_OF_STONES if model.mesh.has_joints else MECHANISM
     batch, start = GRID, way.before_best
+    best_step: State | None = None
+    drop_step: State | None = None
     while (done := way.done) < options.events:
         # What is on its way from one point to others has no name
-        if done % KEPT == 0 and done > begun and not release:
+        # Steps of equilibrium iterations are found again from the events before them
+        if done % KEPT == 0 and done > begun and not (release or core_model.iterates):
             damage, standing = core_model.damage(), core_model.standing()
             try:
                 core_model.renew(damage, standing)
@@ -390,6 +408,8 @@ def run_reference_loads(
         ahead = [e for e in wanted if e >= done]
         if ahead:
             room = min(room, ahead[0] + 1 - done)
+        if core_model.iterates:
+            room = 1  # its state may be that of the peak
         clock = time.perf_counter()
         try:
             part = core_model.run(room, model.watched, stop, variant=variant)
@@ -402,7 +422,7 @@ def run_reference_loads(
                 WHOLE,
             ) from None
         spent = time.perf_counter() - clock
-        if model.driven:  # as of a force that moves them
+        if model.driven and not part.steps.any():  # as of a force that moves them
             part.compliance = 1.0 / np.maximum(part.compliance, np.finfo(float).tiny)
         way.parts.append(part)
         if len(part):
@@ -415,17 +435,25 @@ def run_reference_loads(
                 load[-1] = -np.inf  # on the way of the mechanism
             if load.max() > way.best:
                 way.best, way.before_best = float(load.max()), start
+                best_step = _state(core_model, done + len(part) - 1, part) if part.steps[-1] else None
+                drop_step = None
+            elif part.steps[-1] and drop_step is None and load[-1] < DROP * way.best:
+                drop_step = _state(core_model, done + len(part) - 1, part)
         done += len(part)
         if len(part) and done - 1 in wanted:
             way.states.append(_state(core_model, done - 1, part))
         load = (part.pull if model.driven else model.already + part.load * model.unit)[-1:]
         progress(done, options.events, f"event {done}, load {load[0]:.4g} N" if len(part) else "")
-        if part.reason or part.interrupted or not len(part):
+        if part.reason or part.interrupted or not (len(part) or core_model.iterates):
             break
         batch = int(np.clip(len(part) * BATCH_SECONDS / max(spent, 1e-3), 10, GRID))
     events, kept_states = core.Events.join(way.parts), way.states
     events.monitors[:, 0] *= sign  # positive in the sense of the load
-    collapsed = events.reason == "mechanism" and events.compliance[-1] > model.mechanism_ratio * events.compliance[0]
+    collapsed = (
+        events.reason == "mechanism"
+        and len(events) > 0
+        and events.compliance[-1] > model.mechanism_ratio * events.compliance[0]
+    )
     if events.reason == "mechanism" and len(events) and model.driven:
         events.equilibrium[-1] = False  # the constant loads carry it away
     if collapsed and model.mesh.has_joints:
@@ -435,11 +463,22 @@ def run_reference_loads(
     curve = Curve(
         events, None, kept_states, NOTHING, damage_end, 0.0, sign, [], core_model.equations, core_model.points
     )
+    if core_model.iterates and len(events):
+        curve.histories = core_model.histories()
     curve.already, curve.driven, curve.releases = model.already, model.driven, release
     curve.before, curve.unit, curve.extent = before, model.unit, model.extent
     if len(events) and not model.driven:
         curve.most_compliance = floor * float(events.compliance[0])
-    if events.reason in (TOO_FAR, UNBOUNDED):
+    if ends_by_drift and events.reason == REACHED:
+        events.reason = DRIFTED
+    lost = np.flatnonzero(~events.equilibrium)
+    if options.without_equilibrium == "continue" and not (goes_on or model.mesh.has_joints) and len(lost):
+        curve.warnings.append(
+            f"Equilibrium under the constant loads is lost at event {lost[0] + 1}. Equilibrium iterations follow rotating cracks of "
+            "isotropic masonry alone (no bed joints, lateral reduction, confinement, shear retention or bars): the events beyond "
+            "are those of load-unload."
+        )
+    if events.reason in (TOO_FAR, UNBOUNDED) and not events.steps[-1:].any():
         watch, ends = model.control, [core_model.displacement(load) for load in (0.0, 1.0)]
         constant, one = (sign * float(watch.share @ u[watch.node, watch.direction]) for u in ends)
         curve.last_line = (constant, one - constant)
@@ -449,12 +488,16 @@ def run_reference_loads(
                 events.equilibrium[-1] = False  # as below
     if len(events):
         # A mechanism found while its event is applied leaves the displacements of the event before
-        if events.reason != "mechanism" or (collapsed and not model.mesh.has_joints):
+        if events.steps[-1]:
+            curve.residual = float(events.residual[-1])
+        elif events.reason != "mechanism" or (collapsed and not model.mesh.has_joints):
             curve.residual = core_model.residual()
         if not (done - 1 in wanted and kept_states):
             kept_states.append(_state(core_model, len(events) - 1, events))
         peak = curve.peak
-        if peak >= 0 and peak not in {s.event for s in kept_states} and not (events.interrupted or release):
+        if best_step is not None and best_step.event == peak != len(events) - 1:
+            kept_states.append(best_step)
+        elif peak >= 0 and peak not in {s.event for s in kept_states} and not (events.interrupted or release):
             try:
                 state = _replay(core_model, model, sign, events, peak, way.before_best, variant)
             except Cancelled:
@@ -464,9 +507,17 @@ def run_reference_loads(
                     curve.warnings.append("the state at the peak could not be reproduced from the batch before it")
                 else:
                     kept_states.append(state)
+        if drop_step is not None and drop_step.event not in {s.event for s in kept_states}:
+            kept_states.append(drop_step)
         kept_states.sort(key=lambda s: s.event)
     curve.seconds = spent_before + time.perf_counter() - begin
     return curve
+
+
+def follow(core_model: core.Model, model: SlaModel, how: str | None) -> None:
+    """How a stage goes on without equilibrium under its constant loads, see core.Model.follow."""
+    reach = 1.0 if how is None else model.reach
+    core_model.follow(how, LONGEST_STEP * reach, RUNAWAY * reach, 1.0 if model.driven else abs(model.unit))
 
 
 def _incremental_stage(

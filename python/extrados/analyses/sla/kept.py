@@ -5,10 +5,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from extrados.core import sla as core
+from extrados.core.sla_parts import ONCE
 
-ONE_PER_EVENT = [
-    name for name in core.Events.__dataclass_fields__ if name not in ("reason", "guard", "interrupted", "crack_total")
-]
+ONE_PER_EVENT = [name for name in core.Events.__dataclass_fields__ if name not in ONCE]
 
 
 @dataclass

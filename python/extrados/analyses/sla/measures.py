@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.sla.bar_forces import bar_rows
-from extrados.analyses.sla.curve import FAR, FAR_ABOVE, bilinear
+from extrados.analyses.sla.curve import AXIAL, FAR, FAR_ABOVE, bilinear, drop_of
 from extrados.analyses.sla.events import MECHANISM_REACHED, Curve
 from extrados.analyses.sla.model import SlaModel
 from extrados.analyses.sla.stored import point_fields, points_of_groups
@@ -70,7 +70,9 @@ def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
         numbers["probe_loads_N"] = reached
     if model.bars:
         numbers["bars"] = bar_rows(model, curve)
-    if len(events):
+    if events.steps.any():
+        numbers |= _of_steps(model, curve, peak, d, p)
+    if len(events) and events.compliance[0] > 0.0:
         numbers["initial_stiffness_N_m"] = float(unit**2 / events.compliance[0])
     idea = bilinear(d - d[0], p) if peak >= 0 and p[0] == 0.0 else None  # from the state under the constant loads
     if idea is not None:
@@ -80,6 +82,37 @@ def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
             "ductility": idea.ductility,
         }  # fmt: skip
     return numbers
+
+
+def _of_steps(model: SlaModel, curve: Curve, peak: int, d: np.ndarray, p: np.ndarray) -> dict[str, Any]:
+    """Numbers of the steps of equilibrium iterations; d, p: the envelope [m], [N]; peak: its event, -1 where none was passed."""
+    events, height = curve.events, model.reach
+    steps = events.steps
+    states = steps & events.equilibrium
+    gap = np.abs(events.external - events.stored - events.lost) / np.maximum(np.abs(events.external), 1e-300)
+    drop = drop_of(d, p) if peak >= 0 else None
+    last = np.flatnonzero(states)
+    lost = float(events.monitors[last[-1], 0]) if events.reason == AXIAL and len(last) else None
+
+    def drift(displacement: float | None) -> float | None:
+        return None if displacement is None else displacement / height
+
+    return {
+        "equilibrium_steps": int(steps.sum()),
+        "staggered_steps": int((events.code == EVENT["staggered"]).sum()),
+        "unbalanced_steps": int((events.code == EVENT["unbalanced"]).sum()),
+        "equilibrium_solutions": events.solutions,
+        "equilibrium_from_m": float(events.monitors[np.flatnonzero(steps)[0], 0]),
+        "step_residual_ratio": float(events.residual[states].max(initial=0.0)),
+        "step_balance_ratio": float(gap[states].max(initial=0.0)),
+        "released_energy_J": events.released,
+        "drift_height_m": height,
+        "peak_drift": drift(float(events.monitors[peak, 0]) if peak >= 0 else None),
+        "drop_displacement_m": drop,
+        "drop_drift": drift(drop),
+        "axial_loss_displacement_m": lost,
+        "axial_loss_drift": drift(lost),
+    }
 
 
 def out_of_reach(curve: Curve) -> str | None:

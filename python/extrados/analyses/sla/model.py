@@ -60,6 +60,12 @@ class SlaModel:
         return float(np.ptp(self.mesh.xy, axis=0).max())
 
     @property
+    def reach(self) -> float:
+        """Extent of the structure across the control displacement, over which a drift is counted [m]."""
+        across = 1 - int(np.bincount(self.control.direction, minlength=2)[:2].argmax())
+        return float(np.ptp(self.mesh.xy[:, across]))
+
+    @property
     def driven(self) -> bool:
         """True where supports move with the multiplier, which then is a displacement [m]."""
         return bool(self.moved[:, 1].any())
@@ -212,7 +218,10 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
         unit = resultant(reference) if not options.stages else 1.0  # each stage has its own
     if not options.stages and (freedoms.equation[np.abs(reference) > 0] < 0).all():
         raise BadGeometry("the reference load acts on held nodes only")
-    closure = mesh.has_joints if options.crack_closure is None else options.crack_closure
+    closure = options.crack_closure
+    if closure is None:  # a single growing load hardly closes a crack
+        rotates = options.cracking == "rotating"
+        closure = mesh.has_joints or (rotates and bool(constant_loads or options.stages))
     if mesh.has_joints and not closure:
         raise BadGeometry("joints between stones open and close: crack_closure = false is for walls without stones")
     floor = FLOOR_OF_JOINTS if mesh.has_joints else core.Behaviour.floor

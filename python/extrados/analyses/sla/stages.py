@@ -33,6 +33,9 @@ class Wall:
     events: int
     fixed: np.ndarray
     loads: list[tuple[np.ndarray, float]]
+    histories: np.ndarray | None = (
+        None  # (2, points), of a stage that ended with equilibrium iterations: the next begins so
+    )
 
 
 class Supports:
@@ -138,9 +141,11 @@ def run_stages(
             if len(staged.moved):
                 core_model.supports(*staged.moved.T)
             core_model.loads(staged.constant, staged.reference, carried=True, events=wall.events, ledger=wall.ledger)
-            if staged.driven:
+            if wall.histories is not None:
+                core_model.go_on(wall.displacement, wall.histories)
+            if staged.driven and wall.histories is None:
                 staged = replace(staged, already=float(core_model.reactions()[:, 0] @ staged.moved[:, 1]))
-            start = core_model.displacement(0.0)
+            start = wall.displacement if wall.histories is not None else core_model.displacement(0.0)
             away, most = np.abs(start - wall.displacement).max(), np.abs(wall.displacement).max()
             watch = staged.control
             before = float(watch.share @ start[watch.node, watch.direction])
@@ -148,6 +153,8 @@ def run_stages(
                 core_model, staged, own, 1, before, told, False, chain and chain([k, wall.damage]), stop
             )
             curve.name, curve.damage_start = name, wall.damage
+            if wall.histories is not None and staged.driven and len(curve.events):
+                curve.already = float(curve.events.pull[0])
             curve.acceleration = staged.acceleration
             if not curves:
                 curve.stage_a = stage_a
@@ -161,6 +168,14 @@ def run_stages(
             if not curve.leads_on(options.stage_names[k + 1 :]):
                 break
             reached = float(events.load[-1])
+            wall.histories = curve.histories
+            if wall.histories is not None:
+                wall.displacement, wall.damage = curve.states[-1].displacement, curve.damage_end
+                wall.applied = staged.constant + reached * staged.reference
+                wall.ledger = events.ledger
+                wall.events = int(events.number[-1])
+                wall.loads.append((staged.reference, reached))
+                continue
             core_model.set_damage(curve.damage_end)  # the state of the peak was found again since
             core_model.loads(staged.constant, staged.reference)
             wall.displacement = core_model.displacement(reached)

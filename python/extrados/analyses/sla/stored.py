@@ -69,6 +69,12 @@ def events_of_curve(result: Result, unit: float, curve: Curve, prefix: str) -> N
     result.arrays[f"{prefix}event_code"] = Array(e.code, dim, "", "kind of event: " + ", ".join(
         f"{k} {v}" for k, v in EVENTS.items()))  # fmt: skip
     result.arrays[f"{prefix}event_equilibrium"] = Array(e.equilibrium.astype(np.int8), dim, "", "1 in equilibrium")
+    result.arrays[f"{prefix}event_step"] = Array(
+        e.steps.astype(np.int8), dim, "", "1 a step of equilibrium iterations, 0 an event"
+    )
+    result.arrays[f"{prefix}event_residual"] = Array(
+        np.where(e.steps, e.residual, np.nan), dim, "", "residual of a step over the largest nodal force of an element"
+    )
     state, out = curve.judged
     result.arrays[f"{prefix}event_state"] = Array(
         np.where(out, -1, state).astype(np.int8), dim, "", "1 a state of the structure, -1 out of reach, 0 neither"
@@ -88,6 +94,7 @@ def events_of_curve(result: Result, unit: float, curve: Curve, prefix: str) -> N
             "event": np.arange(1, len(e) + 1), "load": curve.force(unit), "displacement": e.monitors[:, 0],
             "equilibrium": e.equilibrium.astype(int), "state": np.where(out, -1, state).astype(int), "point": e.point + 1,
             "kind": [EVENTS.get(int(c), "end" if p >= 0 else "step") for c, p in zip(e.code, e.point, strict=True)],
+            "residual": np.where(e.steps, e.residual, np.nan),
             "external": e.external, "stored": e.stored, "dissipated": curve.dissipated,
         },
         {"load": "N", "displacement": "m", "external": "J", "stored": "J", "dissipated": "J"},

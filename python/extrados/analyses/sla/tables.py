@@ -291,19 +291,28 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         le=0.1,
     )
     crack_closure: bool | None = key(
-        None, "cracks that close regain their stiffness; default true for stones, whose joints must, false for walls"
+        None,
+        "cracks that close regain their stiffness; default true, except for walls of fixed or isotropic cracks and for walls "
+        "under one growing load alone, without constant loads or stages",
     )
     solution: Literal["events", "incremental"] = key(
         "events",
         "one point after the other; or, to compare, steps of arc length with a secant iteration in which all overloaded "
         "points lose teeth at once: `events` counts its steps then",
     )
-    without_equilibrium: Literal["load-unload", "proportional", "force-release"] = key(
-        "load-unload",
-        "where no multiplier of B suits all points: A stays and the greatest lower limit decides, or all loads of the "
+    without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"] = key(
+        "continue",
+        "where no multiplier of B suits all points: equilibrium iterations in displacement control go on from there (rotating "
+        "cracks without bed joints, bars and joints; else load-unload), or A stays and the greatest lower limit decides, or all loads of the "
         "last state in equilibrium go down together (intermittent proportional loading); or the load never comes back: "
         "what a tooth sets free goes onto the other points before the load grows again (force release)",
         source="thesis 4.3.1; Pari, Hendriks and Rots 2020; Elias, Frantik and Vorechovsky 2010",
+    )
+    continuation: Literal["newton", "implicit-explicit"] = key(
+        "newton",
+        "equilibrium iterations: Newton's method, and staggered steps if it stalls; or damage extrapolated from the last step "
+        "(one convex problem a step, cheaper and less accurate)",
+        source="Oliver, Huespe and Cante 2008",
     )
     algorithm: Literal["update", "refactor"] = key("update", "change the factor at each event, or make it anew")
     states: list[Annotated[int, Field(ge=1)]] = key(
@@ -352,7 +361,9 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
             raise ValueError("seeds: a seed stands twice; the same seed gives the same wall")
         if self.shear_retention is not None and self.cracking == "isotropic":
             raise ValueError("isotropic cracking has no shear retention")
-        if self.solution == "incremental" and (self.without_equilibrium != "load-unload" or self.states):
+        if self.solution == "incremental" and (
+            self.without_equilibrium not in ("continue", "load-unload") or self.states
+        ):
             raise ValueError("an incremental solution has no events: without_equilibrium and states belong to events")
         return self
 

@@ -38,10 +38,29 @@ def answer_of_wall(r: dict[str, Any], both: bool, row: str = "event") -> str:
         f"{r['greatest_load_displacement_m'] * 1e3:.4g} mm{'' if peaks else ' without having passed a peak'} "
         f"({row} {r['greatest_load_event']} of {r['events']}; the run ended by: {r['stop']})."
     )
+    text += steps_in_words(r)
     if both and (minus := r.get("minus", {})).get("greatest_load_N") is not None:
         verb = "peaks at" if minus["peak_load_N"] is not None else "has reached"
         text += f" In the opposite sense it {verb} {minus['greatest_load_N'] / 1e3:.4g} kN."
     lost = r["events_without_equilibrium"]
     if lost:
         text += f" {lost} events had no equilibrium, the first was event {r['first_event_without_equilibrium']}."
+    return text
+
+
+def steps_in_words(r: dict[str, Any]) -> str:
+    """What equilibrium iterations have found, where events lost equilibrium."""
+    if "equilibrium_steps" not in r:
+        return ""
+    text = (
+        f" Equilibrium under the constant loads is lost in single events at {r['equilibrium_from_m'] * 1e3:.3g} mm; "
+        f"{r['equilibrium_steps']} steps in displacement control continue from there."
+    )
+    if r["drop_displacement_m"] is not None:
+        text += f" The load drops to 80 % of the peak at {r['drop_displacement_m'] * 1e3:.3g} mm (drift {r['drop_drift']:.2%})."
+    if r["axial_loss_displacement_m"] is not None:
+        text += (
+            f" Axial capacity is lost at {r['axial_loss_displacement_m'] * 1e3:.3g} mm (drift {r['axial_loss_drift']:.2%}): beyond, no "
+            "state carries the constant loads."
+        )
     return text

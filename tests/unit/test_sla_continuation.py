@@ -1,0 +1,181 @@
+"""Walls under constant axial load, followed past the events that find no equilibrium."""
+
+import numpy as np
+import pytest
+
+from extrados.analyses.context import Context
+from extrados.analyses.sequence import run_analyses
+from extrados.decks.reader import make_deck
+
+#: Steps of equilibrium iterations: tolerance of the residual, and of the energy balance that the trapezium rule allows
+RESIDUAL, BALANCE = 1e-4, 5e-3
+
+
+def run_deck(data: dict):
+    return run_analyses(Context(make_deck(data)))[0]
+
+
+def pier(strength: float, energy: float, size: float, crushing: bool = False, height: float = 2.0, **options) -> dict:
+    """A pier of 1 m in double bending under 0.6 MPa; strength [MPa], energy [N/m], size of the elements [m]."""
+    crush = {"compressive_strength": 3e6, "crushing_energy": 5000.0, "crushing": "exponential"} if crushing else {}
+    return {
+        "structure": {
+            "kind": "panel", "width": 1.0, "height": height, "thickness": 0.25, "ties": [{"edge": "top", "direction": "y"}],
+        },
+        "material": {
+            "young": 1.7e9, "poisson": 0.0, "tensile_strength": 1e6 * strength, "fracture_energy": energy, **crush,
+        },
+        "supports": {"held": [{"edge": "bottom"}]},
+        "analysis": [{
+            "kind": "sla", "constant": [{"kind": "pressure", "edge": "top", "value": 6e5}],
+            "reference": [{"kind": "displacement", "direction": "x", "parts": [{"edge": "top"}]}],
+            "target_displacement": 6e-3, "ripple": 0.1, "events": 20000, "mesh": {"size": size}, **options,
+        }],
+    }  # fmt: skip
+
+
+def array(result, name: str) -> np.ndarray:
+    return result.arrays[name].data
+
+
+def check_steps(result) -> None:
+    """Residual and energies of the steps, which have all converged; what is dissipated never falls."""
+    r = result.results
+    assert r["equilibrium_steps"] > 0
+    assert r["step_residual_ratio"] <= RESIDUAL
+    assert r["step_balance_ratio"] <= BALANCE
+    assert np.diff(array(result, "event_dissipated")).min() >= 0.0
+    step = array(result, "event_step") > 0
+    assert np.diff(array(result, "event_lost")[step]).min() >= 0.0
+    assert "mechanism" not in result.answer
+
+
+@pytest.mark.parametrize("size", [0.125, 0.1, 0.2 / 3.0])
+@pytest.mark.parametrize(
+    ("strength", "energy", "expected"), [(0.1, 50.0, 66.9e3), (0.03, 10.0, 58.7e3), (0.01, 3.0, 57.3e3)]
+)
+def test_pier_meets_an_independent_rotating_solution(strength, energy, expected, size) -> None:
+    """A rotating total-strain solution in displacement control by another program, on elements of 0.1 m."""
+    result = run_deck(pier(strength, energy, size))
+    r = result.results
+    assert r["stop"] == "target displacement"
+    assert r["last_displacement_m"] == pytest.approx(6e-3, rel=1e-6)
+    assert r["last_load_N"] == pytest.approx(expected, rel=0.05)
+    assert r["last_load_N"] < 75e3  # the no-tension limit, N B / H
+    assert r["unbalanced_steps"] == 0
+    check_steps(result)
+
+
+@pytest.mark.parametrize(
+    ("height", "loads", "loss"),
+    [(2.0, [33.1e3, 59.9e3, 57.9e3, 55.2e3], [16.1e-3, 16.6e-3]), (1.35, [61.8e3, 83.8e3, 83.0e3, 64.7e3], [10.8e-3, 11.2e-3])],
+)  # fmt: skip
+def test_crushing_wall_is_followed_to_the_loss_of_axial_capacity(height, loads, loss) -> None:
+    """Prototypes of three methods, run to convergence; they differ by 2 % in the load, by 3 % in the displacement of the loss."""
+    options = {"probes": [1e-3, 3e-3, 6e-3, 10e-3], "target_displacement": 0.01 * height}
+    result = run_deck(pier(0.1, 50.0, 0.1, crushing=True, height=height, **options))
+    r = result.results
+    assert r["probe_loads_N"] == pytest.approx(loads, rel=0.02)
+    assert r["stop"] == "axial capacity lost"
+    assert 0.98 * loss[0] <= r["axial_loss_displacement_m"] <= 1.02 * loss[1]
+    assert r["axial_loss_drift"] == pytest.approx(r["axial_loss_displacement_m"] / height)
+    assert r["peak_displacement_m"] < r["drop_displacement_m"] < r["axial_loss_displacement_m"]
+    d, p = array(result, "envelope_displacement"), array(result, "envelope_load")
+    assert np.interp(r["drop_displacement_m"], d, p) == pytest.approx(0.8 * r["peak_load_N"], rel=1e-3)
+    assert "Axial capacity is lost" in result.answer
+    check_steps(result)
+
+
+def test_implicit_explicit_integration_agrees() -> None:
+    options = {"probes": [6e-3, 10e-3], "target_displacement": 10e-3}
+    loads = [
+        run_deck(pier(0.1, 50.0, 0.1, crushing=True, continuation=how, **options)).results["probe_loads_N"]
+        for how in ("newton", "implicit-explicit")
+    ]
+    assert loads[1] == pytest.approx(loads[0], rel=0.01)
+
+
+def test_a_section_without_tension_in_uniform_bending() -> None:
+    """Plane sections, linear in compression: M = N (B / 2 - sqrt(2 N / (9 E t kappa))) once a third of it is cracked."""
+    n, b, t, young, height = 150e3, 1.0, 0.25, 1.7e9, 0.5
+    data = {
+        "structure": {
+            "kind": "panel", "width": b, "height": height + 0.1, "thickness": t,
+            "regions": [{"y": [height, height + 0.1], "linear": True, "material": "cap"}],
+        },
+        "material": {"young": young, "poisson": 0.0, "tensile_strength": 2e3, "fracture_energy": 0.2},
+        "materials": {"cap": {"young": 1000.0 * young, "poisson": 0.0}},
+        "supports": {"held": [{"edge": "bottom"}]},
+        "analysis": [{
+            "kind": "sla", "constant": [{"kind": "pressure", "edge": "top", "value": n / (b * t)}],
+            "reference": [
+                {"kind": "point", "x": 0, "y": height + 0.1, "fy": "1 kN"},
+                {"kind": "point", "x": b, "y": height + 0.1, "fy": "-1 kN"},
+            ],
+            "control": [
+                {"x": 0, "y": height, "direction": "y", "weight": 1.0}, {"x": b, "y": height, "direction": "y", "weight": -1.0},
+            ],
+            "ripple": 0.1, "target_displacement": 5e-3, "events": 5000, "mesh": {"size": 0.1, "selective": True},
+        }],
+    }  # fmt: skip
+    result = run_deck(data)
+    step = array(result, "event_step") > 0
+    moment = array(result, "event_load")[step] * b
+    curvature = array(result, "event_displacement")[step] / b / height
+    expected = n * (0.5 * b - np.sqrt(2.0 * n / (9.0 * young * t * curvature)))
+    assert moment.min() < 30e3 < 60e3 < moment.max() < 0.5 * n * b  # from the loss of equilibrium to near the limit
+    cracked = curvature > 2.0 * n / (young * t * b**2)
+    assert moment[cracked] == pytest.approx(expected[cracked], rel=0.015)
+    check_steps(result)
+
+
+def test_poissons_ratio_hardly_matters() -> None:
+    data = pier(0.1, 50.0, 0.1, crushing=True, probes=[6e-3], target_displacement=8e-3)
+    plain = run_deck(data).results["probe_loads_N"][0]
+    data["material"]["poisson"] = 0.2
+    result = run_deck(data)
+    assert result.results["probe_loads_N"][0] == pytest.approx(plain, rel=0.02)
+    check_steps(result)
+
+
+def move(ratio: float, target: float) -> dict:
+    return {
+        "reference": [{"kind": "displacement", "direction": "x", "parts": [{"edge": "top", "ratio": ratio}]}],
+        "target_displacement": target,
+    }
+
+
+def test_load_reversal() -> None:
+    """To +6 mm, -6 mm and again: each stage begins where the one before ended, and energies continue."""
+    data = pier(0.1, 50.0, 0.1)
+    analysis = data["analysis"][0]
+    del analysis["reference"], analysis["target_displacement"]
+    analysis["stages"] = [
+        {"name": "push", **move(1.0, 6e-3)},
+        {"name": "back", **move(-1.0, 6e-3)},
+        {"name": "again", **move(1.0, 6e-3)},
+    ]
+    result = run_deck(data)
+    push, back, again = result.results["stages"]
+    assert [s["stop"] for s in (push, back, again)] == ["target displacement"] * 3
+    assert back["start_load_N"] == pytest.approx(-push["end_load_N"], rel=1e-3)
+    assert again["start_load_N"] == pytest.approx(-back["end_load_N"], rel=1e-3)
+    assert back["end_load_N"] == pytest.approx(
+        push["end_load_N"], rel=0.02
+    )  # the pier is symmetric, its other diagonal cracks
+    assert back["dissipated_energy_J"] > push["dissipated_energy_J"]
+    assert again["dissipated_energy_J"] == pytest.approx(
+        back["dissipated_energy_J"], rel=0.05
+    )  # nothing new is cracked
+    assert max(s["step_balance_ratio"] for s in (push, back, again)) < BALANCE
+    # Cracks unload to the origin: without displacement the pier carries no shear
+    d, v = array(result, "stage_2_event_displacement"), array(result, "stage_2_event_load")
+    assert abs(np.interp(0.0, d, v)) < 0.05 * push["end_load_N"]
+
+
+def test_other_rules_remain_and_what_cannot_be_followed_is_reported() -> None:
+    result = run_deck(pier(0.1, 50.0, 0.125, without_equilibrium="load-unload", events=2000))
+    assert "equilibrium_steps" not in result.results
+    result = run_deck(pier(0.01, 3.0, 0.125, cracking="orthotropic", events=3000))
+    assert "equilibrium_steps" not in result.results
+    assert any("Equilibrium iterations follow rotating cracks" in text for text in result.warnings)
