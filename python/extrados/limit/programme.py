@@ -244,12 +244,10 @@ class LimitAnalysis:
         """Collapse of joints that crush by cones; None where forces and motion do not prove each other."""
         answers = self.loads.resistance
         bounds = np.zeros((2, 0)) if answers is None else np.stack([answers.low, answers.high])
-        found = collapse_of_crushing(
-            self.equations, None if self._cone is None else self._mu, crush, bounds, direction
-        )
+        found = collapse_of_crushing(self.equations, None if self._cone is None else self._mu, crush, bounds, direction)
         if found is None:
             return None
-        read = self._read(found.gamma, found.corners, found.share, found.twist, found.motion, found.taken)
+        read = self.read_collapse(found.gamma, found.corners, found.share, found.twist, found.motion, found.taken)
         apart = abs(found.gamma - read[1].upper_bound)
         return None if apart > closed(len(self.assembly.a), found.gamma) else read
 

@@ -325,9 +325,7 @@ class _Work:
                 )
             return seen[value]
 
-        required, worth, curve = self._bracket(
-            at, one.start, one.stop, one.count, self._halvings, one.whole
-        )
+        required, worth, curve = self._bracket(at, one.start, one.stop, one.count, self._halvings, one.whole)
         ranges = []
         if not by_runs:
             for size, value in zip(*curve, strict=True):
