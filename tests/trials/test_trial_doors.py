@@ -65,7 +65,7 @@ PHASES = {
     "reading a drawing": "extrados.schema.contained:_server.answer",
     "making the building": "extrados.views.building:Building.blocks",
     "settling": "extrados.core.dem:Model.run",
-    "computing": "extrados.analyses.batches:_timed",
+    "computing": "extrados.core.calls:long_call",
     "judging": "extrados.analyses.sequence:concluded",
     "writing": "extrados.results.store:write",
     "writing arrays": "extrados.results.store:_write_h5",
@@ -76,11 +76,11 @@ PHASES = {
     "writing the report": "extrados.show.report:told",
 }
 SQUARES = "".join(
-    f"0\nLWPOLYLINE\n8\n0\n90\n4\n70\n1\n10\n0\n20\n{k}\n10\n1\n20\n{k}\n10\n1\n20\n{k + 1}\n10\n0\n20\n{k + 1}\n"
+    f"0\nLWPOLYLINE\n100\nAcDbEntity\n8\n0\n100\nAcDbPolyline\n90\n4\n70\n1\n10\n0\n20\n{k}\n10\n1\n20\n{k}\n10\n1\n20\n{k + 1}\n10\n0\n20\n{k + 1}\n"
     for k in range(3)
 )
 DRAWING = (
-    f"0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n6\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n{SQUARES}0\nENDSEC\n0\nEOF\n"
+    f"0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1015\n9\n$INSUNITS\n70\n6\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n{SQUARES}0\nENDSEC\n0\nEOF\n"
 )
 PHASED = """[structure]
 kind = "blocks"
