@@ -16,8 +16,8 @@ test: setup
 browser: setup  ## chromium and Playwright, if available, for the tests of the interactive page
 	@sh tools/browser.sh
 
-verify: setup  ## long validation and whole trials; writes docs/verification.md
-	@EXTRADOS_TRIALS=1 $(PYTHON) -m pytest -q -m ""
+verify: setup  ## long validation and whole trials, in an hour on two cores; writes docs/verification.md
+	@EXTRADOS_TRIALS=1 $(PYTHON) -m pytest -v -m "" -n auto --maxprocesses 8 --dist load --maxschedchunk 1
 	@$(PYTHON) tools/seeded_faults.py
 	@$(PYTHON) tools/verification_book.py
 

@@ -1,5 +1,6 @@
 """Shared by all tests: the folder of further ground motions, which are not part of the project; a cluster."""
 
+import fcntl
 import json
 import os
 import signal
@@ -11,24 +12,36 @@ from pathlib import Path
 
 import pytest
 
-# an editable install builds here what has changed, and tidies its notes of it: once, before the many processes of the
-# tests look at them at the same time
-import extrados._core  # noqa: F401
-from extrados import interrupts
+ROOT = Path(__file__).resolve().parents[1]
+
+# an editable install builds at its first import what has changed, and tidies its notes of it: one process at a time, of
+# all that test this tree, since two at once damage these notes
+(ROOT / "build").mkdir(exist_ok=True)
+with open(ROOT / "build" / "import.lock", "w") as lock:
+    fcntl.flock(lock, fcntl.LOCK_EX)
+    import extrados._core  # noqa: F401
+from extrados import interrupts  # noqa: E402
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell's background job: tests of Ctrl-C would wait in vain
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-ROOT = Path(__file__).resolve().parents[1]
+#: A test of the long suite that has not ended after so long waits for something [s]; others end by `timeout`
+LONGEST = 3600
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Long validation and whole trials take what they take; all else that waits for ever fails by `timeout`."""
+    """Long validation and whole trials may take long; they come last, trials after validation."""
     whole = float(os.environ.get("EXTRADOS_TRIALS", "0")) > 0.0
+
+    def rank(item: pytest.Item) -> int:
+        is_trial = "trials" in item.path.parts or "properties" in item.path.parts
+        return 2 if whole and is_trial else 1 if item.get_closest_marker("verify") else 0
+
+    items.sort(key=rank)
     for item in items:
-        if item.get_closest_marker("verify") or (whole and "trials" in item.path.parts):
-            item.add_marker(pytest.mark.timeout(0))
+        if rank(item):
+            item.add_marker(pytest.mark.timeout(LONGEST))
 
 
 @pytest.fixture(autouse=True)
