@@ -77,7 +77,8 @@ NOT_LINTED = {
 
 def pages() -> list[Path]:
     """README, CONTRIBUTING and the written pages of docs."""
-    written = [page for page in sorted((ROOT / "docs").rglob("*.md")) if page.name not in GENERATED | RECORDS]
+    pages = sorted((ROOT / "docs").rglob("*.md"))
+    written = [page for page in pages if page.name not in GENERATED | RECORDS and page.parent.name != "verification"]
     return [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *written]
 
 

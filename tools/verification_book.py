@@ -1,18 +1,22 @@
-"""Write docs/verification.md: the comparisons of every quantity, their agreement, and every row of every case.
+"""Write the verification book: docs/verification.md with the agreement of strategies and quantities, a page for each strategy in
+docs/verification/ with every row of every case, and the table of model uncertainty of the package.
 
     python tools/verification_book.py [--pages | --trials]
 
 Runs the cases of cases/, keeps the results in build/verification.json, so that an interrupted run
-continues, and writes the book with a plot for each quantity. `--pages` writes the book from the kept results: values found
+continues, and writes the book with a plot for each strategy and quantity. `--pages` writes the book from the kept results: values found
 before the program's last change are marked, those of another deck, of other data or of other rows are skipped, and both are
 reported. `--trials` writes the section of trials alone anew.
 """
 
 import argparse
+import csv
 import hashlib
 import json
 import math
+import re
 import sys
+import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
@@ -23,10 +27,11 @@ from typing import Any
 ROOT = Path(__file__).resolve().parents[1]
 BOOK = ROOT / "docs" / "verification.md"
 PLOTS = ROOT / "docs" / "verification"
+UNCERTAINTY = ROOT / "python" / "extrados" / "results" / "model_uncertainty.csv"
 KEPT = ROOT / "build" / "verification.json"
 sys.path[:0] = [str(ROOT / "tests" / "cases"), str(ROOT / "tools")]
 
-from expectations import KINDS, Case, Row, load_cases, pick, results_of  # noqa: E402
+from expectations import KINDS, LOOSE, PROOFS, Case, Row, load_cases, origin_of, origins, pick, results_of  # noqa: E402
 from verification_quantities import QUANTITIES, quantity_of  # noqa: E402
 
 from extrados.schema.files import SHIPPED  # noqa: E402
@@ -38,17 +43,16 @@ TITLES = {
     "peer": "Verification: independent programs, and unlike methods of this one",
     "thesis": "Reproduction of the dissertation",
     "experiment": "Validation: experiments",
+    "bound": "Bounds: one-sided statements",
+    "inferred": "Inferred: sizes chosen so that a printed number comes out, no verification",
     "calibration": "Calibrations: fitted, no verification",
     "regression": "Regression: unchanged numbers",
 }
-#: Kinds of comparison, the strongest first; a regression compares the program with itself, a calibration was fitted
-PROOFS = ("exact", "peer", "thesis", "experiment")
+#: Other kinds, as the tables of agreement count them
+COUNTED = ("bound", "inferred", "calibration", "regression")
+HEAD = "exact | other programs and methods | dissertation | experiments | bounds | inferred | calibrated | regression |"
 COLOURS = {"exact": "#0072B2", "peer": "#009E73", "thesis": "#E69F00", "experiment": "#D55E00"}
 MARKS = {"exact": "o", "peer": "s", "thesis": "^", "experiment": "D"}
-#: Relative tolerance from which on a row is listed apart
-LOOSE = 0.15
-#: Least number of measured rows of one folder for bias and scatter
-ENOUGH = 5
 #: Mark of results found before the program's last change
 OLDER = "*"
 #: Quantity compared by a row of a measured curve
@@ -78,11 +82,6 @@ class Found:
             return None
         return float(self.value) / float(self.row.value)
 
-    @property
-    def loose(self) -> bool:
-        """Whether so much is allowed that the row proves little."""
-        return not isinstance(self.row.value, str) and 0.0 < LOOSE * abs(self.row.value) < self.row.allowed
-
 
 def shown(value: object) -> str:
     """A value in a table cell."""
@@ -100,10 +99,18 @@ def line(found: Found) -> str:
     change = ", ".join(f"{k} = {v}" for k, v in row.change)
     verdict = f"{OLDER if found.older else ''}{'' if row.fits(found.value) else ' **differs**'}"
     allowed = "" if isinstance(row.value, str) else f" ± {row.allowed:.2g}"
+    tests = (
+        f"; tests ± {100 * row.scatter:.2g} %"
+        if isinstance(row.scatter, float)
+        else f"; {row.scatter}"
+        if row.scatter
+        else ""
+    )
     note = f" ({row.note})" if row.note else ""
+    origin = origin_of(row)
     return (
-        f"| {found.case} | {change} | `{row.quantity}` | {shown(row.value)}{allowed} | {shown(found.value)}{verdict} "
-        f"| {row.source}{note} |"
+        f"| {found.case} | {change} | `{row.quantity}` | {shown(row.value)}{allowed}{tests} | {shown(found.value)}{verdict} "
+        f"| {row.source}{note} | {origin['name'] if origin else ''} |"
     )
 
 
@@ -111,7 +118,7 @@ def table(rows: Iterable[Found]) -> list[str]:
     """Rows one by one."""
     rows = list(rows)
     last = "why there is no outside value" if rows and rows[0].row.kind == "regression" else "source"
-    head = f"| case | change | quantity | expected | found | {last} |\n|---|---|---|---|---|---|"
+    head = f"| case | change | quantity | expected | found | {last} | origin |\n|---|---|---|---|---|---|---|"
     return [head, *map(line, rows), ""]
 
 
@@ -130,24 +137,143 @@ def told(rows: list[Found], proof: str) -> str:
     return f"{cell}: {percent(mean(ratios) - 1.0)}{spread}"
 
 
+def agreement(rows: list[Found]) -> str:
+    """Cells of a table: the agreement by kind of comparison, and the numbers of other rows."""
+    cells = [told([found for found in rows if found.row.kind == proof], proof) for proof in PROOFS]
+    return " | ".join([*cells, *(str(sum(found.row.kind == kind for found in rows) or "") for kind in COUNTED)])
+
+
 def by_quantity(rows: list[Found]) -> list[str]:
     """The comparisons of every quantity, and their agreement."""
     lines = []
     for quantity in QUANTITIES:
         of = [found for found in rows if found.quantity == quantity]
-        cells = [told([found for found in of if found.row.kind == proof], proof) for proof in PROOFS]
-        others = [str(sum(found.row.kind == kind for found in of) or "") for kind in ("calibration", "regression")]
         picture = f"[{quantity}](verification/{slug(quantity)}.svg)" if plotted(of) else quantity
-        lines.append(f"| {picture} | {' | '.join([*cells, *others])} |")
+        lines.append(f"| {picture} | {agreement(of)} |")
     return [
         "## Quantity by quantity", "",
         "Rows of each quantity, by the kind of comparison. Exact solutions and other programs: the greatest deviation;",
         "the dissertation and experiments: bias (mean of found over expected, less one) and scatter (standard deviation).",
-        "Zeros and words have no ratio: they are in the tables below. Calibrated rows were fitted to come out and regressions",
-        "compare the program with itself: neither proves anything. Crack paths are compared by eye (docs/sla.md): no number of",
-        "a path is in print.", "",
-        "| quantity | exact | other programs and methods | dissertation | experiments | calibrated | regression |",
-        "|---|---|---|---|---|---|---|", *lines, "",
+        "Zeros and words have no ratio: they are in the tables of the strategies. Bounds are one-sided; sizes of inferred rows",
+        "and factors of calibrated ones were chosen to come out, and regressions compare the program with itself: none of these",
+        "enters bias or scatter. Crack paths are compared by eye (docs/sla.md): no number of a path is in print.", "",
+        f"| quantity | {HEAD}", "|---|---|---|---|---|---|---|---|---|", *lines, "",
+    ]  # fmt: skip
+
+
+@cache
+def strategies() -> list[dict[str, Any]]:
+    """Strategies of the book, with their analyses and the conditions that they do not cover."""
+    return tomllib.loads((ROOT / "tools" / "verification_strategies.toml").read_text(encoding="utf-8"))["strategy"]
+
+
+@cache
+def strategy_of(row: Row) -> str:
+    """Name of the strategy of a row's analysis."""
+    analysis = re.sub(r"-\d+$", "", row.quantity.split(".")[0])
+    return next(s["name"] for s in strategies() if analysis in s["analyses"])
+
+
+def by_strategy(rows: list[Found]) -> list[str]:
+    """The comparisons of every strategy, and its page."""
+    lines, pages = [], []
+    for strategy in strategies():
+        of = [found for found in rows if strategy_of(found.row) == strategy["name"]]
+        page = f"verification/{slug(strategy['name'])}"
+        lines.append(f"| [{strategy['name']}]({page}.md) | {agreement(of)} |")
+        pages.append(page)
+    return [
+        "## Strategy by strategy", "",
+        "Each strategy has a page with a plot, the worst case and its reason, the conditions that it does not cover, and all rows.",
+        "`extrados.results.uncertainty` reads bias and scatter of each strategy from the package.", "",
+        f"| strategy | {HEAD}", "|---|---|---|---|---|---|---|---|---|", *lines, "",
+        "```{toctree}\n:hidden:\n", *pages, "```", "",
+    ]  # fmt: skip
+
+
+def worst(rows: list[Found]) -> Found | None:
+    """The row farthest from its number: of the experiments, else of the dissertation, of other programs, of exact solutions."""
+    for proof in reversed(PROOFS):
+        of = [found for found in rows if found.row.kind == proof and (found.ratio or 0.0) > 0.0]
+        if of:
+            return max(of, key=lambda found: abs(math.log(found.ratio or 1.0)))
+    return None
+
+
+def page_of(strategy: dict[str, Any], rows: list[Found]) -> str:
+    """The page of a strategy."""
+    name = strategy["name"]
+    parts = [
+        f"# {name[0].upper()}{name[1:]}: verification",
+        "",
+        "Written by `make verify` from `cases/`; do not edit.",
+        "",
+    ]
+    analyses = ", ".join(f"`{analysis}`" for analysis in strategy["analyses"])
+    parts += [f"Analyses: {analyses}. {len(rows)} rows.", ""]
+    if plotted(rows):
+        parts += [f"![predicted and measured](strategy-{slug(name)}.svg)", ""]
+    parts += [f"| {HEAD}", "|---|---|---|---|---|---|---|---|", f"| {agreement(rows)} |", ""]
+    if far := worst(rows):
+        reason = far.row.wide or far.row.note or "within its tolerance"
+        parts += [
+            f"**Worst case** ({far.row.kind}): {far.case}, `{far.row.quantity}`, found {shown(far.value)} for {shown(far.row.value)}, "
+            f"{percent((far.ratio or 1.0) - 1.0)}. {reason[0].upper()}{reason[1:]}.", "",
+        ]  # fmt: skip
+    parts += ["## Not covered", "", *(f"- {text}" for text in strategy["not_covered"]), ""]
+    for kind, title in TITLES.items():
+        of = [found for found in rows if found.row.kind == kind]
+        if of:
+            parts += [f"## {title}", "", f"{len(of)} rows.", ""]
+            parts += of_curves(of) if kind == "experiment" else []
+            parts += table(of)
+    return "\n".join(parts)
+
+
+def statistics_of(rows: list[Found]) -> list[dict[str, Any]]:
+    """Bias (geometric mean of found over expected) and scatter (standard deviation of its logarithm) by strategy, quantity and kind of
+    comparison, where at least two rows have a ratio."""
+    lines = []
+    for strategy in strategies():
+        for quantity in QUANTITIES:
+            for proof in PROOFS:
+                of = [
+                    found for found in rows
+                    if (strategy_of(found.row), found.quantity, found.row.kind) == (strategy["name"], quantity, proof)
+                    and (found.ratio or 0.0) > 0.0
+                ]  # fmt: skip
+                if len(of) > 1:
+                    logs = [math.log(found.ratio or 1.0) for found in of]
+                    far = max(of, key=lambda found: abs(math.log(found.ratio or 1.0)))
+                    lines.append({
+                        "strategy": strategy["name"], "analyses": " ".join(strategy["analyses"]), "quantity": quantity,
+                        "comparison": proof, "count": len(of), "bias": f"{math.exp(mean(logs)):.4f}",
+                        "scatter": f"{stdev(logs):.4f}", "worst_case": far.case, "worst_ratio": f"{far.ratio:.4f}",
+                    })  # fmt: skip
+    return lines
+
+
+def write_uncertainty(rows: list[Found]) -> None:
+    """The table of model uncertainty of the package."""
+    lines = statistics_of(rows)
+    with UNCERTAINTY.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, list(lines[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(lines)
+
+
+def who_computed(rows: list[Found]) -> list[str]:
+    """Who computed the other numbers, their basis and date, and the test that computes them anew."""
+    lines = []
+    for origin in origins():
+        count = sum(origin_of(found.row) == origin for found in rows)
+        lines.append(
+            f"| {origin['name']} | {TITLES[origin['kind']].split(':')[0]} | {count} | {origin['who']} | {origin['basis']} | {origin['when']} | {origin['repeated']} |"
+        )
+    return [
+        "## Who computed the other number", "",
+        "The last column of the tables of each strategy names one of these.", "",
+        "| origin | kind | rows | who | basis | when | repeated by |", "|---|---|---|---|---|---|---|", *lines, "",
     ]  # fmt: skip
 
 
@@ -199,22 +325,49 @@ def draw(rows: list[Found]) -> None:
         plt.close(figure)
 
 
-def of_loads(rows: list[Found]) -> list[str]:
-    """Bias and scatter of measured over computed, by folder of cases with enough rows."""
-    ratios: dict[str, list[float]] = {}
-    for found in rows:
-        if found.row.kind == "experiment" and ".measured." not in found.row.quantity and (found.ratio or 0.0) > 0.0:
-            ratios.setdefault(found.case.split("/")[0], []).append(1.0 / float(found.ratio or 1.0))
-    lines = []
-    for folder, values in ratios.items():
-        if len(values) >= ENOUGH:
-            logs = [math.log(v) for v in values]
-            middle, spread = math.exp(mean(logs)), math.exp(stdev(logs))
-            lines.append(f"| {folder} | {len(values)} | {middle:.2f} | {spread:.2f} |")
-    if not lines:
-        return []
-    head = "| cases | rows | bias (geometric mean of measured over computed) | scatter (factor of one standard deviation) |"
-    return ["### Bias and scatter of single numbers", "", f"{head}\n|---|---|---|---|", *lines, ""]
+def draw_strategies(rows: list[Found]) -> None:
+    """A plot for each strategy: predicted against measured (or printed, or exact) values on logarithmic axes, and the ratios of the kind
+    of comparison that is nearest to reality, with the scatter of the tests themselves."""
+    import matplotlib.pyplot as plt
+
+    for strategy in strategies():
+        of = plotted(found for found in rows if strategy_of(found.row) == strategy["name"])
+        if not of:
+            continue
+        figure, (left, right) = plt.subplots(1, 2, figsize=(9.0, 4.2), layout="constrained")
+        nearest = next(proof for proof in reversed(PROOFS) if any(f.row.kind == proof for f in of))
+        for proof in PROOFS:
+            some = sorted(
+                (f for f in of if f.row.kind == proof and (f.ratio or 0.0) > 0.0), key=lambda f: f.ratio or 0.0
+            )
+            if not some:
+                continue
+            look = {"ms": 4.5, "mew": 0.8, "mfc": "none", "color": COLOURS[proof], "ls": "none", "marker": MARKS[proof]}
+            left.plot(
+                [abs(f.row.value) for f in some], [abs(f.value) for f in some], label=f"{proof} ({len(some)})", **look
+            )
+            if proof == nearest:
+                for place, f in enumerate(some, 1):
+                    if isinstance(f.row.scatter, float):
+                        band = [1.0 - f.row.scatter, 1.0 + f.row.scatter]
+                        right.plot([place, place], band, color="0.8", lw=4, solid_capstyle="butt")
+                right.plot(range(1, len(some) + 1), [f.ratio for f in some], **look)
+        left.set(
+            xscale="log", yscale="log", xlabel="expected: measured, printed or exact [SI]", ylabel="predicted [SI]"
+        )
+        ends = [min(abs(f.row.value) for f in of), max(abs(f.row.value) for f in of)]
+        left.plot(ends, ends, color="0.3", lw=0.8, zorder=0)
+        right.axhline(1.0, color="0.3", lw=0.8, zorder=0)
+        low, high = right.get_ylim()
+        note = "; grey: scatter of the tests" if nearest == "experiment" else ""
+        right.set(
+            ylim=(min(low, 0.9), max(high, 1.1)), xlabel=f"row ({nearest}){note}", ylabel="predicted over expected"
+        )
+        right.xaxis.get_major_locator().set_params(integer=True)
+        figure.suptitle(strategy["name"])
+        figure.legend(frameon=False, fontsize=8, loc="outside lower center", ncols=4)
+        figure.savefig(PLOTS / f"strategy-{slug(strategy['name'])}.svg", metadata={"Date": None})
+        plt.close(figure)
 
 
 def of_curves(rows: list[Found]) -> list[str]:
@@ -282,24 +435,35 @@ def with_trials_alone(book: str) -> str:
     return book.split(f"{TRIALS}\n")[0].rstrip() + "\n\n" + "\n".join(trials(book))
 
 
-def pages(rows: list[Found], book: str) -> str:
-    """The whole book; `book`: its former text."""
-    parts = ["# Verification book", "", "Written by `make verify` from `cases/`; do not edit.", "", *by_quantity(rows)]
+def overview(rows: list[Found], book: str) -> str:
+    """docs/verification.md; `book`: its former text."""
+    parts = ["# Verification book", "", "Written by `make verify` from `cases/`; do not edit.", "", *by_strategy(rows)]
+    parts += by_quantity(rows)
     if older := sum(found.older for found in rows):
         parts += [f"{older} values, marked {OLDER}, were found before the program's last change.", ""]
-    loose = [found for found in rows if found.loose and found.row.kind in PROOFS]
+    loose = [found for found in rows if found.row.loose]
     parts += [
         f"## Rows that allow more than {100 * LOOSE:.0f} %", "", f"{len(loose)} rows prove less than the others.", "",
-        *table(loose),
+        "| case | quantity | expected | found | why |", "|---|---|---|---|---|",
+        *(
+            f"| {f.case} | `{f.row.quantity}` | {shown(f.row.value)} ± {f.row.allowed:.2g} | {shown(f.value)} | {f.row.wide} |"
+            for f in loose
+        ), "",
     ]  # fmt: skip
-    for kind, title in TITLES.items():
-        of = [found for found in rows if found.row.kind == kind]
-        if of:
-            parts += [f"## {title}", "", f"{len(of)} rows.", ""]
-            parts += of_curves(of) if kind == "experiment" else []
-            parts += table(of)
-            parts += of_loads(of) if kind == "experiment" else []
-    return "\n".join([*parts, *relations(), *trials(book)])
+    return "\n".join([*parts, *who_computed(rows), *relations(), *trials(book)])
+
+
+def write_book(rows: list[Found], before: str) -> None:
+    """All pages, plots and the table of model uncertainty; `before`: the former overview."""
+    draw(rows)
+    draw_strategies(rows)
+    BOOK.write_text(overview(rows, before), encoding="utf-8")
+    for old in PLOTS.glob("*.md"):
+        old.unlink()
+    for strategy in strategies():
+        of = [found for found in rows if strategy_of(found.row) == strategy["name"]]
+        (PLOTS / f"{slug(strategy['name'])}.md").write_text(page_of(strategy, of), encoding="utf-8")
+    write_uncertainty(rows)
 
 
 def checksum(paths: Iterable[Path]) -> str:
@@ -388,8 +552,7 @@ def main() -> int:
             rows += find(case, kept, computed_by)
             print(case.name, flush=True)
     assert set(TITLES) == set(KINDS)
-    draw(rows)
-    BOOK.write_text(pages(rows, before), encoding="utf-8")
+    write_book(rows, before)
     wrong = sum(not found.row.fits(found.value) for found in rows)
     print(f"docs/verification.md: {len(rows)} rows, {wrong} differ")
     return wrong

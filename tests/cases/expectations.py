@@ -4,8 +4,8 @@ Each [[expect]] row has quantity ("rocking.impact_times_s[0]"; a key with a dot 
 TOML: use "none"), tolerance (absolute) or relative_tolerance, kind, source, and optionally `note` and `change`, deck keys with other
 values ("structure.thickness" = 0.12, "none" leaves one out). `slow = true` at the top moves a case to `make verify`. Kinds:
 
-- exact: a closed form, or a law that holds exactly. peer: another program, or an unlike method of this one; cases/origins.toml tells who
-  computed the number, from what and when.
+- exact: a closed form, or a law that holds exactly. peer: another program, or an unlike method of this one; tools/verification_origins.toml has who
+  computed the number, its basis and date.
 - thesis: the number or the statement is in the text of the dissertation. experiment: measured; `scatter` is that of the tests themselves
   (half the band or the standard deviation over the mean), or the words "one test".
 - A tolerance above 10 % of one of these four needs `wide`, the reason why so little is proven.
@@ -96,7 +96,7 @@ def _frozen(value: Any) -> Any:
     return tuple(map(_frozen, value)) if isinstance(value, list) else value
 
 
-def _row(row: dict[str, Any], path: Path) -> Row:
+def read_row(row: dict[str, Any], path: Path) -> Row:
     """A row as it stands in the file.
 
     Raises ValueError for one that lacks what its kind needs, or has keys of another.
@@ -127,12 +127,23 @@ def load_cases() -> list[Case]:
     found = []
     for path in sorted(CASES.rglob("*.expect.toml")):
         data = tomllib.loads(path.read_text(encoding="utf-8"))
-        rows = [_row(row, path) for row in data["expect"]]
+        rows = [read_row(row, path) for row in data["expect"]]
         deck = path.with_name(path.name.replace(".expect.toml", ".toml"))
         if not deck.exists():
             raise ValueError(f"{path}: no deck {deck.name} beside it")
         found.append(Case(deck, rows, data.get("slow", False)))
     return found
+
+
+@cache
+def origins() -> list[dict[str, str]]:
+    """Who computed the numbers beside the rows (tools/verification_origins.toml)."""
+    return tomllib.loads((ROOT / "tools" / "verification_origins.toml").read_text(encoding="utf-8"))["origin"]
+
+
+def origin_of(row: Row) -> dict[str, str] | None:
+    """The entry of a row's number; None of rows that no one else computed."""
+    return next((o for o in origins() if o["kind"] == row.kind and re.search(o.get("pattern", ""), row.source)), None)
 
 
 def changed(data: dict[str, Any], change: tuple[tuple[str, Any], ...]) -> dict[str, Any]:

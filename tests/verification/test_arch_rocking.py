@@ -204,3 +204,28 @@ def test_bad_arguments_are_refused(oppenheim) -> None:
         rocking.history(oppenheim.body, ground, -1.0, 0.1)
     with pytest.raises(IndexError, match="run_body names 1"):
         rocking.ensemble([oppenheim.body], [ground], [1], [0], 1.0, 1.0)
+
+
+def response_to_sine(model: ArchModel, amplitude: float, period: float) -> tuple[int, float | None]:
+    """Impacts, and the time of collapse, of an arch under one sine of amplitude [g]."""
+    gamma, omega = model.collapse[0].gamma, 2.0 * np.pi / period
+    found, _, fallen = Oracle(model, model.restitution).run(
+        lambda t: -amplitude * GRAVITY * np.sin(omega * t) if t < period else 0.0,
+        np.arcsin(gamma / amplitude) / omega, 1, period + 8.0, period / 200.0, rtol=1e-8,
+    )  # fmt: skip
+    return len(found), fallen
+
+
+@pytest.mark.parametrize(("amplitude", "period", "impacts"), [(0.5, 1.1417, 1), (1.0, 0.6669, 1), (1.0, 1.4419, 0)])
+def test_failing_sines_of_fig_5_7_against_scipy(oppenheim, amplitude: float, period: float, impacts: int) -> None:
+    """`cases/arch/figure-5-7`: the arch recovers under a sine 0.1 % shorter, and collapses under one 0.1 % longer after this many impacts."""
+    assert response_to_sine(oppenheim, amplitude, 0.999 * period)[1] is None
+    count, time = response_to_sine(oppenheim, amplitude, 1.001 * period)
+    assert count == impacts and time is not None
+
+
+def test_the_failing_sine_of_arch_1_against_scipy() -> None:
+    """`cases/arch/pulse-trains`: 0.24155 g at 0.3427 s by the default impact rule."""
+    model = ArchModel(make_arch(0.2, 0.024, 162.0, 16), "inelastic")
+    assert response_to_sine(model, 0.999 * 0.24155, 0.3427)[1] is None
+    assert response_to_sine(model, 1.001 * 0.24155, 0.3427)[1] is not None
