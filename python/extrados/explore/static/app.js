@@ -6,6 +6,7 @@ import { motionPanel } from "./motion.js";
 import { resultsPanel } from "./results.js";
 import { solidPanel } from "./solid.js";
 import { outMenu } from "./out.js";
+import { classPanel } from "./class.js";
 import { fallPanel } from "./fall.js";
 import { sidebar } from "./sidebar.js";
 
@@ -54,9 +55,9 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   const layersBar = h("div", { class: "layers", role: "group", "aria-label": "What is drawn" });
   const stageFrame = h("section", { class: "stage-frame", "aria-label": "Drawing" }, layersBar, stageBox);
   const lower = h("section", { class: "lower", "aria-label": "Details" });
-  const wide = h("section", { class: "wide", hidden: true });
+  const wide = h("section", { class: "wide", hidden: true }), classBox = h("section", { class: "wide", hidden: true, "aria-label": "Class" });
   const side = h("aside", { class: "side", "aria-label": "Numbers, sizes and deck" });
-  const mainBox = h("main", { class: "main" }, stageFrame, lower, wide);
+  const mainBox = h("main", { class: "main" }, stageFrame, lower, wide, classBox);
   root.replaceChildren(top, banner, h("div", { class: "body" }, mainBox, side), status);
 
   const drawing = stage(stageBox, {
@@ -190,7 +191,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     }
     if (words.detail) { app.detail = words.detail; Object.assign(app.arrays, arrays); drawing.redraw(); tell("detail"); }
     if (words.text !== undefined && words.to === "rest") settled(words);
-    for (const key of ["rocking", "domain", "impulse", "push", "run", "computing", "saved", "fall"]) if (words[key] !== undefined) tell(key, words[key], arrays, words);
+    for (const key of ["rocking", "domain", "impulse", "push", "run", "computing", "saved", "fall", "frozen"]) if (words[key] !== undefined) tell(key, words[key], arrays, words);
     entry?.reply?.(words, arrays);
     if (entry) {
       if (entry.message.do !== "hello" || words.scene) landed(entry);
@@ -324,8 +325,8 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       const groups = [];
       let kept = null;
       try { kept = JSON.parse(localStorage.getItem(KEPT)); } catch { /* none */ }
-      if (kept?.text && fits("last", kept.name)) groups.push(["Where you left off", [item(kept.name, "the deck of your last page", { text: kept.text, name: kept.name, ...kept.source })]]);
-      groups.push([`Decks in ${w.folder}`, w.decks.filter((d) => fits(d)).map((d) => item(d, "", { path: d }))]);
+      if (kept?.text && app.root.dataset.role !== "pupil" && fits("last", kept.name)) groups.push(["Where you left off", [item(kept.name, "the deck of your last page", { text: kept.text, name: kept.name, ...kept.source })]]);
+      if (w.folder) groups.push([`Decks in ${w.folder}`, w.decks.filter((d) => fits(d)).map((d) => item(d, "", { path: d }))]);
       groups.push(["New", w.kinds.structure.filter((k) => fits("new", k)).map((k) => item(`new ${k}`, "a starter deck", { starter: k }))]);
       groups.push(["Decks with known answers", w.presets.filter((p) => fits(p.name, p.title, p.kind)).map((p) => item(p.title || p.name, `${p.name}${p.kind ? ` · ${p.kind}` : ""}`, { preset: p.name }))]);
       box.replaceChildren(...groups.filter(([, items]) => items.length).flatMap(([name, items]) => [h("h3", {}, name), h("div", { class: "choice-grid" }, items)]));
@@ -339,6 +340,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
 
   function dropped(fileGiven) {
     if (!fileGiven) return;
+    if (root.dataset.role === "pupil") { say("A class has no files.", true); return; }
     if (fileGiven.size > 8e6) { say(`${fileGiven.name} is larger than 8 MB`, true); return; }
     const reader = new FileReader();
     reader.onload = () => {
@@ -446,9 +448,10 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   fallPanel(app, stageFrame);
   motionPanel(app, lower, stageFrame);
   resultsPanel(app, wide);
+  classPanel(app, tabs, classBox);
   const arranged = () => {
-    const results = app.tab === "results", plain = Boolean(app.scene?.empty);
-    wide.hidden = !results; stageFrame.hidden = results; layersBar.hidden = plain;
+    const results = ["results", "class"].includes(app.tab), plain = Boolean(app.scene?.empty);
+    wide.hidden = app.tab !== "results"; classBox.hidden = app.tab !== "class"; stageFrame.hidden = results; layersBar.hidden = plain;
     lower.hidden = results || (plain && app.tab === "structure");
   };
   on("scene", arranged);

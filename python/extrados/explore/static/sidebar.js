@@ -138,7 +138,7 @@ export function sidebar(app, box) {
     } }, h("p", {}, `In ${app.welcome.folder}, as`), field, h("label", {}, replace, " replace what is there"), h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, "Save"))));
   };
   const adder = h("select", { "aria-label": "Add an analysis", onchange: (e) => { if (e.target.value) app.ask({ do: "analysis", add: e.target.value }); e.target.value = ""; } });
-  pages.deck.append(h("div", { class: "row wrap" }, h("button", { onclick: copy }, "Copy"), h("button", { onclick: () => app.save() }, "Save…"), h("button", { onclick: () => download(new Blob([app.text], { type: "application/toml" }), app.name) }, "Download"), h("button", { onclick: () => app.chooser() }, "Open…"), adder), complaints, h("div", { class: "editor" }, numbersBox, text));
+  pages.deck.append(h("div", { class: "row wrap" }, h("button", { onclick: copy }, "Copy"), h("button", { class: "keeps", onclick: () => app.save() }, "Save…"), h("button", { onclick: () => download(new Blob([app.text], { type: "application/toml" }), app.name) }, "Download"), h("button", { onclick: () => app.chooser() }, "Open…"), adder), complaints, h("div", { class: "editor" }, numbersBox, text));
   function deck() {
     const editing = box.getRootNode().activeElement === text;
     if (!editing && text.value !== app.text) text.value = app.text;
