@@ -20,6 +20,10 @@ def explore(
     address: Annotated[
         str, typer.Option(help="address of this machine on the local network, for --class; default: this machine alone")
     ] = "127.0.0.1",
+    standalone: Annotated[
+        Path | None,
+        typer.Option(help="write a page without a server to this file instead: one size and the tilt on sliders"),
+    ] = None,
     pupils: Annotated[int, typer.Option(min=1, max=60, help="most pupils at a time, for --class")] = 30,
 ) -> None:
     """Open the interactive page: drag the blocks, see the thrust. It is served to this machine alone, unless a class is held."""
@@ -32,6 +36,13 @@ def explore(
         place = deck.resolve()
         folder = folder if place.is_relative_to(folder) else place.parent
         first = place.relative_to(folder).as_posix()
+    if standalone is not None:
+        from extrados.explore.answers.standalone import write_page
+
+        with errors():
+            write_page(folder, first, standalone)
+        out_console.say(f"Page:    {standalone}   ({standalone.stat().st_size / 1e6:.2f} MB)")
+        return
     from extrados.explore.supervisor import BadAddress, ClassOptions
     from extrados.explore.supervisor import explore as serve_pages
 

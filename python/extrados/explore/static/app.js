@@ -8,6 +8,7 @@ import { solidPanel } from "./solid.js";
 import { outMenu } from "./out.js";
 import { classPanel } from "./class.js";
 import { fallPanel } from "./fall.js";
+import { deckOf } from "./share.js";
 import { sidebar } from "./sidebar.js";
 
 const REST = 130; // ms without a change, after which the hand rests
@@ -314,7 +315,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   function chooser() {
     const w = app.welcome;
     if (!w) return;
-    const field = h("input", { type: "search", placeholder: "Find a deck …", "aria-label": "Find a deck", oninput: list });
+    const field = h("input", { type: "search", placeholder: "Find a deck, or paste a link …", "aria-label": "Find a deck, or paste a link", oninput: async () => { if (await openLink(field.value)) shown.close(); else list(); } });
     const box = h("div", { class: "choices" });
     const file = h("input", { type: "file", accept: ".toml,.dxf,.json,.csv,.txt,.at2", "aria-label": "A file of this machine", onchange: () => { dropped(file.files[0]); shown.close(); } });
     const shown = dialog("Open a deck", h("div", { class: "row" }, field, h("label", { class: "button" }, "From this machine…", file)), box);
@@ -335,6 +336,15 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     field.focus();
   }
   app.chooser = chooser;
+  /** Open the deck that a link holds; whether it holds one. */
+  async function openLink(link) {
+    try {
+      const text = await deckOf(link);
+      if (text !== null) open({ text, name: "shared.toml" });
+      return text !== null;
+    } catch (error) { say(`The link holds no deck that can be read: ${error.message}`, true); return false; }
+  }
+  app.openLink = openLink;
 
   // Files dropped on the page
 
