@@ -6,7 +6,7 @@ const NAMES = { structure: "Structure", motion: "Motion", joints: "Joints", mate
 
 export function sidebar(app, box) {
   const pages = { answer: h("div", { class: "page answer" }), sizes: h("div", { class: "page sizes" }), deck: h("div", { class: "page deck" }), teach: h("div", { class: "page teach" }) };
-  const labels = { answer: "Answer", sizes: "Sizes", deck: "Deck", teach: "Exercises" };
+  const labels = { answer: "Answer", sizes: "Sizes", deck: "Deck", teach: "Lessons" };
   const tabs = h("div", { class: "tabs small", role: "tablist", "aria-label": "Beside the drawing" }, Object.keys(pages).map((name) => h("button", { role: "tab", "data-side": name, onclick: () => { app.root.dataset.sheet = chosen === name && app.root.dataset.sheet === "open" ? "" : "open"; choose(name); } }, labels[name])));
   box.append(tabs, ...Object.values(pages));
   let chosen = "answer";
