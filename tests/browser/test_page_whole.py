@@ -56,35 +56,43 @@ def test_two_pages_do_not_disturb_each_other(page: Any, served: Served) -> None:
     other.close()
 
 
-def test_the_five_exercises(page: Any) -> None:
+def test_the_ten_lessons(page: Any) -> None:
     page.click("[data-side=teach]")
-    assert page.locator(".exercises li").count() == 5
-    solutions = [
-        {"structure.thickness": 0.55}, None, {"structure.buttress_width": 2.0},
-        {"motion.amplitude": "0.6 g", "motion.duration": 0.45}, None,
+    assert page.locator(".exercises li").count() == 10
+    changes: list[dict[str, Any] | None] = [
+        {"structure.thickness": 0.54}, None, None, {"motion.amplitude": "0.6 g", "motion.duration": 0.45},
+        {"structure.width": 2.0, "structure.height": 8.0}, None, {"structure.thickness": 0.536},
+        {"structure.radius": 7.165, "structure.embrace": 74.36}, None, {"structure.width": 1.4},
     ]  # fmt: skip
-    for k, changes in enumerate(solutions):
+    for k, given in enumerate(changes):
         page.click("[data-side=teach]")
         page.click(f".exercises button >> nth={k}")
-        until(page, f"window.extrados.name === 'exercise-{k + 1}.toml'")
+        until(page, f"window.extrados.name === 'lesson-{k + 1}.toml'")
         settled(page)
-        if k == 0:
-            page.click(".exercise .first")
-            page.wait_for_selector(".told.bad")
-            page.evaluate("c => window.extrados.change(c)", {"structure.thickness": 0.54})
-        elif k == 1:
+        assert page.locator(".exercise .first").is_disabled(), "a prediction comes first"
+        page.locator(".exercise input[type=radio]").first.check()
+        page.click(".exercise .first")
+        page.wait_for_selector(".told.bad")
+        if given:
+            page.evaluate("c => window.extrados.change(c)", given)
+        if k == 1:
             page.evaluate("window.extrados.show({ gamma: window.extrados.scene.capacity.plus_g * 0.99 })")
         elif k == 2:
             _bisect_buttress(page)
-        elif k == 3:
-            page.evaluate("c => window.extrados.change(c)", changes)
-        else:
-            page.evaluate("c => window.extrados.change(c)", {"structure.width": 2.0, "structure.height": 8.0})
+        elif k == 4:
             _least_sine(page)
+        elif k == 5:
+            page.evaluate("window.extrados.show({ through: [0, window.extrados.scene.plus_hinges ? 3.71 : 0] })")
+        elif k == 8:
+            page.evaluate("window.extrados.change({ 'analysis.tilt.load': [{ x: -2.4, force: 52000 }] })")
         settled(page)
         page.click(".exercise .first")
         page.wait_for_selector(".told.good", timeout=20_000)
-        page.screenshot(path=SHOTS / f"exercise-{k + 1}.png")
+        assert (
+            "prediction was right" in page.locator(".history").inner_text()
+            or "right is" in page.locator(".history").inner_text()
+        )
+        page.screenshot(path=SHOTS / f"lesson-{k + 1}.png")
 
 
 def test_it_is_usable_on_a_tablet_and_in_the_dark(page: Any) -> None:

@@ -1,12 +1,12 @@
 """Who may talk to the server of the page."""
 
-from extrados.explore.guard import LARGEST_BODY, Guard
+from extrados.explore.guard import LARGEST_BODY, Door, Guard
 
 
 def objection(length: bytes) -> tuple[int, str] | None:
     heads = [(b"host", b"127.0.0.1:8737"), (b"origin", b"http://127.0.0.1:8737"), (b"content-length", length)]
     scope = {"type": "http", "method": "POST", "path": "/token/film", "raw_path": b"/token/film", "headers": heads}
-    return Guard(None, "token", ["127.0.0.1:8737"]).objection(scope)
+    return Guard(None, [Door("token", ["127.0.0.1:8737"])]).objection(scope)
 
 
 def test_a_length_that_is_none_or_beyond_all_bounds_is_answered() -> None:

@@ -14,8 +14,19 @@ def explore(
         int | None, typer.Option(min=1024, max=65535, help="port; default 8737, or any that is free")
     ] = None,
     browser: Annotated[bool, typer.Option(help="open the page in a browser")] = True,
+    classroom: Annotated[
+        bool, typer.Option("--class", help="also hold a class: prints a link and a QR code for the pupils")
+    ] = False,
+    address: Annotated[
+        str, typer.Option(help="address of this machine on the local network, for --class; default: this machine alone")
+    ] = "127.0.0.1",
+    standalone: Annotated[
+        Path | None,
+        typer.Option(help="write a page without a server to this file instead: one size and the tilt on sliders"),
+    ] = None,
+    pupils: Annotated[int, typer.Option(min=1, max=60, help="most pupils at a time, for --class")] = 30,
 ) -> None:
-    """Open the interactive page: drag the stones, see the thrust. It is served to this machine alone."""
+    """Open the interactive page: drag the blocks, see the thrust. It is served to this machine alone, unless a class is held."""
     from extrados.decks.reader import read_deck
 
     folder, first = Path.cwd().resolve(), None
@@ -25,9 +36,23 @@ def explore(
         place = deck.resolve()
         folder = folder if place.is_relative_to(folder) else place.parent
         first = place.relative_to(folder).as_posix()
+    if standalone is not None:
+        from extrados.explore.answers.standalone import write_page
+
+        with errors():
+            write_page(folder, first, standalone)
+        out_console.say(f"Page:    {standalone}   ({standalone.stat().st_size / 1e6:.2f} MB)")
+        return
+    from extrados.explore.supervisor import BadAddress, ClassOptions
     from extrados.explore.supervisor import explore as serve_pages
 
-    raise typer.Exit(serve_pages(folder, first, port, browser, lambda text: out_console.say(text)))
+    if not classroom and address != "127.0.0.1":
+        raise typer.BadParameter("an address is for --class", param_hint="--address")
+    try:
+        options = ClassOptions(address, pupils) if classroom else None
+    except BadAddress as error:
+        raise typer.BadParameter(str(error), param_hint="--address") from None
+    raise typer.Exit(serve_pages(folder, first, port, browser, lambda text: out_console.say(text), options))
 
 
 def _forms(begun: str) -> list[str]:

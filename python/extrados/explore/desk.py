@@ -52,6 +52,16 @@ class Desk:
         self.maps: dict[str, tuple[dict[str, Any], dict[str, np.ndarray]]] = {}
         self.scratch: Path | None = None
 
+    #: Whether decks name no file but shipped ones
+    shipped_alone = False
+
+    def check(self) -> None:
+        """DeckError if the deck at hand is not for this desk."""
+
+    def spend(self, seconds: float) -> float:
+        """Note computing time; how long the page waits for more [s]."""
+        return 0.0
+
     def there(self) -> Live:
         """The live deck; NotThere where none is open."""
         if self.live is None:

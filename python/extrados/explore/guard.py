@@ -1,4 +1,4 @@
-"""Who may talk to the server: this machine's own page, by its token, in requests of a decent size and rate.
+"""Who may talk to the server: a page of its own, by its token, in requests of a decent size and rate.
 
 A page of any other site that the same browser shows can send requests to 127.0.0.1, and a name that its owner points
 at 127.0.0.1 makes them look its own. Hence all three are asked for: the name in Host, the site in Origin, and a token
@@ -6,6 +6,7 @@ that only the address holds which the program has printed.
 """
 
 import hmac
+import ipaddress
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -61,17 +62,25 @@ class Bucket:
         return True
 
 
+@dataclass(frozen=True)
+class Door:
+    """A way in: its token, and what Host may read, such as 127.0.0.1:8737. role: "page", or "pupil" in a class; near:
+    only this machine may come in by it."""
+
+    token: str
+    hosts: list[str]
+    role: str = "page"
+    near: bool = True
+
+
 class Guard:
-    """ASGI: passes on to `app` what comes from the page itself, with the path behind the token; answers the rest.
+    """ASGI: passes on to `app` what comes from a page by one of the doors, with the path behind the token and the role of the
+    door; answers the rest. share: of the requests that are let in, one where a single person uses the pages."""
 
-    `hosts`: what Host may read, such as 127.0.0.1:8737.
-    """
-
-    def __init__(self, app: Callable[..., Any], token: str, hosts: list[str]):
-        self.app, self.token = app, token.encode()
-        self.hosts = {host.lower().encode() for host in hosts}
-        self.origins = {b"http://" + host for host in self.hosts}
-        self.requests = Bucket(BURST_REQUESTS, RATE_REQUESTS)
+    def __init__(self, app: Callable[..., Any], doors: list[Door], share: float = 1.0):
+        self.app, self.doors = app, doors
+        self.hosts = {host.lower().encode() for door in doors for host in door.hosts}
+        self.requests = Bucket(share * BURST_REQUESTS, share * RATE_REQUESTS)
 
     async def __call__(self, scope: dict[str, Any], receive: Callable[..., Any], send: Callable[..., Any]) -> None:
         if scope["type"] == "lifespan":
@@ -82,7 +91,8 @@ class Guard:
             await _refuse(scope, receive, send, *reason)
             return
         path = "/" + scope["path"].split("/", 2)[2]
-        scope = {**scope, "path": path, "raw_path": path.encode(), "root_path": ""}
+        role = next(door.role for door in self.doors if _opens(door, scope))
+        scope = {**scope, "path": path, "raw_path": path.encode(), "root_path": "", "role": role}
         await self.app(scope, receive, _with_headers(send))
 
     def objection(self, scope: dict[str, Any]) -> tuple[int, str] | None:
@@ -96,13 +106,13 @@ class Guard:
         if len(heads.get(b"host", [])) != 1 or heads[b"host"][0] not in self.hosts:
             return 421, "this server answers to its own address only"
         origin = heads.get(b"origin", [])
-        if len(origin) > 1 or (origin and origin[0] not in self.origins):
+        if len(origin) > 1 or (origin and origin[0] != b"http://" + heads[b"host"][0]):
             return 403, "requests of other sites are not answered"
         if not origin and (socket or scope["method"] not in ("GET", "HEAD")):
             return 403, "a request that does not say its origin is not answered"
         # A tab that goes to the page from the file of `supervisor` is no danger: it needs the token, and reads nothing
-        opens = scope.get("method") == "GET" and heads.get(b"sec-fetch-dest") == [b"document"]
-        if heads.get(b"sec-fetch-site", [b"none"])[0] not in (b"none", b"same-origin") and (socket or not opens):
+        leads = scope.get("method") == "GET" and heads.get(b"sec-fetch-dest") == [b"document"]
+        if heads.get(b"sec-fetch-site", [b"none"])[0] not in (b"none", b"same-origin") and (socket or not leads):
             return 403, "requests of other sites are not answered"
         if not socket and scope["method"] not in ("GET", "HEAD", "POST"):
             return 405, "only GET and POST are known"
@@ -118,10 +128,29 @@ class Guard:
             or int(lengths[0]) > LARGEST_BODY
         ):
             return 413, "too much is sent"
-        parts = scope["path"].split("/", 2)
-        if len(parts) != 3 or not hmac.compare_digest(parts[1].encode("utf-8", "replace"), self.token):
+        door = next((door for door in self.doors if _opens(door, scope)), None)
+        if door is None:
             return 403, "the address lacks its token: take the whole address that `extrados explore` has printed"
+        if heads[b"host"][0].decode("latin-1") not in [host.lower() for host in door.hosts]:
+            return 421, "this server answers to its own address only"
+        if door.near and not _is_near(scope):
+            return 403, "this address is for the machine itself"
         return None
+
+
+def _opens(door: Door, scope: dict[str, Any]) -> bool:
+    """Whether the path of a request begins with the token of a door."""
+    parts = scope["path"].split("/", 2)
+    return len(parts) == 3 and hmac.compare_digest(parts[1].encode("utf-8", "replace"), door.token.encode())
+
+
+def _is_near(scope: dict[str, Any]) -> bool:
+    """Whether a request comes from this machine over loopback."""
+    client = scope.get("client")
+    try:
+        return client is None or ipaddress.ip_address(client[0]).is_loopback
+    except ValueError:
+        return False
 
 
 async def _refuse(

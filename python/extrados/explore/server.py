@@ -12,8 +12,10 @@ import logging
 import os
 import secrets
 import socket
+import time
 from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,6 +26,7 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from extrados import interrupts
+from extrados.explore.classroom import THREADS, Classroom, Teacher
 from extrados.explore.film import BadFilm, film
 from extrados.explore.frames import Reply
 from extrados.explore.guard import (
@@ -35,6 +38,7 @@ from extrados.explore.guard import (
     RATE,
     RATE_BYTES,
     Bucket,
+    Door,
     Guard,
 )
 from extrados.explore.session import Session
@@ -106,19 +110,33 @@ def _log_failure(ended: Future[None]) -> None:
         log.error("the end of a page failed", exc_info=error)
 
 
-async def _serve(page: WebSocket, session: Session, inbox: Inbox) -> None:
-    """Answer the messages of a page, oldest first; long work goes on, step by step, while nothing waits."""
-    loop = asyncio.get_running_loop()
+async def _serve(page: WebSocket, session: Session, inbox: Inbox, shared: ThreadPoolExecutor | None) -> None:
+    """Answer the messages of a page, oldest first; long work goes on, step by step, while nothing waits. shared: the threads
+    that a class computes on; a page of its own has one."""
     context = contextvars.copy_context()
-    context.run(confine)
+    context.run(confine, session.shipped_alone)
     going: dict[str, Iterator[Reply]] = {}
-    thread = ThreadPoolExecutor(1, "session")
+    thread = shared or ThreadPoolExecutor(1, "session")
+
+    def timed(work: Iterator[Reply]) -> tuple[bytes | None, float]:
+        begin = time.perf_counter()
+        return _next(work), time.perf_counter() - begin
+
+    running: list[Future[Any]] = []  # the last step, which goes on where its page goes meanwhile
 
     async def step(work: Iterator[Reply]) -> bool:
-        frame = await loop.run_in_executor(thread, context.run, _next, work)
+        running[:] = [thread.submit(context.run, timed, work)]
+        frame, seconds = await asyncio.wrap_future(running[0])
+        if (wait := session.spend(seconds)) > 0.0:
+            await asyncio.sleep(wait)
         if frame is not None:
             await page.send_bytes(frame)
         return frame is not None
+
+    def end(_: Future[Any] | None = None) -> None:
+        thread.submit(context.run, _end, list(going.values()), session).add_done_callback(_log_failure)
+        if shared is None:
+            thread.shutdown(wait=False)
 
     try:
         while True:
@@ -133,9 +151,11 @@ async def _serve(page: WebSocket, session: Session, inbox: Inbox) -> None:
             if await step(work):
                 going.pop(lane, None)
                 going[lane] = work
-    finally:  # by the thread, once it has done what it is at: other pages do not wait for that
-        thread.submit(context.run, _end, list(going.values()), session).add_done_callback(_log_failure)
-        thread.shutdown(wait=False)
+    finally:  # by a thread, once the last step has ended: other pages do not wait for that
+        if running:
+            running[0].add_done_callback(end)
+        else:
+            end()
 
 
 async def _read(page: WebSocket, inbox: Inbox) -> None:
@@ -154,21 +174,32 @@ async def _read(page: WebSocket, inbox: Inbox) -> None:
 
 
 async def _page(page: WebSocket) -> None:
-    state = page.app.state
-    if state.pages >= MOST_PAGES:
+    state, room = page.app.state, page.app.state.room
+    pupil = page.scope["role"] == "pupil"
+    if not pupil and state.pages >= MOST_PAGES:
         await page.close(1013, "too many pages are open")
         return
-    await page.accept()
-    state.pages += 1
-    session, inbox = state.new_session(), Inbox()
-    tasks = [asyncio.create_task(_read(page, inbox)), asyncio.create_task(_serve(page, session, inbox))]
+    inbox = Inbox()
+    session = room.join(inbox.put) if pupil else state.new_session()
+    if session is None:
+        await page.close(1013, "the class is full")
+        return
+    state.pages += not pupil
+    tasks: list[asyncio.Task[None]] = []
     try:
+        await page.accept()
+        tasks = [
+            asyncio.create_task(_read(page, inbox)),
+            asyncio.create_task(_serve(page, session, inbox, state.threads if pupil else None)),
+        ]
         done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         with contextlib.suppress(WebSocketDisconnect):
             for task in done:
                 task.result()
     finally:
-        state.pages -= 1
+        if pupil:
+            room.leave(session)
+        state.pages -= not pupil
         for task in tasks:
             task.cancel()
             with contextlib.suppress(asyncio.CancelledError, Exception):
@@ -186,6 +217,8 @@ async def _file(request: Request) -> Response:
 async def _film(request: Request) -> Response:
     """Pictures of what is seen, one after the other, as a film."""
     state = request.app.state
+    if request.scope["role"] == "pupil":
+        return PlainTextResponse("a class makes no films\n", 403)
     if state.filming:
         return PlainTextResponse("another film is being made\n", 429)
     state.filming = True
@@ -203,8 +236,9 @@ async def _film(request: Request) -> Response:
     return Response(made.content, media_type=made.type)
 
 
-def application(token: str, hosts: list[str], folder: Path, deck: str | None = None) -> Guard:
-    """The ASGI application for a working folder; `deck`: the path, within the folder, of what pages open first."""
+def application(doors: list[Door], folder: Path, deck: str | None = None, room: Classroom | None = None) -> Guard:
+    """The ASGI application for a working folder; `deck`: the path, within the folder, of what pages open first; room: the
+    class whose pupils come in by the second door."""
     files = {
         path.relative_to(STATIC).as_posix(): (path.read_bytes(), TYPES[path.suffix])
         for path in STATIC.rglob("*")
@@ -219,22 +253,26 @@ def application(token: str, hosts: list[str], folder: Path, deck: str | None = N
     ]
     app = Starlette(routes=routes)
     app.state.files, app.state.pages, app.state.filming = files, 0, False
-    app.state.new_session = lambda: Session(folder, deck)
-    return Guard(app, token, hosts)
+    app.state.room, app.state.threads = room, None if room is None else ThreadPoolExecutor(THREADS, "class")
+    app.state.new_session = lambda: Session(folder, deck) if room is None else Teacher(folder, deck, room)
+    return Guard(app, doors, 1.0 if room is None else float(room.most))
 
 
-def hosts_of(port: int) -> list[str]:
-    """What Host may read on a port of this machine."""
-    return [f"{name}:{port}" for name in ("127.0.0.1", "localhost", "[::1]")]
+def hosts_of(sock: socket.socket) -> list[str]:
+    """What Host may read on a listening socket: its address, and the names of 127.0.0.1."""
+    address, port = sock.getsockname()[:2]
+    names = (address, "localhost", "[::1]") if address == "127.0.0.1" else (address,)
+    return [f"{name}:{port}" for name in names]
 
 
-def listen(port: int = 0, strict: bool = False) -> socket.socket:
-    """A socket that listens on loopback; at any free port where that one is taken, unless `strict`: OSError then."""
+def listen(port: int = 0, strict: bool = False, address: str = "127.0.0.1") -> socket.socket:
+    """A socket that listens on an address of this machine, loopback unless another is given; at any free port where that one is
+    taken, unless `strict`: OSError then."""
     for wanted in dict.fromkeys((port, port if strict else 0)):
         found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
-            found.bind(("127.0.0.1", wanted))
+            found.bind((address, wanted))
         except OSError:
             found.close()
             if wanted == 0 or strict:
@@ -282,11 +320,11 @@ def _socket_protocol() -> type[asyncio.Protocol]:
     return Protocol
 
 
-def _http_protocol() -> type[asyncio.Protocol]:
+def _http_protocol(most_idle: int) -> type[asyncio.Protocol]:
     """uvicorn's HTTP protocol with a limit for connections whose request is not whole yet.
 
     Such a connection ends WHOLE_REQUEST seconds after it was made, or after the first part of a later request; of more than
-    MOST_IDLE at once the oldest ends. uvicorn itself would wait without limit, and idle connections would shut pages out.
+    `most_idle` at once the oldest ends. uvicorn itself would wait without limit, and idle connections would shut pages out.
     """
     import h11
     from uvicorn.protocols.http.h11_impl import H11Protocol
@@ -312,7 +350,7 @@ def _http_protocol() -> type[asyncio.Protocol]:
         def _note_idle(self) -> None:
             if self in idle:
                 return
-            if len(idle) >= MOST_IDLE:
+            if len(idle) >= most_idle:
                 next(iter(idle))._drop()
             idle[self] = asyncio.get_running_loop().call_later(WHOLE_REQUEST, self._drop)
 
@@ -328,33 +366,57 @@ def _http_protocol() -> type[asyncio.Protocol]:
     return Protocol
 
 
-def configured(sock: socket.socket, token: str, folder: Path, deck: str | None = None) -> "uvicorn.Config":
-    """How uvicorn serves pages on a listening socket: bounded in all that a stranger could send."""
+@dataclass(frozen=True)
+class Class:
+    """A class at a second door: the socket it listens on, its token, and the most pupils."""
+
+    socket: socket.socket
+    token: str
+    most: int
+
+
+def configured(
+    sock: socket.socket, token: str, folder: Path, deck: str | None = None, pupils: Class | None = None
+) -> "uvicorn.Config":
+    """How uvicorn serves pages on a listening socket, and a class on another: bounded in all that a stranger could send."""
     import uvicorn
 
-    port = sock.getsockname()[1]
+    doors, room = [Door(token, hosts_of(sock))], None
+    if pupils is not None:
+        doors.append(Door(pupils.token, hosts_of(pupils.socket), "pupil", near=False))
+        room = Classroom(pupils.most)
+    browsers = 1 if room is None else 2 + room.most // 4  # each opens up to six connections at once
     return uvicorn.Config(
-        application(token, hosts_of(port), folder, deck), log_level="warning", access_log=False, server_header=False,
+        application(doors, folder, deck, room), log_level="warning", access_log=False, server_header=False,
         ws=_socket_protocol(), ws_max_size=LARGEST_MESSAGE, ws_per_message_deflate=False, ws_ping_interval=20.0,
-        ws_ping_timeout=60.0, limit_concurrency=64, timeout_keep_alive=10, timeout_graceful_shutdown=1,
-        h11_max_incomplete_event_size=16_384, lifespan="off", proxy_headers=False, http=_http_protocol(), loop="asyncio",
+        ws_ping_timeout=60.0, limit_concurrency=64 * browsers, timeout_keep_alive=10, timeout_graceful_shutdown=1,
+        h11_max_incomplete_event_size=16_384, lifespan="off", proxy_headers=False, http=_http_protocol(MOST_IDLE * browsers),
+        loop="asyncio",
     )  # fmt: skip
 
 
-def serve(sock: socket.socket, token: str, folder: Path, deck: str | None = None) -> None:
-    """Serve pages on a listening socket until a signal ends it."""
+def serve(
+    sock: socket.socket, token: str, folder: Path, deck: str | None = None, pupils: Class | None = None
+) -> None:  # fmt: skip
+    """Serve pages on a listening socket, and a class on another, until a signal ends it."""
     import uvicorn
 
     with contextlib.suppress(KeyboardInterrupt):
-        uvicorn.Server(configured(sock, token, folder, deck)).run(sockets=[sock])
+        sockets = [sock] if pupils is None else [sock, pupils.socket]
+        uvicorn.Server(configured(sock, token, folder, deck, pupils)).run(sockets=sockets)
 
 
 def main() -> None:
-    """The process that serves, started by `supervisor` with the socket and what else it needs in its environment."""
+    """The process that serves, started by `supervisor` with the sockets and what else it needs in its environment."""
     given = json.loads(os.environ.pop("EXTRADOS_EXPLORE"))
     interrupts.end_with(os.getppid())
-    with socket.socket(fileno=given["socket"]) as sock:
-        serve(sock, given["token"], Path(given["folder"]), given["deck"])
+    with contextlib.ExitStack() as stack:
+        sock = stack.enter_context(socket.socket(fileno=given["socket"]))
+        pupils = None
+        if given["class"]:
+            number, token, most = given["class"]
+            pupils = Class(stack.enter_context(socket.socket(fileno=number)), token, most)
+        serve(sock, given["token"], Path(given["folder"]), given["deck"], pupils)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,9 @@ The socket and the token belong to this process, which computes nothing and henc
 """
 
 import atexit
+import contextlib
+import io
+import ipaddress
 import json
 import signal
 import subprocess
@@ -11,9 +14,11 @@ import tempfile
 import time
 import webbrowser
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 from extrados.explore import server
+from extrados.explore.classroom import PUPILS
 from extrados.schema.isolated import environment, python_command
 
 #: Where pages are served unless that is taken
@@ -22,28 +27,62 @@ PORT = 8737
 MOST_DEATHS, WITHIN = 5, 60.0
 
 
+class BadAddress(ValueError):
+    """A class cannot be held at an address; the text says why."""
+
+
+@dataclass(frozen=True)
+class ClassOptions:
+    """Where a class is held: an address of this machine on the local network, and the most pupils."""
+
+    address: str = "127.0.0.1"
+    pupils: int = PUPILS
+
+    def __post_init__(self) -> None:
+        try:
+            found = ipaddress.IPv4Address(self.address)
+        except ValueError:
+            raise BadAddress(f"{self.address}: expected an IPv4 address of this machine, such as 192.168.1.5") from None
+        if found.is_unspecified or not (found.is_private or found.is_link_local):
+            raise BadAddress(
+                f"{self.address}: a class is held on one address of a private network, not on all or on the internet"
+            )
+
+
 def explore(
-    folder: Path, deck: str | None, port: int | None, browser: bool, say: Callable[[str], None]
+    folder: Path, deck: str | None, port: int | None, browser: bool, say: Callable[[str], None],
+    pupils: ClassOptions | None = None,
 ) -> int:  # fmt: skip
-    """Serve pages on a working folder until Ctrl-C; the exit code."""
+    """Serve pages on a working folder, and a class if wanted, until Ctrl-C; the exit code."""
     token = server.new_token()
-    try:
-        opened = server.listen(PORT if port is None else port, strict=port is not None)
-    except OSError as error:
-        say(f"port {port} cannot be taken: {error.strerror or error}")
-        return 3
-    with opened as sock:
+    with contextlib.ExitStack() as stack:
+        try:
+            sock = stack.enter_context(server.listen(PORT if port is None else port, strict=port is not None))
+        except OSError as error:
+            say(f"port {port} cannot be taken: {error.strerror or error}")
+            return 3
         address = f"http://127.0.0.1:{sock.getsockname()[1]}/{token}/"
-        say(f"Page:    {address}")
+        sockets, second = [sock], None
+        if pupils is not None:
+            try:
+                sockets.append(stack.enter_context(server.listen(PORT + 1, address=pupils.address)))
+            except OSError as error:
+                say(
+                    f"{pupils.address} is no address of this machine that a class can be held at: {error.strerror or error}"
+                )
+                return 3
+            second = (sockets[1].fileno(), server.new_token(), pupils.pupils)
+            _say_class(f"http://{pupils.address}:{sockets[1].getsockname()[1]}/{second[1]}/", pupils, say)
+        say(f"{'Teacher' if pupils else 'Page'}:    {address}")
         say(f"Folder:  {folder}")
         say("Ctrl-C ends it.")
-        given = {"socket": sock.fileno(), "token": token, "folder": str(folder), "deck": deck}
+        given = {"socket": sock.fileno(), "token": token, "folder": str(folder), "deck": deck, "class": second}
         deaths: list[float] = []
         pointer = write_pointer(address) if browser else None
         while True:
             child = subprocess.Popen(
                 python_command("extrados.explore.server"),
-                pass_fds=[sock.fileno()],
+                pass_fds=[one.fileno() for one in sockets],
                 env=environment(EXTRADOS_EXPLORE=json.dumps(given)),
             )
             if pointer and not deaths:
@@ -62,6 +101,21 @@ def explore(
                 return 3
             say(f"the server died (code {code}): it is begun anew, and open pages come back with their state")
             time.sleep(0.2 * len(deaths))
+
+
+def _say_class(link: str, pupils: ClassOptions, say: Callable[[str], None]) -> None:
+    """Print the link of a class, and its QR code if the package for it is there."""
+    say(f"Class:   {link}   (up to {pupils.pupils} pupils)")
+    if ipaddress.IPv4Address(pupils.address).is_loopback:
+        say("         This machine alone reaches it: --address names one of the local network.")
+    try:
+        import segno
+    except ImportError:
+        say('         A QR code needs the package segno: pip install "extrados[class]".')
+        return
+    drawn = io.StringIO()
+    segno.make(link, error="m").terminal(drawn, compact=True)
+    say(drawn.getvalue())
 
 
 def write_pointer(address: str) -> Path:

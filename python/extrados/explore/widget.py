@@ -43,7 +43,7 @@ export default { render };
 
 def modules() -> list[tuple[str, str]]:
     """Names and sources of the page's modules, each after those that it imports."""
-    sources = {p.name: p.read_text("utf-8") for p in STATIC.glob("*.js") if p.name != "main.js"}
+    sources = {p.name: p.read_text("utf-8") for p in STATIC.glob("*.js") if p.name not in ("main.js", "standalone.js")}
     ordered: dict[str, str] = {}
 
     def put(name: str) -> None:

@@ -25,6 +25,7 @@ _FOLDER = getattr(os, "O_PATH", os.O_RDONLY) | os.O_DIRECTORY | os.O_NOFOLLOW | 
 
 #: Whether absolute paths are refused, as where decks come from a browser; see `confine`
 _confined: contextvars.ContextVar[bool] = contextvars.ContextVar("confined", default=False)
+_shipped_alone: contextvars.ContextVar[bool] = contextvars.ContextVar("shipped_alone", default=False)
 
 
 class BadFile(ValueError):
@@ -55,10 +56,11 @@ class File:
             yield copy
 
 
-def confine() -> None:
+def confine(shipped_alone: bool = False) -> None:
     """From now on, in this context, decks name shipped files and those inside their folder alone: no absolute path is
-    followed."""
+    followed. shipped_alone: not those in the folder either."""
     _confined.set(True)
+    _shipped_alone.set(shipped_alone)
 
 
 def locate(file: str, folder: Path) -> Path:
@@ -68,6 +70,8 @@ def locate(file: str, folder: Path) -> Path:
         if name not in SHIPPED:
             raise BadFile(f"{file}: no such file is shipped; known are {', '.join(sorted(SHIPPED))}")
         return PACKAGE / SHIPPED[name]
+    if _shipped_alone.get():
+        raise BadFile(f"{file}: only shipped files are read here, such as extrados:{min(SHIPPED)}")
     if "\0" in file:
         raise BadFile(f"{file!r}: a file name cannot hold a zero byte")
     path = Path(file)

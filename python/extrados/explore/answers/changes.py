@@ -161,6 +161,7 @@ def _change(desk: Desk, changes: dict[str, Any]) -> Reply:
     live.update(written)
     try:
         moved = all(key.split(".")[0] == "motion" for key in written) and desk.picture is not None
+        desk.check()
         reply = Reply({"deck": desk.words()}) if moved else scene(desk)  # statics know no motion
     except BaseException:
         live.back_to(before)

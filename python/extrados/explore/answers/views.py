@@ -25,6 +25,7 @@ MOST_TILT = 2.5
 
 def scene(desk: Desk) -> Reply:
     """The building as it stands on the desk, with handles; picture and handles of the desk are then these."""
+    desk.check()
     structure = desk.there().deck.structure
     if structure is None:
         why = "The deck has no [structure]: there is nothing to draw."

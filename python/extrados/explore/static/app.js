@@ -6,7 +6,9 @@ import { motionPanel } from "./motion.js";
 import { resultsPanel } from "./results.js";
 import { solidPanel } from "./solid.js";
 import { outMenu } from "./out.js";
+import { classPanel } from "./class.js";
 import { fallPanel } from "./fall.js";
+import { deckOf } from "./share.js";
 import { sidebar } from "./sidebar.js";
 
 const REST = 130; // ms without a change, after which the hand rests
@@ -54,9 +56,9 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   const layersBar = h("div", { class: "layers", role: "group", "aria-label": "What is drawn" });
   const stageFrame = h("section", { class: "stage-frame", "aria-label": "Drawing" }, layersBar, stageBox);
   const lower = h("section", { class: "lower", "aria-label": "Details" });
-  const wide = h("section", { class: "wide", hidden: true });
+  const wide = h("section", { class: "wide", hidden: true }), classBox = h("section", { class: "wide", hidden: true, "aria-label": "Class" });
   const side = h("aside", { class: "side", "aria-label": "Numbers, sizes and deck" });
-  const mainBox = h("main", { class: "main" }, stageFrame, lower, wide);
+  const mainBox = h("main", { class: "main" }, stageFrame, lower, wide, classBox);
   root.replaceChildren(top, banner, h("div", { class: "body" }, mainBox, side), status);
 
   const drawing = stage(stageBox, {
@@ -190,7 +192,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     }
     if (words.detail) { app.detail = words.detail; Object.assign(app.arrays, arrays); drawing.redraw(); tell("detail"); }
     if (words.text !== undefined && words.to === "rest") settled(words);
-    for (const key of ["rocking", "domain", "impulse", "push", "run", "computing", "saved", "fall"]) if (words[key] !== undefined) tell(key, words[key], arrays, words);
+    for (const key of ["rocking", "domain", "impulse", "push", "run", "computing", "saved", "fall", "frozen"]) if (words[key] !== undefined) tell(key, words[key], arrays, words);
     entry?.reply?.(words, arrays);
     if (entry) {
       if (entry.message.do !== "hello" || words.scene) landed(entry);
@@ -313,7 +315,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   function chooser() {
     const w = app.welcome;
     if (!w) return;
-    const field = h("input", { type: "search", placeholder: "Find a deck …", "aria-label": "Find a deck", oninput: list });
+    const field = h("input", { type: "search", placeholder: "Find a deck, or paste a link …", "aria-label": "Find a deck, or paste a link", oninput: async () => { if (await openLink(field.value)) shown.close(); else list(); } });
     const box = h("div", { class: "choices" });
     const file = h("input", { type: "file", accept: ".toml,.dxf,.json,.csv,.txt,.at2", "aria-label": "A file of this machine", onchange: () => { dropped(file.files[0]); shown.close(); } });
     const shown = dialog("Open a deck", h("div", { class: "row" }, field, h("label", { class: "button" }, "From this machine…", file)), box);
@@ -324,8 +326,8 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       const groups = [];
       let kept = null;
       try { kept = JSON.parse(localStorage.getItem(KEPT)); } catch { /* none */ }
-      if (kept?.text && fits("last", kept.name)) groups.push(["Where you left off", [item(kept.name, "the deck of your last page", { text: kept.text, name: kept.name, ...kept.source })]]);
-      groups.push([`Decks in ${w.folder}`, w.decks.filter((d) => fits(d)).map((d) => item(d, "", { path: d }))]);
+      if (kept?.text && app.root.dataset.role !== "pupil" && fits("last", kept.name)) groups.push(["Where you left off", [item(kept.name, "the deck of your last page", { text: kept.text, name: kept.name, ...kept.source })]]);
+      if (w.folder) groups.push([`Decks in ${w.folder}`, w.decks.filter((d) => fits(d)).map((d) => item(d, "", { path: d }))]);
       groups.push(["New", w.kinds.structure.filter((k) => fits("new", k)).map((k) => item(`new ${k}`, "a starter deck", { starter: k }))]);
       groups.push(["Decks with known answers", w.presets.filter((p) => fits(p.name, p.title, p.kind)).map((p) => item(p.title || p.name, `${p.name}${p.kind ? ` · ${p.kind}` : ""}`, { preset: p.name }))]);
       box.replaceChildren(...groups.filter(([, items]) => items.length).flatMap(([name, items]) => [h("h3", {}, name), h("div", { class: "choice-grid" }, items)]));
@@ -334,11 +336,21 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     field.focus();
   }
   app.chooser = chooser;
+  /** Open the deck that a link holds; whether it holds one. */
+  async function openLink(link) {
+    try {
+      const text = await deckOf(link);
+      if (text !== null) open({ text, name: "shared.toml" });
+      return text !== null;
+    } catch (error) { say(`The link holds no deck that can be read: ${error.message}`, true); return false; }
+  }
+  app.openLink = openLink;
 
   // Files dropped on the page
 
   function dropped(fileGiven) {
     if (!fileGiven) return;
+    if (root.dataset.role === "pupil") { say("A class has no files.", true); return; }
     if (fileGiven.size > 8e6) { say(`${fileGiven.name} is larger than 8 MB`, true); return; }
     const reader = new FileReader();
     reader.onload = () => {
@@ -446,9 +458,10 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   fallPanel(app, stageFrame);
   motionPanel(app, lower, stageFrame);
   resultsPanel(app, wide);
+  classPanel(app, tabs, classBox);
   const arranged = () => {
-    const results = app.tab === "results", plain = Boolean(app.scene?.empty);
-    wide.hidden = !results; stageFrame.hidden = results; layersBar.hidden = plain;
+    const results = ["results", "class"].includes(app.tab), plain = Boolean(app.scene?.empty);
+    wide.hidden = app.tab !== "results"; classBox.hidden = app.tab !== "class"; stageFrame.hidden = results; layersBar.hidden = plain;
     lower.hidden = results || (plain && app.tab === "structure");
   };
   on("scene", arranged);

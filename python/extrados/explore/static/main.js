@@ -5,4 +5,11 @@ import { socketTransport } from "./transport.js";
 const address = new URL("live", location.href);
 address.protocol = "ws:";
 const root = document.getElementById("extrados");
-window.extrados = mount(root, socketTransport(address.href), new URL("film", location.href).href);
+address.hash = "";
+const app = mount(root, socketTransport(address.href), new URL("film", location.href).href);
+window.extrados = app;
+/** The deck of the address is opened once, and leaves the address. */
+const shared = () => { const link = location.hash; if (!link) return; history.replaceState(null, "", location.pathname); app.openLink(link); };
+let greeted = false;
+app.on("text", () => { if (!greeted) { greeted = true; shared(); } });
+addEventListener("hashchange", shared);

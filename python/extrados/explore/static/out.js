@@ -1,5 +1,6 @@
 // What is seen, taken out: PNG, SVG, and films of what moves.
 import { download, h, number } from "./dom.js";
+import { fragmentOf } from "./share.js";
 
 const STYLED = ["fill", "stroke", "stroke-width", "stroke-dasharray", "stroke-linejoin", "stroke-linecap", "opacity", "fill-opacity", "stroke-opacity", "font-size", "font-family", "font-weight", "text-anchor", "vector-effect", "visibility", "display"];
 
@@ -93,9 +94,25 @@ export function outMenu(app) {
     if (app.tab === "results" && times?.length > 1) return { start: times[0], end: times[times.length - 1], real: column.words.body.unit === "s", seek: (t) => column.seek(t, false), label: () => `${column.words.body.label} ${column.time.toPrecision(3)} ${column.words.body.unit}` };
     return null;
   }
+  /** A link that holds the deck: of a class its address, else one that any page opens from Open…. */
+  async function link() {
+    const text = (app.root.dataset.role === "pupil" ? location.href.split("#")[0] : "extrados:") + await fragmentOf(app.text);
+    const field = h("textarea", { readonly: true, rows: 5, "aria-label": "Link that holds the deck" });
+    field.value = text;
+    app.dialog("Share the deck", h("p", {}, "The link holds the whole deck. Paste it under Open… of any page of extrados, or append it, from the sign # on, to the address of a page."), field,
+      h("div", { class: "row" }, h("button", { class: "first", onclick: async () => { field.select(); try { await navigator.clipboard.writeText(text); } catch { document.execCommand("copy"); } app.say("The link is copied."); } }, "Copy")));
+    field.select();
+  }
+  /** One file with the structure, computed over a size and the tilt. */
+  function standalone() {
+    app.ask({ do: "standalone" }, { reply: (words) => {
+      if (words.share !== undefined && words.page === undefined) app.say(`computing the page: ${Math.round(100 * words.share)} %`);
+      if (words.page) { download(new Blob([words.page], { type: "text/html" }), `${stem()}.html`); app.say(`The page has ${(words.page.length / 1e6).toFixed(1)} MB.`); }
+    } });
+  }
   const menu = h("div", { class: "menu", hidden: true, role: "menu" });
-  const entry = (label, act) => h("button", { role: "menuitem", onclick: () => { menu.hidden = true; button.setAttribute("aria-expanded", "false"); Promise.resolve(act()).catch((error) => app.say(String(error), true)); } }, label);
-  menu.append(entry("Picture, PNG", png), entry("Drawing, SVG", svg), entry("Charts, SVG", all), ...(app.embedded ? [] : [entry("Film, MP4, real time", () => film("mp4", 1)), entry("Film, MP4, a fifth of the speed", () => film("mp4", 0.2)), entry("Film, GIF, real time", () => film("gif", 1)), entry("Film, GIF, a fifth of the speed", () => film("gif", 0.2))]));
+  const entry = (label, act, keeps = false) => h("button", { role: "menuitem", class: keeps ? "keeps" : null, onclick: () => { menu.hidden = true; button.setAttribute("aria-expanded", "false"); Promise.resolve(act()).catch((error) => app.say(String(error), true)); } }, label);
+  menu.append(entry("Link that holds the deck", link), entry("Page without a server, HTML", standalone, true), entry("Picture, PNG", png), entry("Drawing, SVG", svg), entry("Charts, SVG", all), ...(app.embedded ? [] : [entry("Film, MP4, real time", () => film("mp4", 1), true), entry("Film, MP4, a fifth of the speed", () => film("mp4", 0.2), true), entry("Film, GIF, real time", () => film("gif", 1), true), entry("Film, GIF, a fifth of the speed", () => film("gif", 0.2), true)]));
   const button = h("button", { class: "out", "aria-haspopup": "menu", "aria-expanded": "false", onclick: () => { menu.hidden = !menu.hidden; button.setAttribute("aria-expanded", String(!menu.hidden)); if (!menu.hidden) menu.querySelector("button").focus(); } }, "Export");
   const box = h("div", { class: "menu-box", onkeydown: (e) => { if (e.key === "Escape") { menu.hidden = true; button.focus(); } } }, button, menu);
   app.root.addEventListener("pointerdown", (e) => { if (!e.composedPath().includes(box)) menu.hidden = true; });

@@ -6,7 +6,7 @@ const NAMES = { structure: "Structure", motion: "Motion", joints: "Joints", mate
 
 export function sidebar(app, box) {
   const pages = { answer: h("div", { class: "page answer" }), sizes: h("div", { class: "page sizes" }), deck: h("div", { class: "page deck" }), teach: h("div", { class: "page teach" }) };
-  const labels = { answer: "Answer", sizes: "Sizes", deck: "Deck", teach: "Exercises" };
+  const labels = { answer: "Answer", sizes: "Sizes", deck: "Deck", teach: "Lessons" };
   const tabs = h("div", { class: "tabs small", role: "tablist", "aria-label": "Beside the drawing" }, Object.keys(pages).map((name) => h("button", { role: "tab", "data-side": name, onclick: () => { app.root.dataset.sheet = chosen === name && app.root.dataset.sheet === "open" ? "" : "open"; choose(name); } }, labels[name])));
   box.append(tabs, ...Object.values(pages));
   let chosen = "answer";
@@ -138,7 +138,7 @@ export function sidebar(app, box) {
     } }, h("p", {}, `In ${app.welcome.folder}, as`), field, h("label", {}, replace, " replace what is there"), h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, "Save"))));
   };
   const adder = h("select", { "aria-label": "Add an analysis", onchange: (e) => { if (e.target.value) app.ask({ do: "analysis", add: e.target.value }); e.target.value = ""; } });
-  pages.deck.append(h("div", { class: "row wrap" }, h("button", { onclick: copy }, "Copy"), h("button", { onclick: () => app.save() }, "Save…"), h("button", { onclick: () => download(new Blob([app.text], { type: "application/toml" }), app.name) }, "Download"), h("button", { onclick: () => app.chooser() }, "Open…"), adder), complaints, h("div", { class: "editor" }, numbersBox, text));
+  pages.deck.append(h("div", { class: "row wrap" }, h("button", { onclick: copy }, "Copy"), h("button", { class: "keeps", onclick: () => app.save() }, "Save…"), h("button", { onclick: () => download(new Blob([app.text], { type: "application/toml" }), app.name) }, "Download"), h("button", { onclick: () => app.chooser() }, "Open…"), adder), complaints, h("div", { class: "editor" }, numbersBox, text));
   function deck() {
     const editing = box.getRootNode().activeElement === text;
     if (!editing && text.value !== app.text) text.value = app.text;
