@@ -263,6 +263,9 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 linewidth=0.9,
                 label=f"{label}, counted",
             )
+        if "stripe_rule_least" in arrays:
+            ax.fill_between(level, run.array(name, "stripe_rule_least"), run.array(name, "stripe_rule_most"), color=style.STONE, linewidth=0,
+                            label="collapse, between the impact rules")  # fmt: skip
         for curve, band, color, style_, text, median, dispersion in (
             ("curve", "curve", style.THRUST, "-", "collapse at the level", r.median, r.dispersion),
             ("first_collapse_curve", "first_collapse", style.HINGE, "-.", "collapse by the level", r.first_collapse_median,
@@ -419,6 +422,9 @@ def draw_rocking_spectrum(run: Stored, name: str, folder: Path) -> list[tuple[st
     period, ratio, over = (run.array(name, k) for k in ("period", "peak_ratio", "overturned"))
     place = place_of_collapse(np.nan_to_num(ratio[over == 0]))
     with style.figure(7.0, 4.0) as (fig, (ax,)):
+        if "rule_least" in run.arrays[name]:
+            least, most = (np.minimum(run.array(name, key), place) for key in ("rule_least", "rule_most"))
+            ax.fill_between(period, least, most, color=style.STONE, linewidth=0, label="between the impact rules")
         for member, row, fell in zip(run[name].family, ratio, over, strict=True):
             line = ax.plot(period, np.where(fell == 1, np.nan, row), ".-", markersize=3, label=member)[0]
             ax.plot(period[fell == 1], np.full(int(fell.sum()), place), "x", color=line.get_color(), markersize=5)
