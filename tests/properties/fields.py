@@ -168,7 +168,8 @@ QUESTIONS: dict[str, tuple[tuple[str, ...], Any]] = {
         "contact_length": st.just(0.2), "factors": st.just({"masonry": 1.1, "live": 1.3, "dynamic": 1.2}),
     }),
     "supports": (("arch", "pointed-arch", "elliptical-arch"), {"spread": st.sampled_from([1.0, 0.5]), "settle": st.sampled_from([0.0, 0.3]), "steps": st.just(20)}),
-    "rocking": (("arch", "block", "column", "brickwork", "frame", "stack"), {"end_time": st.just(1.0), "thrust_line_times": st.just([0.2]), "hand_over": st.just(False)}),
+    "rocking": (("arch", "block", "column", "brickwork", "frame", "stack"), st.fixed_dictionaries(
+        {"hand_over": st.just(False)}, optional={"end_time": st.just(1.0), "thrust_line_times": st.just([0.2])})),
     "failure-domain": (("arch", "block", "column"), st.fixed_dictionaries({
         "durations": st.just([0.5]), "amplitudes": st.just(3), "accuracy": st.just(1e-3), "pulse": st.sampled_from(["step", "sine"])})),
     "fragility": (("block", "arch", "column"), st.fixed_dictionaries({"count": st.just(4), "bootstrap": st.just(0)})),

@@ -46,11 +46,11 @@ def winding(outline: np.ndarray, place: np.ndarray) -> float:
 
 
 def beside(outline: np.ndarray, place: np.ndarray) -> float:
-    """Distance of a place from an outline, by 2,000 places on each edge."""
-    share = np.linspace(0.0, 1.0, 2001)[:, None, None]
-    return float(
-        np.hypot(*np.moveaxis(outline + share * (np.roll(outline, -1, axis=0) - outline) - place, -1, 0)).min()
-    )
+    """Distance of a place from an outline."""
+    edge = np.roll(outline, -1, axis=0) - outline
+    share = ((place - outline) * edge).sum(axis=1) / (edge**2).sum(axis=1)
+    nearest = outline + np.clip(share, 0.0, 1.0)[:, None] * edge
+    return float(np.hypot(*(nearest - place).T).min())
 
 
 @relation(
@@ -339,7 +339,8 @@ def bodies_hold_what_their_blocks_do(
                 (foot,) = (p for p, o in zip(bodies.parts, bodies.owner, strict=True) if o == got)
                 must(all(beside(foot, end) < 2e-3 * a.size for end in (a.p[j], a.q[j])), f"joint {j} off its footing")
                 inner = a.centroid[a.a[j] if a.a[j] >= 0 else a.b[j]]
-                must(((foot.mean(axis=0) - a.middle[j]) @ (inner - a.middle[j])) < 0.0, "a footing above its joint")
+                below, above = ((one - a.middle[j]) @ a.normal[j] for one in (foot.mean(axis=0), inner))
+                must(below * above < 0.0, "a footing above its joint")
                 low, high = np.sort(foot @ a.tangent[j])[[0, -1]]
                 ends = np.sort([a.p[j] @ a.tangent[j], a.q[j] @ a.tangent[j]])
                 must(
@@ -348,13 +349,22 @@ def bodies_hold_what_their_blocks_do(
                 )
                 near("masses of supports", bodies.mass[got], 0.0, 0.0)
     if floor is not None:
-        pieces = [p for p, o in zip(bodies.parts, bodies.owner, strict=True) if bodies.names[o] == "floor"]
-        must(bool(pieces) and all(abs(p[:, 1].max() - floor) < 1e-9 for p in pieces), f"a floor at {floor}: {pieces}")
+        supports = [p for p, o in zip(bodies.parts, bodies.owner, strict=True) if o >= bodies.count]
+        pieces = sorted((p for p in supports if abs(p[:, 1].max() - floor) < 1e-9), key=lambda p: p[:, 0].min())
+        must(bool(pieces), f"no floor at {floor}")
+        gaps = [q[:, 0].min() - p[:, 0].max() for p, q in itertools.pairwise(pieces)]
+        must(all(abs(gap) < 1e-9 for gap in gaps), f"gaps of the floor {gaps}")
         must(
-            min(p[:, 0].min() for p in pieces) < a.p[:, 0].min() - a.size
-            and max(p[:, 0].max() for p in pieces) > a.p[:, 0].max() + a.size,
+            pieces[0][:, 0].min() < a.p[:, 0].min() - a.size and pieces[-1][:, 0].max() > a.p[:, 0].max() + a.size,
             "a narrow floor",
         )
+        for k in range(len(a.a)):  # no seam under a block that stands on it
+            if min(a.a[k], a.b[k]) < 0 and abs(a.p[k, 1] - floor) + abs(a.q[k, 1] - floor) < 1e-9:
+                low, high = sorted((a.p[k, 0], a.q[k, 0]))
+                must(
+                    any(p[:, 0].min() <= low + 1e-9 and p[:, 0].max() >= high - 1e-9 for p in pieces),
+                    f"a seam under joint {k}",
+                )
     glued = [(p, m) for p, m, o in zip(bodies.parts, bodies.outer, bodies.owner, strict=True) if o < bodies.count]
     if groups and not worn:
         j = next(j for j, pair in enumerate(zip(a.a, a.b, strict=True)) if set(map(int, pair)) == set(groups[0]))

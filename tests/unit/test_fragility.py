@@ -300,7 +300,9 @@ def test_rocking_spectrum_of_arches() -> None:
     joints = {"restitution": "energy-safe"}
     motion = {"kind": "step-pulse", "amplitude": "0.6 g", "duration": 0.1}
     context = Context(
-        make_deck({"structure": arch, "motion": motion, "analysis": {"kind": "rocking", "joints": joints}})
+        make_deck(
+            {"structure": arch, "motion": motion, "analysis": {"kind": "rocking", "hand_over": False, "joints": joints}}
+        )
     )
     context.building = context.deck.buildings[0]
     period = 2.0 * np.pi * context.building.rocker().time_unit

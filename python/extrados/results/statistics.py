@@ -131,6 +131,14 @@ class Ensemble(Annual):
         return judge(text, self.collapse_probability, None, "probability", outcome, violated=violated)
 
 
+class RuleShares(ResultModel):
+    """Probabilities of collapse by an impact rule."""
+
+    rule: str = fact("word of [joints] restitution")
+    restitution: float = fact("rate after over before an impact, held between 0 and 1; of a mechanism to +x")
+    collapse_probability: list[float] = fact("share of the motions that cause collapse, at each level")
+
+
 class OverLevels(Annual):
     """fragility: one structure under the same motions scaled to levels of an intensity; lists hold one value a level."""
 
@@ -207,6 +215,10 @@ class OverLevels(Annual):
     overturning_given_uplift_goodness_p_value: float | None = maybe(
         "probability of a worse deviance were that curve true"
     )
+    collapse_by_rule: list[RuleShares] = maybe(
+        "probabilities of collapse by each impact rule, where their c_v differ by more than 1.3"
+    )
+    rule_band: float = maybe("greatest difference of these probabilities at one level")
     motions_that_collapse: int = fact("motions that cause collapse at some level")
     resurrections: int = fact("motions without collapse at a level above one with collapse")
 
@@ -214,18 +226,23 @@ class OverLevels(Annual):
         """The fitted median is the capacity; levels are questions, not a demand."""
         if not any(self.count):
             return judge("No motion could be run.", outcome="open")
-        if (by_rate := self.judged_by_rate(self.conditions.violated)) is not None:
+        violated = list(self.conditions.violated)
+        if self.rule_band:
+            violated.append(
+                f"The impact rule decides: at one level the probabilities of collapse differ by up to {100.0 * self.rule_band:.3g} %."
+            )
+        if (by_rate := self.judged_by_rate(violated)) is not None:
             return by_rate
         unit = f" {self.intensity_unit}" if self.intensity_unit else ""
         if self.median is None:
             share = [p for p in self.collapse_probability if p is not None]
             return judge(
                 f"{100.0 * share[-1]:.3g} % of the motions cause collapse at the highest level of {self.intensity}; no curve "
-                "could be fitted.", None, None, self.intensity_unit, "not-applicable", violated=self.conditions.violated,
+                "could be fitted.", None, None, self.intensity_unit, "not-applicable", violated=violated,
             )  # fmt: skip
         return judge(
             f"Half of the motions cause collapse at {self.intensity} {self.median:.3g}{unit}.",
-            None, self.median, self.intensity_unit, "not-applicable", violated=self.conditions.violated,
+            None, self.median, self.intensity_unit, "not-applicable", violated=violated,
         )  # fmt: skip
 
 
@@ -319,6 +336,14 @@ class Resonance(KindResults):
         )  # fmt: skip
 
 
+class RuleSpectrum(ResultModel):
+    """Sizes that overturn by an impact rule."""
+
+    rule: str = fact("word of [joints] restitution")
+    restitution: float = fact("rate after over before an impact, held between 0 and 1")
+    overturned: int = fact("sizes that collapse")
+
+
 class RockingSpectrum(KindResults):
     """rocking-spectrum: greatest rotation of blocks or arches of many sizes under a motion."""
 
@@ -328,6 +353,8 @@ class RockingSpectrum(KindResults):
     size_m: list[float] = fact("sizes: half-diagonal of the blocks, radius of the arches", "m")
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
     conditions: list[Conditions] = fact("of each family: in how many sizes blocks slide or hinges form elsewhere")
+    by_rule: list[RuleSpectrum] = maybe("by each impact rule, where their c_v differ by more than 1.3")
+    decided_by_rule: int = maybe("sizes whose outcome the impact rule decides")
 
     def judged(self, demand: Demand) -> Verdict:
         """How many collapse; a spectrum is about no one building."""
@@ -335,6 +362,8 @@ class RockingSpectrum(KindResults):
         violated = [
             f"{name}: {text}" for name, one in zip(self.family, self.conditions, strict=True) for text in one.violated
         ]
+        if self.decided_by_rule:
+            violated.append(f"The impact rule decides the outcome of {self.decided_by_rule} sizes.")
         return judge(
             f"The motion overturns {sum(self.overturned)} of the {total} sizes and shapes tried.", violated=violated
         )  # fmt: skip

@@ -57,7 +57,8 @@ MovingLoad = Validity(
 Rocking = Validity(
     "The structure moves as one rigid-body mechanism, that of limit analysis, without sliding. Impacts lose energy by the rule of "
     "[joints] restitution.",
-    "Hinges stay at their joints; blocks do not slide, bounce or crush. Sliding and hinges elsewhere are checked along the motion. "
+    "Hinges stay at their joints; blocks do not slide, bounce or crush. Sliding and hinges elsewhere are checked along the motion, and "
+    "rigid contacts follow the blocks from the state in which a check fails (hand_over). "
     "Where the rules of impact differ, or the response is chaotic, one run is one sample: use fragility.",
 )
 FailureDomain = Validity(

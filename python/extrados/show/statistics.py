@@ -11,11 +11,16 @@ from extrados.schema.constants import GRAVITY
 from extrados.show import style
 
 PERCENTILES = (16, 50, 84)
-FALLEN = 1.12  # where a figure draws the rotation ratio of what has come down
+FALLEN = 1.12  # where a figure draws the rotation ratio of what has come down, see `place_of_collapse`
 
 
 #: Incremental curves that are drawn one by one: more are a cloud
 HAIRS = 40
+
+
+def place_of_collapse(recovered: np.ndarray) -> float:
+    """Where an axis of rotation ratios draws collapse: beyond all that recovered, some from past the critical rotation."""
+    return max(FALLEN, 1.08 * float(recovered.max(initial=0.0)))
 
 
 def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -82,7 +87,7 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.legend()
         return style.save(
             fig, folder, f"{name}-histogram"
-        ), "Greatest rotation of all runs; the red bar holds those that collapse."
+        ), "Greatest rotation of all runs, beyond 1 in the last bin; the red bar holds those that collapse."
 
 
 def _axis(r: Ensemble | OverLevels) -> str:
@@ -97,12 +102,13 @@ def _cloud(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     grid = run.array(name, "grid")
     with style.figure(9.0, 4.2, columns=2, sharex=True) as (fig, (left, right)):
         up, fell = outcome == RECOVERY, outcome == COLLAPSE
+        place = place_of_collapse(ratio[up])
         left.plot(
             x[up], ratio[up], "o", color=style.HINGE, markersize=3, alpha=0.6, label=f"{int(up.sum())} rock and stay up"
         )
         left.plot(
             x[fell],
-            np.full(int(fell.sum()), FALLEN),
+            np.full(int(fell.sum()), place),
             "x",
             color=style.THRUST,
             markersize=4,
@@ -111,7 +117,7 @@ def _cloud(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         rest = int((outcome == 0).sum())
         left.set_xscale("log")
         left.set_yscale("log")
-        left.set_ylim(max(1e-4, 0.5 * ratio[up].min()) if up.any() else 1e-3, 1.5)
+        left.set_ylim(max(1e-4, 0.5 * ratio[up].min()) if up.any() else 1e-3, 1.35 * place)
         left.axhline(1.0, color=style.THRUST, linewidth=0.8, linestyle=":")
         left.set_ylabel("greatest rotation over the critical one")
         left.set_title(f"{r.count} motions, {rest} leave it at rest" if rest else f"{r.count} motions")
@@ -185,16 +191,20 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     """Ground motions and the responses to them, side by side (Fig. 6-6)."""
     series = [run.series(name, f"history_{what}") for what in ("motion_time", "motion", "time", "rotation")]
     n = len(series[0])
+    stands = [np.abs(one.data).max(initial=0.0) for one in series[3] if not one.about.endswith("collapse")]
+    place = place_of_collapse(np.array(stands))
     with style.figure(9.0, 1.0 + 1.35 * n, rows=n, columns=2, sharex=True, sharey="col") as (fig, axes):
         for (left, right), at, ground, time, rotation in zip(axes.reshape(n, 2), *series, strict=True):
             left.plot(at.data, ground.data, color=style.GROUND, linewidth=0.8)
             fell = rotation.about.endswith("collapse")
-            right.plot(time.data, np.clip(rotation.data, -FALLEN, FALLEN), color=style.THRUST if fell else style.HINGE)
+            right.plot(time.data, np.clip(rotation.data, -place, place), color=style.THRUST if fell else style.HINGE)
             left.set_title(f"{at.about}: ground [g]", fontsize=8, loc="left")
             right.set_title(
                 f"rotation over the critical one: {'overturns' if fell else 'stays up'}", fontsize=8, loc="left"
             )
-            right.set_ylim(-FALLEN, FALLEN)
+            right.axhline(1.0, color=style.EDGE, linewidth=0.6, linestyle=":")
+            right.axhline(-1.0, color=style.EDGE, linewidth=0.6, linestyle=":")
+            right.set_ylim(-place, place)
         for ax in axes[-2:]:
             ax.set_xlabel("time [s]")
         return style.save(fig, folder, f"{name}-histories"), (
@@ -253,6 +263,9 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 linewidth=0.9,
                 label=f"{label}, counted",
             )
+        if "stripe_rule_least" in arrays:
+            ax.fill_between(level, run.array(name, "stripe_rule_least"), run.array(name, "stripe_rule_most"), color=style.STONE, linewidth=0,
+                            label="collapse, between the impact rules")  # fmt: skip
         for curve, band, color, style_, text, median, dispersion in (
             ("curve", "curve", style.THRUST, "-", "collapse at the level", r.median, r.dispersion),
             ("first_collapse_curve", "first_collapse", style.HINGE, "-.", "collapse by the level", r.first_collapse_median,
@@ -285,15 +298,16 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     r = run[name]
-    level, ratio, risen = (
-        run.array(name, "stripe_level"),
-        run.array(name, "incremental_ratio"),
-        run.array(name, "incremental_risen"),
+    level, ratio, over, risen = (
+        run.array(name, key) for key in ("stripe_level", "incremental_ratio", "incremental_over", "incremental_risen")
     )
     unit = run.arrays[name]["stripe_level"].unit
-    quantile = [np.minimum(run.array(name, f"stripe_peak_ratio_{p}"), FALLEN) for p in PERCENTILES]
+    percentiles = [run.array(name, f"stripe_peak_ratio_{p}") for p in PERCENTILES]  # infinite for collapse
+    stands = np.concatenate([ratio[over == 0], *(x[np.isfinite(x)] for x in percentiles)])
+    place = place_of_collapse(stands[np.isfinite(stands)])
+    quantile = [np.minimum(x, place) for x in percentiles]
     with style.figure(6.5, 4.2) as (fig, (ax,)):
-        for row in np.minimum(ratio[:HAIRS], FALLEN):
+        for row in np.where(over == 1, place, ratio)[:HAIRS]:
             ax.plot(row, level, color=style.EDGE, alpha=0.15, linewidth=0.5)
         low, middle, high = quantile
         ax.fill_betweenx(level, low, high, color=style.HINGE, alpha=0.2, linewidth=0, label="16 to 84 % of the motions")
@@ -303,8 +317,9 @@ def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.plot(ratio[i, j], level[j], "o", color=style.GROUND, markersize=3,
                     label="stands again above a level that overturned it")  # fmt: skip
         ax.axvline(1.0, color=style.THRUST, linewidth=0.9)
-        ax.set_xlim(-0.02, FALLEN + 0.03)
-        ticks = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0, FALLEN]
+        ax.axvline(place, color=style.EDGE, linewidth=0.6, linestyle=":")
+        ax.set_xlim(-0.02, place + 0.03)
+        ticks = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0, place]
         ax.set_xticks(ticks, [*(f"{x:g}" for x in ticks[:-1]), "collapse"])
         ax.set_xlabel("greatest rotation over the critical rotation")
         ax.set_ylabel(f"{r.intensity}{f' [{unit}]' if unit else ''}")
@@ -405,12 +420,16 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
 def draw_rocking_spectrum(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Peak rotation over 2 pi/p for each slenderness."""
     period, ratio, over = (run.array(name, k) for k in ("period", "peak_ratio", "overturned"))
+    place = place_of_collapse(np.nan_to_num(ratio[over == 0]))
     with style.figure(7.0, 4.0) as (fig, (ax,)):
+        if "rule_least" in run.arrays[name]:
+            least, most = (np.minimum(run.array(name, key), place) for key in ("rule_least", "rule_most"))
+            ax.fill_between(period, least, most, color=style.STONE, linewidth=0, label="between the impact rules")
         for member, row, fell in zip(run[name].family, ratio, over, strict=True):
-            line = ax.plot(period, row, ".-", markersize=3, label=member)[0]
-            ax.plot(period[fell == 1], np.full(int(fell.sum()), 1.03), "x", color=line.get_color(), markersize=5)
+            line = ax.plot(period, np.where(fell == 1, np.nan, row), ".-", markersize=3, label=member)[0]
+            ax.plot(period[fell == 1], np.full(int(fell.sum()), place), "x", color=line.get_color(), markersize=5)
         ax.axhline(1.0, color=style.EDGE, linewidth=0.8, linestyle=":")
-        ax.set_ylim(0.0, 1.1)
+        ax.set_ylim(0.0, place + 0.05)
         ax.set_xlabel("2 pi/p [s] (grows with the root of the size)")
         ax.set_ylabel("greatest rotation over alpha")
         ax.legend()

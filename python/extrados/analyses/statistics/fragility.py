@@ -236,6 +236,8 @@ def _describe(
             options.seed or 0,
             result,
         )
+        if swept.complete:
+            r |= _by_rule(context, options, base, job, motions * per_motion, result)
         result.results = out.OverLevels(**r)
         return
     r |= shares_of(
@@ -314,7 +316,8 @@ def _conditions(options: Fragility, base: Rocker, rows: list[dict[str, np.ndarra
 def _by_rule(
     context: Context, options: Fragility, base: Rocker, job: EnsembleJob, count: int, result: Result
 ) -> dict[str, Any]:  # fmt: skip
-    """Share of the runs that collapse by each impact rule, where their c_v differ by more than DIFFER and the runs are few enough."""
+    """Share of the runs that collapse by each impact rule, at each level where there are any, where their c_v differ by more than
+    DIFFER and the runs are few enough."""
     rivals = base.rivals(DIFFER)
     if not rivals or options.uncertain:
         return {}
@@ -326,17 +329,41 @@ def _by_rule(
         )
         return {}
     found = {}
+    levels = 1 if job.levels is None else len(job.levels)
     for rule, (_, body) in rivals.items():
         swept = sweep(
             context, "fragility", replace(job, bodies=[base.held(body)]), count, f"fragility by the rule {rule}"
         ).whole()
         good = swept["outcome"] != FAILED
-        found[rule] = float((swept["outcome"] == COLLAPSE).sum() / max(int(good.sum()), 1))
-    shares = ", ".join(f'"{rule}" {100.0 * share:.3g} %' for rule, share in found.items())
+        at = swept.members % levels
+        hits, runs = (np.bincount(at, weight, levels) for weight in (swept["outcome"] == COLLAPSE, good))
+        found[rule] = hits / np.maximum(runs, 1)
+    if job.levels is None:
+        shares = ", ".join(f'"{rule}" {100.0 * share[0]:.3g} %' for rule, share in found.items())
+        result.warnings.append(
+            f"The impact rules differ by more than {DIFFER:g} for this structure ({each}). Probability of collapse by rule: {shares}."
+        )
+        return {"collapse_probability_by_rule": {rule: float(share[0]) for rule, share in found.items()}}
+    order = np.argsort(job.levels, kind="stable")
+    rows = [
+        out.RuleShares(rule=rule, restitution=rivals[rule][0], collapse_probability=share[order])
+        for rule, share in found.items()
+    ]
+    every = np.array(list(found.values()))[:, order]
+    apart = float(np.ptp(every, axis=0).max())
     result.warnings.append(
-        f"The impact rules differ by more than {DIFFER:g} for this structure ({each}). Probability of collapse by rule: {shares}."
+        f"The impact rules differ by more than {DIFFER:g} for this structure ({each}). At one level their probabilities of collapse differ "
+        f"by up to {100.0 * apart:.3g} %."
     )
-    return {"collapse_probability_by_rule": found}
+    result.arrays |= {
+        "stripe_rule_least": Array(
+            every.min(axis=0), ("stripe",), "", "least probability of collapse of the impact rules"
+        ),
+        "stripe_rule_most": Array(
+            every.max(axis=0), ("stripe",), "", "greatest probability of collapse of the impact rules"
+        ),
+    }
+    return {"collapse_by_rule": rows, "rule_band": apart}
 
 
 def _histories(job: EnsembleJob, base: Rocker, count: int, result: Result) -> None:

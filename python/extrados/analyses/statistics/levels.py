@@ -195,6 +195,7 @@ def _incremental(seen: Stripes, unit: str, r: dict[str, Any], result: Result) ->
         "incremental_ratio": Array(
             seen.ratio[:SHOWN], ("shown", "stripe"), "", "peak rotation ratio of the first motions"
         ),
+        "incremental_over": Array(over[:SHOWN].astype(np.int8), ("shown", "stripe"), "", "1: collapse"),
         "incremental_risen": Array(
             risen[:SHOWN].astype(np.int8), ("shown", "stripe"), "", "1: up again above a level that overturned it"
         ),

@@ -3,14 +3,19 @@
 Of rectangles, or, where the deck has an arch, of arches of its shape in other sizes.
 """
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 
 from extrados.analyses.batches import sweep
 from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.rocking.conditions import ROWS, Counted, astray_of, of_many, told
-from extrados.analyses.rocking.job import runs_job
+from extrados.analyses.rocking.doubts import DIFFER
+from extrados.analyses.rocking.job import RunsJob, runs_job
 from extrados.analyses.statistics.tables import RockingSpectrum
+from extrados.core.rocking import Body
 from extrados.model.properties import Initial
 from extrados.model.structures.block import Block
 from extrados.results import statistics as out
@@ -46,15 +51,13 @@ def run(context: Context, options: RockingSpectrum) -> Result:
         sizes = 0.75 * GRAVITY * (periods / (2.0 * np.pi)) ** 2
     n = len(rockers)
     settle = np.tile(periods, len(family)) * 6.0
-    job = runs_job(
-        [one.body for one in rockers],
-        [motion.ground],
-        np.arange(n),
-        0,
-        1.0,
-        motion.end + settle,
-        astray=astray_of(rockers[0]),
-    )
+
+    def job_of(bodies: list[Body]) -> RunsJob:
+        return runs_job(
+            bodies, [motion.ground], np.arange(n), 0, 1.0, motion.end + settle, astray=astray_of(rockers[0])
+        )
+
+    job = job_of([one.body for one in rockers])
     swept = sweep(context, "rocking-spectrum", job, n, "rocking spectrum")
     result = Result("rocking-spectrum")
     if not swept.complete:
@@ -72,6 +75,7 @@ def run(context: Context, options: RockingSpectrum) -> Result:
         size_m=sizes,
         peak_ground_acceleration_g=motion.peak / GRAVITY,
         conditions=_conditions(rockers, swept.arrays, len(periods)),
+        **_by_rule(context, rockers, job_of, result),
     )
     for name, one in zip(family, result.results.conditions, strict=True):
         result.warnings += [f"{name}: {text}" for text in told(one)]
@@ -82,7 +86,7 @@ def run(context: Context, options: RockingSpectrum) -> Result:
         },
         {"period": "s", "size": "m", "peak_rotation": "rad"},
     )  # fmt: skip
-    result.arrays = {
+    result.arrays |= {
         "period": Array(periods, ("period",), "s", "2 pi/p, or 2 pi times the natural time of an arch"),
         "size": Array(sizes, ("period",), "m", "half-diagonal of the block, radius of the arch"),
         "peak_ratio": Array(
@@ -96,6 +100,42 @@ def run(context: Context, options: RockingSpectrum) -> Result:
         words.append(f"{name}: {int(row.sum())} of {len(periods)} overturn{size}")
     result.answer = f"Peak ground acceleration {motion.peak / GRAVITY:.3f} g. " + "; ".join(words) + "."
     return result
+
+
+def _by_rule(
+    context: Context, rockers: list[Rocker], job_of: Callable[[list[Body]], RunsJob], result: Result
+) -> dict[str, Any]:  # fmt: skip
+    """Spectra by each impact rule, where their c_v differ by more than DIFFER; nothing where they agree. All sizes of one shape have the
+    same c_v."""
+    each = [one.rivals(DIFFER) for one in rockers]
+    rules = [rule for rule in each[0] if all(rule in one for one in each)]
+    if not rules:
+        return {}
+    rows, ratios = [], []
+    for rule in rules:
+        bodies = [one.held(rivals[rule][1]) for one, rivals in zip(rockers, each, strict=True)]
+        found = sweep(
+            context, f"rocking-spectrum-{rule}", job_of(bodies), len(rockers), f"spectrum by the rule {rule}"
+        ).whole()
+        fell = found["outcome"] == COLLAPSE
+        ratios.append(np.where(fell, np.inf, found["peak_ratio"]))
+        rows.append(out.RuleSpectrum(rule=rule, restitution=each[0][rule][0], overturned=int(fell.sum())))
+    least, most = np.min(ratios, axis=0), np.max(ratios, axis=0)
+    decided = int((np.isinf(least) != np.isinf(most)).sum())
+    result.arrays |= {
+        "rule_least": Array(
+            least, ("period",), "", "least peak rotation ratio of the impact rules; infinite: collapse"
+        ),
+        "rule_most": Array(
+            most, ("period",), "", "greatest peak rotation ratio of the impact rules; infinite: collapse"
+        ),
+    }
+    told_rules = ", ".join(f'"{one.rule}" {one.restitution:.3f}: {one.overturned}' for one in rows)
+    result.warnings.append(
+        f"The impact rules differ by more than {DIFFER:g} for this shape. Sizes that overturn, of {len(rockers)}: {told_rules}. The rule "
+        f"decides the outcome of {decided}."
+    )
+    return {"by_rule": rows, "decided_by_rule": decided}
 
 
 def _conditions(rockers: list[Rocker], rows: dict[str, np.ndarray], sizes: int) -> list[Conditions]:
