@@ -25,7 +25,7 @@ def deck(thickness: float, embrace: float, duration: float, rule: str | float = 
         "structure": {"kind": "arch", "radius": 1.0, "thickness": thickness, "embrace": embrace, "voussoirs": 36},
         "joints": {"restitution": rule},
         "motion": {"kind": "step-pulse", "amplitude": "-0.8 g", "duration": duration},
-        "analysis": [{"kind": "rocking"}],
+        "analysis": [{"kind": "rocking", "hand_over": False}],
     }
 
 
@@ -183,7 +183,9 @@ def test_where_the_blow_loses_too_much_the_answer_says_so() -> None:
     with what the run does where it keeps more; a motion that is slow, or has no beat, is not warned of."""
 
     def told(structure: dict, motion: dict, **keys) -> tuple[list[str], dict[str, str]]:
-        run = extrados.run({"structure": structure, "motion": motion, "analysis": [{"kind": "rocking", **keys}]})
+        run = extrados.run(
+            {"structure": structure, "motion": motion, "analysis": [{"kind": "rocking", "hand_over": False, **keys}]}
+        )
         outcomes = {one.rule: one.outcome for one in getattr(run["rocking"], "outcomes_by_rule", None) or ()}
         return [w for w in run.results[0].warnings if "discrete elements" in w], outcomes
 

@@ -135,7 +135,11 @@ def test_verdict_by_comparison() -> None:
 
 def test_verdicts_of_one_deck() -> None:
     run = extrados.run(
-        {"structure": ARCH, "motion": PULSE, "analysis": [{"kind": "tilt"}, {"kind": "rocking"}, {"kind": "thrust"}]}
+        {
+            "structure": ARCH,
+            "motion": PULSE,
+            "analysis": [{"kind": "tilt"}, {"kind": "rocking", "hand_over": False}, {"kind": "thrust"}],
+        }
     )
     tilt, rocking, thrust = (run.analysis(name)["verdict"] for name in ("tilt", "rocking", "thrust"))
     assert tilt["outcome"] == "collapses" and tilt["demand"] == pytest.approx(0.5) and tilt["unit"] == "g"

@@ -285,7 +285,7 @@ class FailureDomain(KindResults):
         places: list[float] = self.mode_I.durations_s
         found: list[str] = []
         slides = least_beside(places, self.sliding_from_g, duration)
-        decided = not self.conditions.violated  # rigid contacts decided where a condition fails
+        decided = self.handed_over is not None and not self.conditions.violated  # rigid contacts decided all of these
         if slides is not None and amplitude >= slides and not decided:
             found.append(f"Blocks slide from {slides:.3g} g on at this duration. Use dem, or check the friction.")
         elsewhere = least_beside(places, self.hinges_elsewhere_from_g, duration)
