@@ -1,8 +1,9 @@
 """Limit analysis of solid blocks: the push at which they become a mechanism, by second-order cones, with both bounds.
 
-Unknown are the forces at the corners of the contact polygons, each within Coulomb's cone. Nothing is lost by that: a force
+Unknown are the forces at the corners of the contact polygons, each within Coulomb's cone. Nothing is lost by that if the pressure may concentrate: a force
 (n, t) of a pressure at any place within a polygon, shared to its corners in the proportion that makes their centre that
-place, keeps force, moment and cone. The dual of the programme is a motion of rigid blocks whose contacts open at least mu
+place, keeps force, moment and cone. Where the pressure of a face spreads, its torsion is
+less: limit.face_law. The dual of the programme is a motion of rigid blocks whose contacts open at least mu
 times as fast as they slide (associated friction); its virtual work is the bound from above.
 """
 
@@ -129,7 +130,7 @@ class SolidLimit:
     def push(self, direction: float) -> Programme | Falls:
         """The greatest multiplier gamma of all weights, pushed along a direction [deg from +x to +y], or the proof that none is
         borne. Immovable where no push brings it down, NoAnswer where the solver gives up."""
-        dead, live = self._ways(direction)
+        dead, live = self.ways(direction)
         complaint = None
         for method in METHODS:
             try:
@@ -168,7 +169,7 @@ class SolidLimit:
 
     def contact_points(self, direction: float) -> ContactPoints:
         """Corners of the contacts and dowels as points of contact under a push along a direction [deg]."""
-        dead, live = self._ways(direction)
+        dead, live = self.ways(direction)
         corners, keys = len(self.mu), self.assembly.keys
         count = np.bincount(self.assembly.corner_joint)[self.assembly.corner_joint]
         area = self.assembly.area[self.assembly.corner_joint] / count
@@ -194,7 +195,7 @@ class SolidLimit:
         force, keyed = state.force[:corners] * self.scale, state.force[corners:, 1:] * self.scale
         motion = self._rates(state.motion)
         unit = self.scale * np.array([1.0, 1.0, 1.0, size, size, size])
-        dead, live = (load.reshape(-1, 6) * unit for load in self._ways(direction))
+        dead, live = (load.reshape(-1, 6) * unit for load in self.ways(direction))
         proof = certify_solids(self.assembly, self.mu, dead, live, state.gamma, force, keyed, motion)
         upper = state.gamma + proof.zero_gap
         return Programme(
@@ -214,7 +215,7 @@ class SolidLimit:
                     continue
         return None
 
-    def _ways(self, direction: float) -> tuple[np.ndarray, np.ndarray]:
+    def ways(self, direction: float) -> tuple[np.ndarray, np.ndarray]:
         """The loads of the weights at rest and turned along a direction [deg]."""
         turn = np.radians(direction)
         return self.loads(np.array([0.0, 0.0, -1.0])), self.loads(np.array([np.cos(turn), np.sin(turn), 0.0]))
@@ -369,7 +370,7 @@ class SolidLimit:
     def pyramids(self, direction: float, sides: int) -> tuple[float, float]:
         """Bounds of the multiplier from below and above [g]: Coulomb's cones as pyramids of so many sides, within and around
         them, by HiGHS. A check by another method and another solver."""
-        dead, live = self._ways(direction)
+        dead, live = self.ways(direction)
         inner = self._pyramid(dead, live, sides, 1.0)
         return inner, self._pyramid(dead, live, sides, 1.0 / np.cos(np.pi / sides))
 

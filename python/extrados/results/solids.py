@@ -99,6 +99,13 @@ class SolidTilt(KindResults):
         'friction_rule = "non-associated"'
     )
     non_associated_reason: str = maybe("why no state without dilatancy is given beside an upper bound")
+    collapse_acceleration_face_law_g: float = maybe(
+        "upper bound of the direction with the friction of whole faces under an even pressure (torsion); the corner law, which is "
+        "collapse_acceleration_g, lets the pressure concentrate", "g", source="after Orduna and Lourenco 2005",
+    )  # fmt: skip
+    collapse_acceleration_face_law_opposite_g: float = maybe("the same, pushed the opposite way", "g")
+    face_law_spread_g: float = maybe("greatest range of the last solves of the face law, a fixed point", "g")
+    face_law_reason: str = maybe("why the face law gives no value")
     pyramids: Pyramids = maybe("bounds by another method and another solver")
 
     def judged(self, demand: Demand) -> Verdict:

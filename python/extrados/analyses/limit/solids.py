@@ -1,5 +1,7 @@
 """tilt of solids: the horizontal acceleration in any direction at which blocks in space become a mechanism."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from extrados.analyses.context import Context
@@ -7,7 +9,8 @@ from extrados.analyses.limit.common import named_places
 from extrados.analyses.limit.paths import doubt
 from extrados.analyses.limit.solid_sliding import slide
 from extrados.analyses.limit.tables import Tilt
-from extrados.limit.errors import CannotStand, Immovable
+from extrados.limit.errors import CannotStand, Immovable, NoAnswer
+from extrados.limit.face_law import FaceLaw
 from extrados.limit.solids import Falls, Programme, SolidLimit
 from extrados.model.geometry.assembly import GROUND
 from extrados.model.geometry.solids.assembly import SolidAssembly
@@ -25,6 +28,7 @@ STILL = 1e-3  # of the fastest: slower stones are said to stand
 SAME = 1e-7  # g: capacities that differ less are equal
 MOST_CONTACTS = 20
 MOST_NAMED = 4
+TWISTS = 0.03  # of the capacity: a face law that takes more is told
 OPEN = 1e-6  # of the fastest: less is no opening
 
 
@@ -69,6 +73,8 @@ def run(context: Context, options: Tilt) -> Result:
                 ]
             )
             least = int(np.flatnonzero(capacity <= capacity.min() + SAME)[0])
+    if options.face_law or (options.face_law is None and slides and len(assembly.a) <= MOST_BESIDE):
+        sliding |= _by_faces(limit, [found_at[round(d, 9)] for d in (first, opposite)], (first, opposite), result)
     opens = _openings(assembly, there)
     speed = np.linalg.norm(there.motion[:, :3], axis=1)
     pose = _pose(assembly, there.motion)
@@ -134,6 +140,29 @@ def _without_dilatancy(
         if row is not None and row.least_g is not None:
             told[f"collapse_acceleration_non_associated{end}_g"] = row.least_g
     return told, states
+
+
+def _by_faces(
+    limit: SolidLimit, corners: Sequence[Programme | Falls | None], directions: Sequence[float], result: Result
+) -> dict[str, object]:
+    """Keys of the results on the friction of whole faces; a warning where it is much less than that of corners."""
+    law, told, spread = FaceLaw(limit), {}, 0.0
+    for end, direction, one in zip(("", "_opposite"), directions, corners, strict=True):
+        if not isinstance(one, Programme):
+            continue
+        try:
+            found = law.push(direction)
+        except NoAnswer as error:
+            told["face_law_reason"] = f"along {direction:g} degrees {error}"
+            continue
+        told[f"collapse_acceleration_face_law{end}_g"] = found.gamma
+        spread = max(spread, found.spread)
+        if found.gamma < (1.0 - TWISTS) * one.gamma:
+            result.warnings.append(
+                f"Faces twist along {direction:g} degrees: the upper bound is {one.gamma:.4f} g if their pressure concentrates at corners "
+                f"(default), and {found.gamma:.4f} g under an even pressure (face law). Do not rely on the difference"
+            )
+    return told | {"face_law_spread_g": spread}
 
 
 def _ends(options: Tilt) -> tuple[float, float]:

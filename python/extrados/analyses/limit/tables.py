@@ -64,6 +64,10 @@ class Tilt(LimitAnalysisTable, Animated):
         None, "of solids: directions all around at which the capacity is sought; default 16 up to 300 blocks, beyond the direction alone",
         ge=4, le=720,
     )  # fmt: skip
+    face_law: bool | None = key(
+        None, "of solids: also the capacity with an even pressure on faces, which resists torsion less; default where up to 200 contacts "
+        "slide", source="after Orduna and Lourenco 2005",
+    )  # fmt: skip
     pyramids: int | None = key(
         None, "of solids: also bound the capacity by pyramids of so many sides, within and around the cones of friction", ge=3, le=64
     )  # fmt: skip
