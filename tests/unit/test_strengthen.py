@@ -354,3 +354,71 @@ def test_wrong_decks_are_refused_with_the_reason(keys, said):
     except DeckError as error:
         text = " ".join(error.complaints)
     assert said in text
+
+
+FACADE_BESIDE_A_WALL = {
+    "structure": {"kind": "block", "width": 0.6, "height": 8.0},
+    "supports": {"abutting_wall": "left", "rebound": 0.4},
+    "ties": [{"start": [-0.3, 7.4], "start_stone": "block", "ground": [-5.3, 7.4], "stiffness": "8 MN/m", "yield_force": "4 kN"}],
+    "motion": {"kind": "record", "file": "extrados:el-centro-1940"},
+}  # fmt: skip
+
+
+def test_a_tie_force_that_is_varied_beside_a_wall_has_margins_at_all_values():
+    """The margin of limit analysis was NaN there: `tilt` refuses an abutting wall, and does not push towards it."""
+    asked = {
+        "kind": "assess",
+        "strategies": ["tilt", "rocking"],
+        "vary": {"ties.0.yield_force": 0.2},
+        "budget": 20,
+        "advise": False,
+    }
+    result = run({**FACADE_BESIDE_A_WALL, "analysis": [asked]})
+    (row,) = result.results.sensitivity
+    assert (row.key, row.unit, row.base) == ("ties.0.yield_force", "N", 4000.0)
+    weight, peak = 2000.0 * 0.6 * 8.0 * G, result.results.hazard.peak_ground_acceleration_g
+    for margin, force in ((row.tilt_low, 3200.0), (row.tilt_base, 4000.0), (row.tilt_high, 4800.0)):
+        assert margin == pytest.approx((weight * 0.3 + force * 7.4) / (weight * 4.0) / peak, rel=1e-6)
+    assert not np.isnan(result.tables["sensitivity"].columns["margin_tilt"]).any()
+
+
+def test_margins_neglect_what_a_strategy_cannot_consider():
+    """A sibling: dampers, which limit analysis neglects, left no margin either."""
+    damper = {"start": [-0.3, 7.4], "start_stone": "block", "ground": [-5.3, 7.4], "damping": "20 kN*s/m"}
+    tables = {k: v for k, v in FACADE_BESIDE_A_WALL.items() if k not in ("ties", "supports")}
+    asked = {
+        "kind": "assess",
+        "strategies": ["tilt", "rocking"],
+        "vary": {"structure.width": 0.1},
+        "budget": 20,
+        "advise": False,
+    }
+    (row,) = run({**tables, "dampers": [damper], "analysis": [asked]}).results.sensitivity
+    assert row.tilt_base is not None and row.tilt_low is not None and row.rocking_base is not None
+
+
+def test_an_assessment_says_what_to_do():
+    asked = {"kind": "assess", "strategies": ["tilt", "rocking"], "budget": 20}
+    result = run({**FACADE_BESIDE_A_WALL, "analysis": [asked]})
+    advice = result.results.advice
+    assert (
+        advice is not None and advice.mechanism and advice.target_g == result.results.hazard.peak_ground_acceleration_g
+    )
+    anchor = next(one for one in advice.interventions if one.kind == "spring")
+    weight = 2000.0 * 0.6 * 8.0 * G
+    height = (anchor.start_m or [0.0, 0.0])[1]
+    needed = (advice.target_g * weight * 4.0 - weight * 0.3 - 4000.0 * 7.4) / height
+    assert anchor.required_N == pytest.approx(needed, rel=1e-5)
+    assert advice.rocking[anchor.name] == "rocks and recovers"
+    assert "Strengthening." in result.answer and anchor.name in result.answer
+
+
+def test_an_assessment_in_which_all_is_well_advises_nothing():
+    strong = {"structure": {"kind": "block", "width": 3.0, "height": 3.0}, "motion": FACADE_BESIDE_A_WALL["motion"]}
+    result = run({**strong, "analysis": [{"kind": "assess", "strategies": ["tilt"], "budget": 20}]})
+    assert result.results.overall == "stands under all" and result.results.advice is None
+
+
+def test_a_met_target_needs_nothing():
+    r = strengthened({**NAVE, "target": 0.1})
+    assert r.met_before and not r.interventions and "without an intervention" in r.statement()

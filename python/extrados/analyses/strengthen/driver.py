@@ -86,13 +86,15 @@ def run(context: Context, options: Strengthen) -> Result:
     sized: list[_Sized] = []
     ties = tie_alternatives(building, options) if building.structure is not None else []
     changes = change_alternatives(context, options)
+    if met:  # nothing to size
+        ties, changes = [], []
     for done, one in enumerate([*ties, *changes]):
         stop_if_asked()
         context.progress(done, len(ties) + len(changes), "alternatives")
         sized.append(work.tie(one) if isinstance(one, TieAlternative) else work.change(one))
     sized.sort(key=lambda s: (not s.row.meets_target, np.inf if s.row.cost is None else s.row.cost))
     more: dict[str, Any] = {}
-    if options.combine and isinstance(measure, Statics) and len(ties) > 1 and options.ties and not met:
+    if options.combine and isinstance(measure, Statics) and len(ties) > 1 and options.ties:
         more |= work.combined(ties)
     if options.assess:
         work.assessed(sized)
@@ -325,9 +327,7 @@ class _Work:
                 )
             return seen[value]
 
-        required, worth, curve = self._bracket(
-            at, one.start, one.stop, one.count, self._halvings, one.whole
-        )
+        required, worth, curve = self._bracket(at, one.start, one.stop, one.count, self._halvings, one.whole)
         ranges = []
         if not by_runs:
             for size, value in zip(*curve, strict=True):
@@ -531,6 +531,10 @@ class _Work:
                 if worse or (low is not None and high is not None and high < low * (1.0 - NAMED)):
                     adverse.append(
                         f"By {row.label} the margin drops from {_number(low)} to {_number(high)} (verdict {was.outcome}, then {row.outcome})."
+                    )
+                elif row.outcome in ("collapses", "cannot-stand"):
+                    adverse.append(
+                        f"By {row.label} the strengthened building still collapses (margin {_number(high)})."
                     )
             one.row = one.row.model_copy(update={"verdicts": verdicts, "adverse": [*one.row.adverse, *adverse]})
 

@@ -138,7 +138,9 @@ class Strengthen(LimitAnalysisTable):
     )
     ties: list[TieOption] = key([], "ties whose force is sought: alternatives", max_length=50)
     changes: list[Change] = key([], "numbers of the deck whose least change is sought: alternatives", max_length=50)
-    combine: bool = key(True, "also seek the combination of the given ties of least total force, by one linear programme")
+    combine: bool = key(
+        True, "also seek the combination of the given ties of least total force, by one linear programme"
+    )
     weights: Weights = key(Weights(), "weights of the cost by which alternatives are compared")
     fragility: bool = key(
         False, "also compute the fragility before and after, of the cheapest intervention; needs a [motion]"
