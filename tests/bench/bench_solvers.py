@@ -96,7 +96,7 @@ def vertices() -> None:
 
 def with_clarabel(limit: LimitAnalysis) -> float:
     """Capacity by Clarabel's interior-point method, on the whole programme."""
-    system, rows = limit._equations, limit._whole()
+    system, rows = limit.equations, limit._whole()
     matrix, constant = system.express(rows)
     n = system.unknowns
     cost = np.zeros(n)

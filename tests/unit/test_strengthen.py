@@ -142,6 +142,16 @@ def test_the_curve_is_that_of_tilt_at_any_force(name):
         assert np.interp(force, ends, values) == pytest.approx(statics.point(tie, 0, force).capacity, rel=smooth)
 
 
+@pytest.mark.parametrize("name", BUILDINGS)
+def test_two_programmes_agree_on_the_least_force(name):
+    """That of the structure itself, case by case, and the one over all cases, by another solver and another form."""
+    deck = deck_of(BUILDINGS[name])
+    statics = Statics(Context(deck, 1), deck.analyses[0])
+    (tie,) = tie_alternatives(deck.building, deck.analyses[0])
+    target = BUILDINGS[name]["target"]
+    assert statics.force(tie, 0, target) == pytest.approx(float(statics.forces([(tie, 0)], target)[0]), rel=1e-6)
+
+
 def test_one_programme_serves_several_ties_and_both_senses():
     low = {**NAVE["tie"], "name": "low", "start": [-9.0, 0.0], "end": [9.0, 0.0]}
     high = {**NAVE["tie"], "name": "high"}

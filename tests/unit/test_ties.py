@@ -129,7 +129,7 @@ def test_methods_agree_on_a_wall(count: int) -> None:
         limit = LimitAnalysis(assembly, friction, loads=loads, form=form)
         for sense in (1, -1):
             state, mechanism = limit._by_programme(sense)
-            inner, misfit = CollapseProblem(limit._equations, limit._mu, sense, dilates=True).state()
+            inner, misfit = CollapseProblem(limit.equations, limit._mu, sense, dilates=True).state()
             assert state.gamma == pytest.approx(mechanism.upper_bound, abs=1e-8)
             assert sense * inner.gamma == pytest.approx(state.gamma, abs=1e-7) and misfit < 1e-6
             found.append(state.gamma)
@@ -160,7 +160,7 @@ def test_sliding_without_dilatancy_goes_with_ties() -> None:
     lower, upper = limit.without_dilatancy_between(1)
     assert lower - 1e-9 <= state.gamma <= upper + 1e-9
     assert state.gamma == pytest.approx(mechanism.upper_bound, abs=1e-9)
-    problem = CoulombProblem(limit._equations, limit._mu, 1)
+    problem = CoulombProblem(limit.equations, limit._mu, 1)
     gamma, corners, twist = found.gamma, found.corners, found.twist.ravel()
     over = found.share.copy()
     over[0] = 1.1
@@ -178,7 +178,7 @@ def test_what_never_yields_is_met_by_all_methods() -> None:
     limit = LimitAnalysis(assembly, friction, loads=loads)
     state, mechanism = limit.collapse()
     assert state.gamma == pytest.approx(mechanism.upper_bound, abs=1e-7)
-    point, misfit = CollapseProblem(limit._equations, limit._mu, 1, dilates=True).state()
+    point, misfit = CollapseProblem(limit.equations, limit._mu, 1, dilates=True).state()
     assert misfit < 1e-6 and point.gamma == pytest.approx(state.gamma, abs=1e-7)
     firm = LimitAnalysis(assembly, friction, loads=walled([{**tie, "yield_force": 1e6}])[1]).collapse()[0]
     assert firm.gamma == pytest.approx(state.gamma, abs=1e-7)

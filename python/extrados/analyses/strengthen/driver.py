@@ -50,6 +50,8 @@ EXCESS = 1e-7
 REACHED = 1e-6
 #: How far beyond the force of the greatest capacity, or beyond the required one, a curve goes
 BEYOND = 1.15
+#: Relative precision of a curve that crushing bends
+SMOOTH = 1e-4
 #: Halvings of the interval in which a size meets the target, of cheap analyses and of others
 HALVINGS, HALVINGS_OF_RUNS = 16, 5
 #: Analyses that take milliseconds
@@ -167,17 +169,8 @@ class _Work:
         return self._tie_by_programme(one, self.measure)
 
     def _tie_by_programme(self, one: TieAlternative, statics: Statics) -> _Sized:
-        forces, reasons = [], []
-        for place in range(len(one.places)):
-            try:
-                forces.append(float(statics.forces([(one, place)], statics.target * (1.0 + EXCESS))[0]))
-                reasons.append("")
-            except NoEquilibrium:
-                forces.append(np.inf)
-                reasons.append("no force of the tie suffices")
-            except NoAnswer as error:
-                forces.append(np.inf)
-                reasons.append(str(error))
+        target = statics.target * (1.0 + EXCESS)
+        forces = [statics.force(one, place, target) for place in range(len(one.places))]
         costs = [self._cost(_length(tie), f, 0.0) for tie, f in zip(one.places, forces, strict=True)]
         place = int(np.argmin(costs)) if np.isfinite(costs).any() else self._strongest(one, statics)
         required = forces[place] if np.isfinite(forces[place]) else None
@@ -185,26 +178,26 @@ class _Work:
         if required is not None:
             required, worth, bound_by_friction = self._checked(one, place, required, statics)
         points, ranges = self._curve(one, place, required, statics)
-        locked = points is None
         greatest = None if points is None else points[-1].capacity
         if worth is None and points is not None:
             worth = statics.of(one.having(self.context.building, place, points[-1].force), picture=True)
         tie = one.places[place]
-        reason = "" if required is not None else reasons[place] or "no force up to the greatest one considered suffices"
+        no_force = "no force of the tie suffices" if np.isinf(one.most) else "no force up to the greatest one considered suffices"
+        reason = "" if required is not None else no_force
         if bound_by_friction and required is None:
             reason = "with dilatant friction the target is met, without dilatancy it is not"
         curve = ([], []) if points is None else _polyline(points)
         row = self._row(
             name=one.name, kind=word_of(tie), place=_placed(tie), unit="N", required=required, greatest=greatest,
             worth=worth, ranges=ranges, length=_length(tie), force=required or 0.0, volume=0.0, reason=reason,
-            tie=tie, stiffness=one.stiffness(place, required or 0.0), anchorage=one.anchorage, locked=locked,
+            tie=tie, stiffness=one.stiffness(place, required or 0.0), anchorage=one.anchorage,
         )  # fmt: skip
         middles = [(0.5 * (t.start[0] + t.far[0]), 0.5 * (t.start[1] + t.far[1])) for t in one.places]
         data = None if required is None else one.data(plain_data(self.context), place, required)
         sized = _Sized(row, curve, None, data, None, worth, tie)
         if len(one.places) > 1:
             sized.places = ([m[0] for m in middles], [m[1] for m in middles], forces)
-        sized.costs = [self._cost(_length(tie), force, 0.0) if force else 0.0 for force in curve[0]]
+        sized.costs = [self._cost(_length(tie), force, 0.0) for force in curve[0]]
         return sized
 
     def _checked(
@@ -251,24 +244,21 @@ class _Work:
         weight = float(np.sum(self.context.building.blocks().mass)) * GRAVITY
         first = 0.0
         if not self.before.value and self.before.reason:  # it cannot stand without the tie
-            try:
-                first = float(statics.forces([(one, place)], 0.0)[0]) * (1.0 + 1e-9)
-            except (NoEquilibrium, NoAnswer):
+            first = statics.force(one, place, 0.0) * (1.0 + 1e-9)
+            if not np.isfinite(first):
                 return None, []
         last = one.most
         if not np.isfinite(last):
             unlimited = self._unlimited(one, place, statics)
-            if unlimited is None:
+            if unlimited is not None:
+                last = BEYOND * statics.force(one, place, unlimited * (1.0 - REACHED))
+            if not np.isfinite(last):
                 last = 2.0 * (required or weight)
-            else:
-                try:
-                    last = BEYOND * float(statics.forces([(one, place)], unlimited * (1.0 - REACHED))[0])
-                except (NoEquilibrium, NoAnswer):
-                    last = 2.0 * (required or weight)
         if last <= first:
             last = first + max(BEYOND * (required or 0.0), 0.01 * weight)
         try:
-            points = concave_curve(lambda force: statics.point(one, place, force), first, last)
+            crushes = self.context.building.material.compressive_strength is not None
+            points = concave_curve(lambda f: statics.point(one, place, f), first, last, *([SMOOTH] if crushes else []))
         except (Immovable, NoEquilibrium, NoAnswer):
             return None, []
         stones = self.context.building.blocks()
@@ -308,7 +298,7 @@ class _Work:
             tie=tie, stiffness=one.stiffness(0, required or 0.0), anchorage=one.anchorage,
         )  # fmt: skip
         sized = _Sized(row, curve, None, None if required is None else one.data(data, 0, required), None, worth, tie)
-        sized.costs = [self._cost(_length(tie), force, 0.0) if force else 0.0 for force in curve[0]]
+        sized.costs = [self._cost(_length(tie), force, 0.0) for force in curve[0]]
         return sized
 
     # ----- changes of keys
@@ -429,7 +419,7 @@ class _Work:
     def _row(
         self, *, name: str, kind: Any, place: str, unit: str, required: float | None, greatest: float | None, worth: Worth | None,
         ranges: list[out.GoverningRange], length: float, force: float, volume: float, reason: str, tie: Tie | None = None, stiffness: float = 0.0,
-        anchorage: Any = None, key: str = "", locked: bool = False, priced: bool = True,
+        anchorage: Any = None, key: str = "", priced: bool = True,
     ) -> out.Intervention:  # fmt: skip
         worth = worth or Worth(None)
         met = required is not None
@@ -450,7 +440,7 @@ class _Work:
         return out.Intervention(
             name=name, kind=kind, place=place, unit=unit, meets_target=met, required_size=required, greatest_capacity=greatest,
             capacity_after=after, safety_factor_after=_over(after, self.measure.demand),
-            next_mechanism="no collapse mechanism is left" if locked else worth.mechanism, bound=worth.bound if met else None,
+            next_mechanism=worth.mechanism, bound=worth.bound if met else None,
             ranges=ranges, length_m=length, force_N=force, volume_m3=volume,
             cost=self._cost(length, force, volume) if met and priced else None, adverse=adverse, reason=reason, **more,
         )  # fmt: skip

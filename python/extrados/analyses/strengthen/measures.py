@@ -19,7 +19,7 @@ from extrados.limit.answer import cannot_stand
 from extrados.limit.errors import Immovable, NoAnswer, NoEquilibrium
 from extrados.limit.finite_motion import finite_motion
 from extrados.limit.programme import LimitAnalysis, Mechanism
-from extrados.limit.strengthening import Point, least_forces, taken_per_force
+from extrados.limit.strengthening import Point, least_force, least_forces, taken_per_force
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import Assembly
 from extrados.results.statistics import Ensemble
@@ -168,12 +168,34 @@ class Statics:
             limit.assembly, limit.friction, strength=limit.strength, loads=limit.loads
         ).collapse(sense)  # fmt: skip
 
+    def force(self, one: TieAlternative, place: int, target: float) -> float:
+        """The same of one tie, by the programme of the structure itself; infinite where no force suffices."""
+        building, tie = self.context.building, one.places[place]
+        limits = []
+        for works_in, sign in (("tension", 1), ("compression", -1)):
+            if tie.works_in in (works_in, "both"):
+                added = tie.model_copy(update={"works_in": works_in, "yield_force": None})
+                held = building.having(ties=(*building.ties, added))
+                limits.append((limit_of(held, self.options, forces_only=True), sign))
+        try:
+            needed = max(min(least_force(limit, gamma, sign) for limit, sign in limits) for gamma in self.cases(target))
+        except NoAnswer:  # where its solver gives up, the programme over all cases is solved by another method
+            try:
+                needed = float(self.forces([(one, place)], target)[0])
+            except NoEquilibrium:
+                return np.inf
+        return needed if needed <= one.most else np.inf
+
+    def cases(self, target: float) -> list[float]:
+        """Accelerations to +x that are to be carried [g]: the target in its senses, and rest."""
+        return [sense * target for sense in self.senses] + ([] if len(self.senses) == 2 else [0.0])
+
     def forces(self, ties: list[tuple[TieAlternative, int]], target: float) -> np.ndarray:
         """Yield forces [N] of least sum with which the building carries the target both ways and stands at rest."""
         building = self.context.building
         added = tuple(one.places[place].model_copy(update={"yield_force": None}) for one, place in ties)
         limit = limit_of(building.having(ties=(*building.ties, *added)), self.options, forces_only=True)
-        gammas = [sense * target for sense in self.senses] + ([] if len(self.senses) == 2 else [0.0])
+        gammas = self.cases(target)
         most = np.array([one.most for one, _ in ties])
         return least_forces([limit] * len(gammas), gammas, len(ties), np.ones(len(ties)), most)
 
