@@ -432,3 +432,54 @@ def test_an_assessment_in_which_all_is_well_advises_nothing():
 def test_a_met_target_needs_nothing():
     r = strengthened({**NAVE, "target": 0.1})
     assert r.met_before and not r.interventions and "without an intervention" in r.statement()
+
+
+ROCKING = {
+    "structure": {"kind": "block", "width": 0.5, "height": 2.0, "depth": 0.5},
+    "motion": {"kind": "sine-pulse", "amplitude": "0.6 g", "period": 1.0},
+}  # fmt: skip
+
+
+def test_rocking_sizes_a_damper_and_a_base_by_its_own_verdict():
+    damper = {"start": [-0.25, 1.5], "start_stone": "block", "ground": [-1.25, 1.5], "damping": "10 N*s/m"}
+    asked = {
+        "kind": "strengthen", "by": "rocking", "safety_factor": 1.0,
+        "changes": [{"vary": "dampers.0.damping", "stop": "5 kN*s/m"}, {"vary": "structure.width", "stop": 1.0}],
+    }  # fmt: skip
+    r = run({**ROCKING, "dampers": [damper], "analysis": [asked]}).results
+    sizes = {one.key: one for one in r.interventions}
+    assert all(one.meets_target for one in r.interventions)
+    assert sizes["dampers.0.damping"].cost is None and sizes["structure.width"].cost is not None
+    stopped = {**damper, "damping": sizes["dampers.0.damping"].required_size}
+    again = run({**ROCKING, "dampers": [stopped], "analysis": [{"kind": "rocking"}]}).results
+    assert again.outcome == "recovery"
+    wider = {**ROCKING, "structure": {**ROCKING["structure"], "width": sizes["structure.width"].required_size}}
+    assert run({**wider, "dampers": [damper], "analysis": [{"kind": "rocking"}]}).results.outcome == "recovery"
+
+
+def test_a_wider_base_on_soft_ground_is_said_to_settle():
+    wall = {"structure": WALL, "supports": {"stiffness": "20 MPa/m"}}
+    asked = {"kind": "strengthen", "acceleration": "0.3 g", "changes": [{"vary": "structure.width", "stop": 1.5}]}
+    (one,) = run({**wall, "analysis": [asked]}).results.interventions
+    settlement = one.volume_m3 * 2000.0 * G / (20e6 * 0.6)
+    assert any(f"settles by about {1e3 * settlement:.2g} mm" in text for text in one.adverse)
+
+
+def test_a_change_that_helps_only_in_between_is_said_to():
+    """A thicker vault between given faces loses capacity before it gains it; a target that the least thickness alone meets."""
+    asked = {
+        "kind": "strengthen",
+        "acceleration": "0.133 g",
+        "changes": [{"vary": "structure.thickness", "start": 1.4, "stop": 2.5}],
+    }
+    nave = {"structure": {**NAVE["structure"], "thickness": 2.0}, "joints": NAVE["joints"]}
+    r = run({**nave, "analysis": [asked]}).results
+    assert not r.met_before
+    (one,) = r.interventions
+    assert one.meets_target and any("does not grow with the size" in text for text in one.adverse)
+
+
+def test_analyses_of_solids_are_refused_with_the_reason():
+    dome = {"kind": "dome", "radius": 10.0, "thickness": 1.0, "rings": 4, "lunes": 6}
+    result = run({"structure": dome, "analysis": [{"kind": "strengthen", "acceleration": "0.3 g"}]})
+    assert result.status == "refused" and "no plane section" in result.reason

@@ -139,7 +139,7 @@ def _direction(measure: Measure, options: Strengthen) -> Any:
 
 def _reached(measure: Measure, worth: Worth) -> bool:
     """Whether a value meets the target."""
-    if worth.value is None:
+    if worth.value is None or np.isnan(worth.value):
         return False
     return worth.value >= measure.target if measure.higher_is_safer else worth.value <= measure.target
 
@@ -182,7 +182,11 @@ class _Work:
         if worth is None and points is not None:
             worth = statics.of(one.having(self.context.building, place, points[-1].force), picture=True)
         tie = one.places[place]
-        no_force = "no force of the tie suffices" if np.isinf(one.most) else "no force up to the greatest one considered suffices"
+        no_force = (
+            "no force of the tie suffices"
+            if np.isinf(one.most)
+            else "no force up to the greatest one considered suffices"
+        )
         reason = "" if required is not None else no_force
         if bound_by_friction and required is None:
             reason = "with dilatant friction the target is met, without dilatancy it is not"
@@ -297,9 +301,31 @@ class _Work:
             reason="" if required is not None else worth.reason or "no force up to the greatest one considered suffices",
             tie=tie, stiffness=one.stiffness(0, required or 0.0), anchorage=one.anchorage,
         )  # fmt: skip
+        row = self._with_lapses(row, curve, True)
         sized = _Sized(row, curve, None, None if required is None else one.data(data, 0, required), None, worth, tie)
         sized.costs = [self._cost(_length(tie), force, 0.0) for force in curve[0]]
         return sized
+
+    def _with_lapses(
+        self, row: out.Intervention, curve: tuple[list[float], list[float]], grows: bool
+    ) -> out.Intervention:
+        """The row, with the greater changes that do not meet the target: safety need not grow with a size."""
+        if row.required_size is None:
+            return row
+        sizes, values = curve
+        beyond = [
+            size
+            for size, value in zip(sizes, values, strict=True)
+            if (size > row.required_size) is grows
+            and size != row.required_size
+            and not _reached(self.measure, Worth(value))
+        ]
+        if not beyond:
+            return row
+        text = f"The target is not met at {len(beyond)} greater sizes that were tried, for instance {beyond[0]:.4g} {row.unit}"
+        return row.model_copy(
+            update={"adverse": [*row.adverse, f"{text.rstrip()}: safety does not grow with the size."]}
+        )
 
     # ----- changes of keys
 
@@ -322,7 +348,7 @@ class _Work:
         if not by_runs:
             for size, value in zip(*curve, strict=True):
                 told = seen[size].mechanism
-                way: Any = "-x" if "load to -x" in told else "+x"
+                way: Any = "+x" if seen[size].sense > 0 else "-x"
                 if ranges and ranges[-1].mechanism == told:
                     ranges[-1] = ranges[-1].model_copy(update={"last": size, "capacity_last": value})
                 elif np.isfinite(value):
@@ -344,6 +370,7 @@ class _Work:
             volume=volume, priced=spent is not None, reason="" if required is not None else worth.reason or "no value up to the greatest one considered suffices",
             key=one.key,
         )  # fmt: skip
+        row = self._with_lapses(row, curve, one.stop > one.start)
         sized = _Sized(row, curve, None, None, None, worth)
         if required is not None:
             sized.data, sized.keys = with_value(

@@ -39,7 +39,7 @@ class Worth:
     """The value of a building in the quantity of the target: None without one, infinite where no mechanism exists.
 
     mechanism: what governs, in words; shape: the same but for mirror images; bound: of the value; reason: why there is none; moved: the blocks and the poses into which
-    the mechanism carries them.
+    the mechanism carries them; sense: of the load that governs.
     """
 
     value: float | None
@@ -49,6 +49,7 @@ class Worth:
     reason: str = ""
     by_sense: tuple[float, ...] = ()
     moved: tuple[Assembly, np.ndarray] | None = None
+    sense: int = 1
 
 
 class Statics:
@@ -101,7 +102,9 @@ class Statics:
         chosen = mechanisms[k]
         moved = (limit.assembly, finite_motion(limit.assembly, chosen)) if picture and chosen is not None else None
         shape = () if chosen is None else unmirrored(signature(limit.assembly, chosen))
-        return Worth(float(values[k]), told[k], shape, bounds[k], by_sense=tuple(values), moved=moved)
+        return Worth(
+            float(values[k]), told[k], shape, bounds[k], by_sense=tuple(values), moved=moved, sense=self.senses[k]
+        )
 
     def other_sense_told(self, building: Building) -> str:
         """What the existing building carries in the sense that the deck leaves out."""
