@@ -115,7 +115,9 @@ class Strengthen(KindResults):
     met_before: bool = fact("whether the existing building meets the target")
     mechanism_before: str = fact("governing mechanism of the existing building")
     interventions: list[Intervention] = fact("the alternatives, the cheapest that meets the target first")
-    combination: list[CombinedTie] = maybe("combination of ties of least total force, if more than one tie carries a force")
+    combination: list[CombinedTie] = maybe(
+        "combination of ties of least total force, if more than one tie carries a force"
+    )
     combination_cost: float = maybe("its cost")
     fragility: FragilityPair = maybe("fragility before and after, of the cheapest intervention")
 

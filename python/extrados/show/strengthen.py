@@ -65,7 +65,9 @@ def _mechanisms(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[st
                 _tie(ax, one)
                 ax.set_title("\n".join(textwrap.wrap(f"{one.name}: {_told(one)}", WIDE)))
             style.section_axes(ax)
-        ends = [np.array([one.start_m, one.end_m]) for one in r.interventions[: len(shown) - 1] if one.start_m is not None]
+        ends = [
+            np.array([one.start_m, one.end_m]) for one in r.interventions[: len(shown) - 1] if one.start_m is not None
+        ]
         every = np.concatenate([points, *moved.values(), *ends])
         room = 0.05 * float(np.ptp(every, axis=0).max())
         for ax in axes:

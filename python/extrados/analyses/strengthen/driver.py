@@ -44,8 +44,6 @@ from extrados.results.statistics import OverLevels
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 
-#: Relative excess of the load for which a tie is sized, so that rounding leaves it sufficient
-EXCESS = 1e-7
 #: Of the greatest capacity: where a tie that never yields is taken to have reached it
 REACHED = 1e-6
 #: How far beyond the force of the greatest capacity, or beyond the required one, a curve goes
@@ -70,7 +68,6 @@ class _Sized:
     curve: tuple[list[float], list[float]] = ((), ())  # type: ignore[assignment]
     places: tuple[list[float], list[float], list[float]] | None = None  # x, y of the middle, force
     data: dict[str, Any] | None = None
-    keys: dict[str, Any] | None = None
     worth: Worth | None = None
     tie: Tie | None = None
     costs: list[float] = field(default_factory=list)
@@ -113,7 +110,7 @@ def run(context: Context, options: Strengthen) -> Result:
         result.warnings.append(f"The existing building has no value: {before.reason}")
     if before.bound == "upper":
         result.warnings.append(
-            "Pressed joints slide in the mechanism of the existing building: its capacity is an upper bound, or the least of the states found without dilatancy."
+            "Pressed joints slide in the mechanism of the existing building: its capacity is an upper bound, or the least of the states found without dilatancy. Curves over sizes are upper bounds."
         )
     if isinstance(measure, Statics) and len(measure.senses) == 1 and building.supports.abutting_wall is None:
         result.warnings.append(measure.other_sense_told(building))
@@ -153,7 +150,6 @@ class _Work:
 
     def __init__(self, context: Context, options: Strengthen, measure: Measure, before: Worth):
         self.context, self.options, self.measure, self.before = context, options, measure, before
-        self.assessments: dict[str, Assess | str] = {}
 
     @property
     def _halvings(self) -> int:
@@ -169,7 +165,7 @@ class _Work:
         return self._tie_by_programme(one, self.measure)
 
     def _tie_by_programme(self, one: TieAlternative, statics: Statics) -> _Sized:
-        target = statics.target * (1.0 + EXCESS)
+        target = statics.aimed
         forces = [statics.force(one, place, target) for place in range(len(one.places))]
         costs = [self._cost(_length(tie), f, 0.0) for tie, f in zip(one.places, forces, strict=True)]
         place = int(np.argmin(costs)) if np.isfinite(costs).any() else self._strongest(one, statics)
@@ -198,7 +194,7 @@ class _Work:
         )  # fmt: skip
         middles = [(0.5 * (t.start[0] + t.far[0]), 0.5 * (t.start[1] + t.far[1])) for t in one.places]
         data = None if required is None else one.data(plain_data(self.context), place, required)
-        sized = _Sized(row, curve, None, data, None, worth, tie)
+        sized = _Sized(row, curve, None, data, worth, tie)
         if len(one.places) > 1:
             sized.places = ([m[0] for m in middles], [m[1] for m in middles], forces)
         sized.costs = [self._cost(_length(tie), force, 0.0) for force in curve[0]]
@@ -302,7 +298,7 @@ class _Work:
             tie=tie, stiffness=one.stiffness(0, required or 0.0), anchorage=one.anchorage,
         )  # fmt: skip
         row = self._with_lapses(row, curve, True)
-        sized = _Sized(row, curve, None, None if required is None else one.data(data, 0, required), None, worth, tie)
+        sized = _Sized(row, curve, None, None if required is None else one.data(data, 0, required), worth, tie)
         sized.costs = [self._cost(_length(tie), force, 0.0) for force in curve[0]]
         return sized
 
@@ -362,22 +358,27 @@ class _Work:
                             mechanism=told,
                         )
                     )
+        greatest = _safest(self.measure, curve[1])
+        if required is None and greatest is not None and isinstance(self.measure, Statics):
+            best = curve[0][curve[1].index(greatest)]
+            data, _ = with_value(self.context, self.options, one.key, round(best) if one.whole else best)
+            closely = self.measure.of_data(data, picture=True)  # without dilatancy where pressed joints slide
+            worth, greatest = (worth, greatest) if closely.value is None else (closely, closely.value)
         spent = None if required is None else self._spent(one, required)
         force, volume = spent or (0.0, 0.0)
         row = self._row(
             name=one.name, kind="change", place=f"from {one.start:.4g} {one.unit}".rstrip(), unit=one.unit, required=required,
-            greatest=_safest(self.measure, curve[1]), worth=worth, ranges=ranges, length=0.0, force=force,
+            greatest=greatest, worth=worth, ranges=ranges, length=0.0, force=force,
             volume=volume, priced=spent is not None, reason="" if required is not None else worth.reason or "no value up to the greatest one considered suffices",
             key=one.key,
         )  # fmt: skip
         row = self._with_lapses(row, curve, one.stop > one.start)
-        sized = _Sized(row, curve, None, None, None, worth)
+        sized = _Sized(row, curve, None, None, worth)
         if required is not None:
-            sized.data, sized.keys = with_value(
-                self.context, self.options, one.key, round(required) if one.whole else required
-            )
+            data, keys = with_value(self.context, self.options, one.key, round(required) if one.whole else required)
+            sized.data = data if keys is None else None  # an option of the code changes no building
             if isinstance(self.measure, Statics):
-                sized.worth = self._picture(sized.data)
+                sized.worth = self._picture(data)
         sized.costs = [np.nan if (s := self._spent(one, size)) is None else self._cost(0.0, *s) for size in curve[0]]
         return sized
 
@@ -506,8 +507,11 @@ class _Work:
         assert isinstance(statics, Statics)
         columns = [(one, place) for one in ties for place in range(len(one.places))]
         try:
-            forces = statics.forces(columns, statics.target * (1.0 + EXCESS))
-        except (NoEquilibrium, NoAnswer):
+            forces = statics.forces(columns, statics.aimed)
+        except NoEquilibrium:
+            return {}
+        except NoAnswer as error:
+            self.context.warnings.append(f"The combination of ties is not given: {error}")
             return {}
         carry = [k for k, f in enumerate(forces) if f > 1e-6 * float(forces.max())]
         if len(carry) < 2:

@@ -18,7 +18,7 @@ from extrados.decks.reader import Deck, DeckError, make_deck
 from extrados.limit.answer import cannot_stand
 from extrados.limit.errors import Immovable, NoAnswer, NoEquilibrium
 from extrados.limit.finite_motion import finite_motion
-from extrados.limit.programme import LimitAnalysis, Mechanism
+from extrados.limit.programme import LimitAnalysis, Mechanism, closed
 from extrados.limit.strengthening import Point, least_force, least_forces, taken_per_force
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import Assembly
@@ -79,7 +79,8 @@ class Statics:
         for sense in self.senses:
             try:
                 state, mechanism = limit.collapse(sense)
-                value, bound = self._least(limit, mechanism, sense, sense * state.gamma)
+                value = sense * state.gamma
+                value, bound = self._least(limit, mechanism, sense, value, picture or value >= self.target)
             except Immovable as error:
                 values.append(np.inf)
                 told.append(f"none to {_word(sense)}: {error}")
@@ -120,10 +121,17 @@ class Statics:
             'An earthquake acts both ways: take direction = "both", unless something else holds that side.'
         )
 
-    def _least(self, limit: LimitAnalysis, mechanism: Mechanism, sense: int, value: float) -> tuple[float, Bound]:
-        """The capacity, and as a bound; where pressed joints slide the least state found without dilatancy."""
+    def _least(
+        self, limit: LimitAnalysis, mechanism: Mechanism, sense: int, value: float, closely: bool
+    ) -> tuple[float, Bound]:
+        """The capacity, and as a bound; where pressed joints slide the least state found without dilatancy, which takes seconds
+        and is not sought where the upper bound already misses the target."""
+        if not limit.associated:
+            return value, "upper"
         if not limit.dilating(mechanism):
             return value, "exact"
+        if not closely:
+            return value, "upper"
         try:
             state, _ = collapse_beside(limit.without_dilatancy(), sense)
         except (NoAnswer, NoEquilibrium):
@@ -208,6 +216,11 @@ class Statics:
         if self.options.acceleration is not None:
             return float(self.options.acceleration) / GRAVITY
         return MotionDemand(self.context).peak_g or 0.0
+
+    @property
+    def aimed(self) -> float:
+        """The capacity for which ties are sized [g]: the target, and the distance that rounding leaves between bounds."""
+        return self.target + 2.0 * closed(len(self.context.building.blocks().a), self.target)
 
     @property
     def target(self) -> float:
