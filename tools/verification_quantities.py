@@ -4,6 +4,7 @@ import re
 
 #: Quantity -> patterns of `analysis.key` (without indices) that belong to it; the first that fits wins
 QUANTITIES: dict[str, tuple[str, ...]] = {
+    "size of a strengthening": (r"^strengthen\S*\.",),
     "code check": (r"(?:local-mechanism|code-checks)\S*\.", r"checks\."),
     "ground motion and spectrum": (r"^motion", r"^shake-table"),
     "displacement": (r"dowel", r"slip_m$", r"displacement_m$", r"permanent_elongation"),

@@ -142,6 +142,16 @@ def test_the_curve_is_that_of_tilt_at_any_force(name):
         assert np.interp(force, ends, values) == pytest.approx(statics.point(tie, 0, force).capacity, rel=smooth)
 
 
+@pytest.mark.parametrize("name", BUILDINGS)
+def test_two_programmes_agree_on_the_least_force(name):
+    """That of the structure itself, case by case, and the one over all cases, by another solver and another form."""
+    deck = deck_of(BUILDINGS[name])
+    statics = Statics(Context(deck, 1), deck.analyses[0])
+    (tie,) = tie_alternatives(deck.building, deck.analyses[0])
+    target = BUILDINGS[name]["target"]
+    assert statics.force(tie, 0, target) == pytest.approx(float(statics.forces([(tie, 0)], target)[0]), rel=1e-6)
+
+
 def test_one_programme_serves_several_ties_and_both_senses():
     low = {**NAVE["tie"], "name": "low", "start": [-9.0, 0.0], "end": [9.0, 0.0]}
     high = {**NAVE["tie"], "name": "high"}
@@ -354,3 +364,122 @@ def test_wrong_decks_are_refused_with_the_reason(keys, said):
     except DeckError as error:
         text = " ".join(error.complaints)
     assert said in text
+
+
+FACADE_BESIDE_A_WALL = {
+    "structure": {"kind": "block", "width": 0.6, "height": 8.0},
+    "supports": {"abutting_wall": "left", "rebound": 0.4},
+    "ties": [{"start": [-0.3, 7.4], "start_stone": "block", "ground": [-5.3, 7.4], "stiffness": "8 MN/m", "yield_force": "4 kN"}],
+    "motion": {"kind": "record", "file": "extrados:el-centro-1940"},
+}  # fmt: skip
+
+
+def test_a_tie_force_that_is_varied_beside_a_wall_has_margins_at_all_values():
+    """The margin of limit analysis was NaN there: `tilt` refuses an abutting wall, and does not push towards it."""
+    asked = {
+        "kind": "assess",
+        "strategies": ["tilt", "rocking"],
+        "vary": {"ties.0.yield_force": 0.2},
+        "budget": 20,
+        "advise": False,
+    }
+    result = run({**FACADE_BESIDE_A_WALL, "analysis": [asked]})
+    (row,) = result.results.sensitivity
+    assert (row.key, row.unit, row.base) == ("ties.0.yield_force", "N", 4000.0)
+    weight, peak = 2000.0 * 0.6 * 8.0 * G, result.results.hazard.peak_ground_acceleration_g
+    for margin, force in ((row.tilt_low, 3200.0), (row.tilt_base, 4000.0), (row.tilt_high, 4800.0)):
+        assert margin == pytest.approx((weight * 0.3 + force * 7.4) / (weight * 4.0) / peak, rel=1e-6)
+    assert not np.isnan(result.tables["sensitivity"].columns["margin_tilt"]).any()
+
+
+def test_margins_neglect_what_a_strategy_cannot_consider():
+    """A sibling: dampers, which limit analysis neglects, left no margin either."""
+    damper = {"start": [-0.3, 7.4], "start_stone": "block", "ground": [-5.3, 7.4], "damping": "20 kN*s/m"}
+    tables = {k: v for k, v in FACADE_BESIDE_A_WALL.items() if k not in ("ties", "supports")}
+    asked = {
+        "kind": "assess",
+        "strategies": ["tilt", "rocking"],
+        "vary": {"structure.width": 0.1},
+        "budget": 20,
+        "advise": False,
+    }
+    (row,) = run({**tables, "dampers": [damper], "analysis": [asked]}).results.sensitivity
+    assert row.tilt_base is not None and row.tilt_low is not None and row.rocking_base is not None
+
+
+def test_an_assessment_says_what_to_do():
+    asked = {"kind": "assess", "strategies": ["tilt", "rocking"], "budget": 20}
+    result = run({**FACADE_BESIDE_A_WALL, "analysis": [asked]})
+    advice = result.results.advice
+    assert (
+        advice is not None and advice.mechanism and advice.target_g == result.results.hazard.peak_ground_acceleration_g
+    )
+    anchor = next(one for one in advice.interventions if one.kind == "spring")
+    weight = 2000.0 * 0.6 * 8.0 * G
+    height = (anchor.start_m or [0.0, 0.0])[1]
+    needed = (advice.target_g * weight * 4.0 - weight * 0.3 - 4000.0 * 7.4) / height
+    assert anchor.required_N == pytest.approx(needed, rel=1e-5)
+    assert advice.rocking[anchor.name] == "rocks and recovers"
+    assert "Strengthening." in result.answer and anchor.name in result.answer
+
+
+def test_an_assessment_in_which_all_is_well_advises_nothing():
+    strong = {"structure": {"kind": "block", "width": 3.0, "height": 3.0}, "motion": FACADE_BESIDE_A_WALL["motion"]}
+    result = run({**strong, "analysis": [{"kind": "assess", "strategies": ["tilt"], "budget": 20}]})
+    assert result.results.overall == "stands under all" and result.results.advice is None
+
+
+def test_a_met_target_needs_nothing():
+    r = strengthened({**NAVE, "target": 0.1})
+    assert r.met_before and not r.interventions and "without an intervention" in r.statement()
+
+
+ROCKING = {
+    "structure": {"kind": "block", "width": 0.5, "height": 2.0, "depth": 0.5},
+    "motion": {"kind": "sine-pulse", "amplitude": "0.6 g", "period": 1.0},
+}  # fmt: skip
+
+
+def test_rocking_sizes_a_damper_and_a_base_by_its_own_verdict():
+    damper = {"start": [-0.25, 1.5], "start_stone": "block", "ground": [-1.25, 1.5], "damping": "10 N*s/m"}
+    asked = {
+        "kind": "strengthen", "by": "rocking", "safety_factor": 1.0,
+        "changes": [{"vary": "dampers.0.damping", "stop": "5 kN*s/m"}, {"vary": "structure.width", "stop": 1.0}],
+    }  # fmt: skip
+    r = run({**ROCKING, "dampers": [damper], "analysis": [asked]}).results
+    sizes = {one.key: one for one in r.interventions}
+    assert all(one.meets_target for one in r.interventions)
+    assert sizes["dampers.0.damping"].cost is None and sizes["structure.width"].cost is not None
+    stopped = {**damper, "damping": sizes["dampers.0.damping"].required_size}
+    again = run({**ROCKING, "dampers": [stopped], "analysis": [{"kind": "rocking"}]}).results
+    assert again.outcome == "recovery"
+    wider = {**ROCKING, "structure": {**ROCKING["structure"], "width": sizes["structure.width"].required_size}}
+    assert run({**wider, "dampers": [damper], "analysis": [{"kind": "rocking"}]}).results.outcome == "recovery"
+
+
+def test_a_wider_base_on_soft_ground_is_said_to_settle():
+    wall = {"structure": WALL, "supports": {"stiffness": "20 MPa/m"}}
+    asked = {"kind": "strengthen", "acceleration": "0.3 g", "changes": [{"vary": "structure.width", "stop": 1.5}]}
+    (one,) = run({**wall, "analysis": [asked]}).results.interventions
+    settlement = one.volume_m3 * 2000.0 * G / (20e6 * 0.6)
+    assert any(f"settles by about {1e3 * settlement:.2g} mm" in text for text in one.adverse)
+
+
+def test_a_change_that_helps_only_in_between_is_said_to():
+    """A thicker vault between given faces loses capacity before it gains it; a target that the least thickness alone meets."""
+    asked = {
+        "kind": "strengthen",
+        "acceleration": "0.133 g",
+        "changes": [{"vary": "structure.thickness", "start": 1.4, "stop": 2.5}],
+    }
+    nave = {"structure": {**NAVE["structure"], "thickness": 2.0}, "joints": NAVE["joints"]}
+    r = run({**nave, "analysis": [asked]}).results
+    assert not r.met_before
+    (one,) = r.interventions
+    assert one.meets_target and any("does not grow with the size" in text for text in one.adverse)
+
+
+def test_analyses_of_solids_are_refused_with_the_reason():
+    dome = {"kind": "dome", "radius": 10.0, "thickness": 1.0, "rings": 4, "lunes": 6}
+    result = run({"structure": dome, "analysis": [{"kind": "strengthen", "acceleration": "0.3 g"}]})
+    assert result.status == "refused" and "no plane section" in result.reason

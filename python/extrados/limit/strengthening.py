@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 from scipy import sparse
 
-from extrados.limit.errors import NoAnswer
+from extrados.limit.errors import NoAnswer, NoEquilibrium
 from extrados.limit.loads import Loads
 from extrados.limit.programme import LimitAnalysis
 from extrados.limit.solver import linear_programme
@@ -66,11 +66,11 @@ def taken_per_force(assembly: Assembly, loads: Loads, anchored: Anchored, mechan
     return float(np.maximum(taken, 0.0).sum()) / work
 
 
-def concave_curve(at: Callable[[float], Point], first: float, last: float) -> list[Point]:
+def concave_curve(at: Callable[[float], Point], first: float, last: float, same: float = SAME) -> list[Point]:
     """Points of the curve between two forces [N] from which all its pieces follow, ascending.
 
     Tangents at two points meet above the curve or on it; where they meet on it no mechanism lies between. Otherwise the point
-    below gives another tangent.
+    below gives another tangent. same: relative distance of curve and tangents at which a smooth curve ends, as crushing gives.
     """
     points = [at(first), at(last)]
     spans = [(points[0], points[1])]
@@ -78,14 +78,14 @@ def concave_curve(at: Callable[[float], Point], first: float, last: float) -> li
         low, high = spans.pop(0)
         turn = low.slope - high.slope
         scale = max(1e-12, abs(low.capacity), abs(high.capacity))
-        if abs(low.line(high.force) - high.capacity) <= SAME * scale or turn <= 0.0:
+        if abs(low.line(high.force) - high.capacity) <= same * scale or turn <= 0.0:
             continue  # one mechanism from end to end
         force = low.force + (high.line(low.force) - low.capacity) / turn
         if not low.force < force < high.force:
             continue
         middle = at(force)
         points.append(middle)
-        if low.line(force) - middle.capacity > SAME * scale:
+        if low.line(force) - middle.capacity > same * scale:
             spans += [(low, middle), (middle, high)]
     return sorted(points, key=lambda p: p.force)
 
@@ -126,6 +126,19 @@ def pieces_of(points: list[Point]) -> list[Piece]:
         for point, a, b in zip(hull, ends[:-1], ends[1:], strict=True)
         if b - a > SAME * max(last, 1e-12)
     ]
+
+
+def least_force(limit: LimitAnalysis, gamma: float, sign: int) -> float:
+    """Force [N] of the last tie of a structure with which it carries an acceleration gamma [g] to +x: its share is minimised in
+    the programme of the structure itself. sign: 1 of a tie, -1 of a strut. Infinite where no force suffices."""
+    cost = np.zeros(limit.system.unknowns)
+    column = limit.system.shares.stop - 1
+    cost[column] = sign
+    try:
+        share = limit.optimise(cost, (gamma, gamma))[0].x[column]
+    except NoEquilibrium:
+        return np.inf
+    return max(0.0, sign * float(share)) * limit.loads.scale
 
 
 def least_forces(

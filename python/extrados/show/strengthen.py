@@ -65,7 +65,10 @@ def _mechanisms(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[st
                 _tie(ax, one)
                 ax.set_title("\n".join(textwrap.wrap(f"{one.name}: {_told(one)}", WIDE)))
             style.section_axes(ax)
-        every = np.concatenate([points, *moved.values()])
+        ends = [
+            np.array([one.start_m, one.end_m]) for one in r.interventions[: len(shown) - 1] if one.start_m is not None
+        ]
+        every = np.concatenate([points, *moved.values(), *ends])
         room = 0.05 * float(np.ptp(every, axis=0).max())
         for ax in axes:
             ax.set_xlim(every[:, 0].min() - room, every[:, 0].max() + room)
@@ -164,7 +167,7 @@ def _costs(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[str, st
     if len(rows) < 2:
         return None
     falls = r.by == "fragility"
-    points = []
+    points = [] if r.value_before is None else [(0.0, r.value_before)]
     with style.figure(6.4, 4.2) as (fig, (ax,)):
         for k, one in enumerate(rows):
             _, value, cost = curves[one.name].T

@@ -44,12 +44,12 @@ from extrados.results.statistics import OverLevels
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 
-#: Relative excess of the load for which a tie is sized, so that rounding leaves it sufficient
-EXCESS = 1e-7
 #: Of the greatest capacity: where a tie that never yields is taken to have reached it
 REACHED = 1e-6
 #: How far beyond the force of the greatest capacity, or beyond the required one, a curve goes
 BEYOND = 1.15
+#: Relative precision of a curve that crushing bends
+SMOOTH = 1e-4
 #: Halvings of the interval in which a size meets the target, of cheap analyses and of others
 HALVINGS, HALVINGS_OF_RUNS = 16, 5
 #: Analyses that take milliseconds
@@ -68,7 +68,6 @@ class _Sized:
     curve: tuple[list[float], list[float]] = ((), ())  # type: ignore[assignment]
     places: tuple[list[float], list[float], list[float]] | None = None  # x, y of the middle, force
     data: dict[str, Any] | None = None
-    keys: dict[str, Any] | None = None
     worth: Worth | None = None
     tie: Tie | None = None
     costs: list[float] = field(default_factory=list)
@@ -86,13 +85,15 @@ def run(context: Context, options: Strengthen) -> Result:
     sized: list[_Sized] = []
     ties = tie_alternatives(building, options) if building.structure is not None else []
     changes = change_alternatives(context, options)
+    if met:  # nothing to size
+        ties, changes = [], []
     for done, one in enumerate([*ties, *changes]):
         stop_if_asked()
         context.progress(done, len(ties) + len(changes), "alternatives")
         sized.append(work.tie(one) if isinstance(one, TieAlternative) else work.change(one))
     sized.sort(key=lambda s: (not s.row.meets_target, np.inf if s.row.cost is None else s.row.cost))
     more: dict[str, Any] = {}
-    if options.combine and isinstance(measure, Statics) and len(ties) > 1 and options.ties and not met:
+    if options.combine and isinstance(measure, Statics) and len(ties) > 1 and options.ties:
         more |= work.combined(ties)
     if options.assess:
         work.assessed(sized)
@@ -109,7 +110,7 @@ def run(context: Context, options: Strengthen) -> Result:
         result.warnings.append(f"The existing building has no value: {before.reason}")
     if before.bound == "upper":
         result.warnings.append(
-            "Pressed joints slide in the mechanism of the existing building: its capacity is an upper bound, or the least of the states found without dilatancy."
+            "Pressed joints slide in the mechanism of the existing building: its capacity is an upper bound, or the least of the states found without dilatancy. Curves over sizes are upper bounds."
         )
     if isinstance(measure, Statics) and len(measure.senses) == 1 and building.supports.abutting_wall is None:
         result.warnings.append(measure.other_sense_told(building))
@@ -135,7 +136,7 @@ def _direction(measure: Measure, options: Strengthen) -> Any:
 
 def _reached(measure: Measure, worth: Worth) -> bool:
     """Whether a value meets the target."""
-    if worth.value is None:
+    if worth.value is None or np.isnan(worth.value):
         return False
     return worth.value >= measure.target if measure.higher_is_safer else worth.value <= measure.target
 
@@ -149,7 +150,6 @@ class _Work:
 
     def __init__(self, context: Context, options: Strengthen, measure: Measure, before: Worth):
         self.context, self.options, self.measure, self.before = context, options, measure, before
-        self.assessments: dict[str, Assess | str] = {}
 
     @property
     def _halvings(self) -> int:
@@ -165,17 +165,8 @@ class _Work:
         return self._tie_by_programme(one, self.measure)
 
     def _tie_by_programme(self, one: TieAlternative, statics: Statics) -> _Sized:
-        forces, reasons = [], []
-        for place in range(len(one.places)):
-            try:
-                forces.append(float(statics.forces([(one, place)], statics.target * (1.0 + EXCESS))[0]))
-                reasons.append("")
-            except NoEquilibrium:
-                forces.append(np.inf)
-                reasons.append("no force of the tie suffices")
-            except NoAnswer as error:
-                forces.append(np.inf)
-                reasons.append(str(error))
+        target = statics.aimed
+        forces = [statics.force(one, place, target) for place in range(len(one.places))]
         costs = [self._cost(_length(tie), f, 0.0) for tie, f in zip(one.places, forces, strict=True)]
         place = int(np.argmin(costs)) if np.isfinite(costs).any() else self._strongest(one, statics)
         required = forces[place] if np.isfinite(forces[place]) else None
@@ -183,26 +174,30 @@ class _Work:
         if required is not None:
             required, worth, bound_by_friction = self._checked(one, place, required, statics)
         points, ranges = self._curve(one, place, required, statics)
-        locked = points is None
         greatest = None if points is None else points[-1].capacity
         if worth is None and points is not None:
             worth = statics.of(one.having(self.context.building, place, points[-1].force), picture=True)
         tie = one.places[place]
-        reason = "" if required is not None else reasons[place] or "no force up to the greatest one considered suffices"
+        no_force = (
+            "no force of the tie suffices"
+            if np.isinf(one.most)
+            else "no force up to the greatest one considered suffices"
+        )
+        reason = "" if required is not None else no_force
         if bound_by_friction and required is None:
             reason = "with dilatant friction the target is met, without dilatancy it is not"
         curve = ([], []) if points is None else _polyline(points)
         row = self._row(
             name=one.name, kind=word_of(tie), place=_placed(tie), unit="N", required=required, greatest=greatest,
             worth=worth, ranges=ranges, length=_length(tie), force=required or 0.0, volume=0.0, reason=reason,
-            tie=tie, stiffness=one.stiffness(place, required or 0.0), anchorage=one.anchorage, locked=locked,
+            tie=tie, stiffness=one.stiffness(place, required or 0.0), anchorage=one.anchorage,
         )  # fmt: skip
         middles = [(0.5 * (t.start[0] + t.far[0]), 0.5 * (t.start[1] + t.far[1])) for t in one.places]
         data = None if required is None else one.data(plain_data(self.context), place, required)
-        sized = _Sized(row, curve, None, data, None, worth, tie)
+        sized = _Sized(row, curve, None, data, worth, tie)
         if len(one.places) > 1:
             sized.places = ([m[0] for m in middles], [m[1] for m in middles], forces)
-        sized.costs = [self._cost(_length(tie), force, 0.0) if force else 0.0 for force in curve[0]]
+        sized.costs = [self._cost(_length(tie), force, 0.0) for force in curve[0]]
         return sized
 
     def _checked(
@@ -249,24 +244,21 @@ class _Work:
         weight = float(np.sum(self.context.building.blocks().mass)) * GRAVITY
         first = 0.0
         if not self.before.value and self.before.reason:  # it cannot stand without the tie
-            try:
-                first = float(statics.forces([(one, place)], 0.0)[0]) * (1.0 + 1e-9)
-            except (NoEquilibrium, NoAnswer):
+            first = statics.force(one, place, 0.0) * (1.0 + 1e-9)
+            if not np.isfinite(first):
                 return None, []
         last = one.most
         if not np.isfinite(last):
             unlimited = self._unlimited(one, place, statics)
-            if unlimited is None:
+            if unlimited is not None:
+                last = BEYOND * statics.force(one, place, unlimited * (1.0 - REACHED))
+            if not np.isfinite(last):
                 last = 2.0 * (required or weight)
-            else:
-                try:
-                    last = BEYOND * float(statics.forces([(one, place)], unlimited * (1.0 - REACHED))[0])
-                except (NoEquilibrium, NoAnswer):
-                    last = 2.0 * (required or weight)
         if last <= first:
             last = first + max(BEYOND * (required or 0.0), 0.01 * weight)
         try:
-            points = concave_curve(lambda force: statics.point(one, place, force), first, last)
+            crushes = self.context.building.material.compressive_strength is not None
+            points = concave_curve(lambda f: statics.point(one, place, f), first, last, *([SMOOTH] if crushes else []))
         except (Immovable, NoEquilibrium, NoAnswer):
             return None, []
         stones = self.context.building.blocks()
@@ -305,9 +297,31 @@ class _Work:
             reason="" if required is not None else worth.reason or "no force up to the greatest one considered suffices",
             tie=tie, stiffness=one.stiffness(0, required or 0.0), anchorage=one.anchorage,
         )  # fmt: skip
-        sized = _Sized(row, curve, None, None if required is None else one.data(data, 0, required), None, worth, tie)
-        sized.costs = [self._cost(_length(tie), force, 0.0) if force else 0.0 for force in curve[0]]
+        row = self._with_lapses(row, curve, True)
+        sized = _Sized(row, curve, None, None if required is None else one.data(data, 0, required), worth, tie)
+        sized.costs = [self._cost(_length(tie), force, 0.0) for force in curve[0]]
         return sized
+
+    def _with_lapses(
+        self, row: out.Intervention, curve: tuple[list[float], list[float]], grows: bool
+    ) -> out.Intervention:
+        """The row, with the greater changes that do not meet the target: safety need not grow with a size."""
+        if row.required_size is None:
+            return row
+        sizes, values = curve
+        beyond = [
+            size
+            for size, value in zip(sizes, values, strict=True)
+            if (size > row.required_size) is grows
+            and size != row.required_size
+            and not _reached(self.measure, Worth(value))
+        ]
+        if not beyond:
+            return row
+        text = f"The target is not met at {len(beyond)} greater sizes that were tried, for instance {beyond[0]:.4g} {row.unit}"
+        return row.model_copy(
+            update={"adverse": [*row.adverse, f"{text.rstrip()}: safety does not grow with the size."]}
+        )
 
     # ----- changes of keys
 
@@ -330,7 +344,7 @@ class _Work:
         if not by_runs:
             for size, value in zip(*curve, strict=True):
                 told = seen[size].mechanism
-                way: Any = "-x" if "load to -x" in told else "+x"
+                way: Any = "+x" if seen[size].sense > 0 else "-x"
                 if ranges and ranges[-1].mechanism == told:
                     ranges[-1] = ranges[-1].model_copy(update={"last": size, "capacity_last": value})
                 elif np.isfinite(value):
@@ -344,21 +358,27 @@ class _Work:
                             mechanism=told,
                         )
                     )
+        greatest = _safest(self.measure, curve[1])
+        if required is None and greatest is not None and isinstance(self.measure, Statics):
+            best = curve[0][curve[1].index(greatest)]
+            data, _ = with_value(self.context, self.options, one.key, round(best) if one.whole else best)
+            closely = self.measure.of_data(data, picture=True)  # without dilatancy where pressed joints slide
+            worth, greatest = (worth, greatest) if closely.value is None else (closely, closely.value)
         spent = None if required is None else self._spent(one, required)
         force, volume = spent or (0.0, 0.0)
         row = self._row(
             name=one.name, kind="change", place=f"from {one.start:.4g} {one.unit}".rstrip(), unit=one.unit, required=required,
-            greatest=_safest(self.measure, curve[1]), worth=worth, ranges=ranges, length=0.0, force=force,
+            greatest=greatest, worth=worth, ranges=ranges, length=0.0, force=force,
             volume=volume, priced=spent is not None, reason="" if required is not None else worth.reason or "no value up to the greatest one considered suffices",
             key=one.key,
         )  # fmt: skip
-        sized = _Sized(row, curve, None, None, None, worth)
+        row = self._with_lapses(row, curve, one.stop > one.start)
+        sized = _Sized(row, curve, None, None, worth)
         if required is not None:
-            sized.data, sized.keys = with_value(
-                self.context, self.options, one.key, round(required) if one.whole else required
-            )
+            data, keys = with_value(self.context, self.options, one.key, round(required) if one.whole else required)
+            sized.data = data if keys is None else None  # an option of the code changes no building
             if isinstance(self.measure, Statics):
-                sized.worth = self._picture(sized.data)
+                sized.worth = self._picture(data)
         sized.costs = [np.nan if (s := self._spent(one, size)) is None else self._cost(0.0, *s) for size in curve[0]]
         return sized
 
@@ -427,7 +447,7 @@ class _Work:
     def _row(
         self, *, name: str, kind: Any, place: str, unit: str, required: float | None, greatest: float | None, worth: Worth | None,
         ranges: list[out.GoverningRange], length: float, force: float, volume: float, reason: str, tie: Tie | None = None, stiffness: float = 0.0,
-        anchorage: Any = None, key: str = "", locked: bool = False, priced: bool = True,
+        anchorage: Any = None, key: str = "", priced: bool = True,
     ) -> out.Intervention:  # fmt: skip
         worth = worth or Worth(None)
         met = required is not None
@@ -448,7 +468,7 @@ class _Work:
         return out.Intervention(
             name=name, kind=kind, place=place, unit=unit, meets_target=met, required_size=required, greatest_capacity=greatest,
             capacity_after=after, safety_factor_after=_over(after, self.measure.demand),
-            next_mechanism="no collapse mechanism is left" if locked else worth.mechanism, bound=worth.bound if met else None,
+            next_mechanism=worth.mechanism, bound=worth.bound if met else None,
             ranges=ranges, length_m=length, force_N=force, volume_m3=volume,
             cost=self._cost(length, force, volume) if met and priced else None, adverse=adverse, reason=reason, **more,
         )  # fmt: skip
@@ -487,8 +507,11 @@ class _Work:
         assert isinstance(statics, Statics)
         columns = [(one, place) for one in ties for place in range(len(one.places))]
         try:
-            forces = statics.forces(columns, statics.target * (1.0 + EXCESS))
-        except (NoEquilibrium, NoAnswer):
+            forces = statics.forces(columns, statics.aimed)
+        except NoEquilibrium:
+            return {}
+        except NoAnswer as error:
+            self.context.warnings.append(f"The combination of ties is not given: {error}")
             return {}
         carry = [k for k, f in enumerate(forces) if f > 1e-6 * float(forces.max())]
         if len(carry) < 2:
@@ -529,6 +552,10 @@ class _Work:
                 if worse or (low is not None and high is not None and high < low * (1.0 - NAMED)):
                     adverse.append(
                         f"By {row.label} the margin drops from {_number(low)} to {_number(high)} (verdict {was.outcome}, then {row.outcome})."
+                    )
+                elif row.outcome in ("collapses", "cannot-stand"):
+                    adverse.append(
+                        f"By {row.label} the strengthened building still collapses (margin {_number(high)})."
                     )
             one.row = one.row.model_copy(update={"verdicts": verdicts, "adverse": [*one.row.adverse, *adverse]})
 

@@ -18,8 +18,8 @@ from extrados.decks.reader import Deck, DeckError, make_deck
 from extrados.limit.answer import cannot_stand
 from extrados.limit.errors import Immovable, NoAnswer, NoEquilibrium
 from extrados.limit.finite_motion import finite_motion
-from extrados.limit.programme import LimitAnalysis, Mechanism
-from extrados.limit.strengthening import Point, least_forces, taken_per_force
+from extrados.limit.programme import LimitAnalysis, Mechanism, closed
+from extrados.limit.strengthening import Point, least_force, least_forces, taken_per_force
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import Assembly
 from extrados.results.statistics import Ensemble
@@ -39,7 +39,7 @@ class Worth:
     """The value of a building in the quantity of the target: None without one, infinite where no mechanism exists.
 
     mechanism: what governs, in words; shape: the same but for mirror images; bound: of the value; reason: why there is none; moved: the blocks and the poses into which
-    the mechanism carries them.
+    the mechanism carries them; sense: of the load that governs.
     """
 
     value: float | None
@@ -49,6 +49,7 @@ class Worth:
     reason: str = ""
     by_sense: tuple[float, ...] = ()
     moved: tuple[Assembly, np.ndarray] | None = None
+    sense: int = 1
 
 
 class Statics:
@@ -78,7 +79,8 @@ class Statics:
         for sense in self.senses:
             try:
                 state, mechanism = limit.collapse(sense)
-                value, bound = self._least(limit, mechanism, sense, sense * state.gamma)
+                value = sense * state.gamma
+                value, bound = self._least(limit, mechanism, sense, value, picture or value >= self.target)
             except Immovable as error:
                 values.append(np.inf)
                 told.append(f"none to {_word(sense)}: {error}")
@@ -101,7 +103,9 @@ class Statics:
         chosen = mechanisms[k]
         moved = (limit.assembly, finite_motion(limit.assembly, chosen)) if picture and chosen is not None else None
         shape = () if chosen is None else unmirrored(signature(limit.assembly, chosen))
-        return Worth(float(values[k]), told[k], shape, bounds[k], by_sense=tuple(values), moved=moved)
+        return Worth(
+            float(values[k]), told[k], shape, bounds[k], by_sense=tuple(values), moved=moved, sense=self.senses[k]
+        )
 
     def other_sense_told(self, building: Building) -> str:
         """What the existing building carries in the sense that the deck leaves out."""
@@ -117,10 +121,17 @@ class Statics:
             'An earthquake acts both ways: take direction = "both", unless something else holds that side.'
         )
 
-    def _least(self, limit: LimitAnalysis, mechanism: Mechanism, sense: int, value: float) -> tuple[float, Bound]:
-        """The capacity, and as a bound; where pressed joints slide the least state found without dilatancy."""
+    def _least(
+        self, limit: LimitAnalysis, mechanism: Mechanism, sense: int, value: float, closely: bool
+    ) -> tuple[float, Bound]:
+        """The capacity, and as a bound; where pressed joints slide the least state found without dilatancy, which takes seconds
+        and is not sought where the upper bound already misses the target."""
+        if not limit.associated:
+            return value, "upper"
         if not limit.dilating(mechanism):
             return value, "exact"
+        if not closely:
+            return value, "upper"
         try:
             state, _ = collapse_beside(limit.without_dilatancy(), sense)
         except (NoAnswer, NoEquilibrium):
@@ -168,12 +179,34 @@ class Statics:
             limit.assembly, limit.friction, strength=limit.strength, loads=limit.loads
         ).collapse(sense)  # fmt: skip
 
+    def force(self, one: TieAlternative, place: int, target: float) -> float:
+        """The same of one tie, by the programme of the structure itself; infinite where no force suffices."""
+        building, tie = self.context.building, one.places[place]
+        limits = []
+        for works_in, sign in (("tension", 1), ("compression", -1)):
+            if tie.works_in in (works_in, "both"):
+                added = tie.model_copy(update={"works_in": works_in, "yield_force": None})
+                held = building.having(ties=(*building.ties, added))
+                limits.append((limit_of(held, self.options, forces_only=True), sign))
+        try:
+            needed = max(min(least_force(limit, gamma, sign) for limit, sign in limits) for gamma in self.cases(target))
+        except NoAnswer:  # where its solver gives up, the programme over all cases is solved by another method
+            try:
+                needed = float(self.forces([(one, place)], target)[0])
+            except NoEquilibrium:
+                return np.inf
+        return needed if needed <= one.most else np.inf
+
+    def cases(self, target: float) -> list[float]:
+        """Accelerations to +x that are to be carried [g]: the target in its senses, and rest."""
+        return [sense * target for sense in self.senses] + ([] if len(self.senses) == 2 else [0.0])
+
     def forces(self, ties: list[tuple[TieAlternative, int]], target: float) -> np.ndarray:
         """Yield forces [N] of least sum with which the building carries the target both ways and stands at rest."""
         building = self.context.building
         added = tuple(one.places[place].model_copy(update={"yield_force": None}) for one, place in ties)
         limit = limit_of(building.having(ties=(*building.ties, *added)), self.options, forces_only=True)
-        gammas = [sense * target for sense in self.senses] + ([] if len(self.senses) == 2 else [0.0])
+        gammas = self.cases(target)
         most = np.array([one.most for one, _ in ties])
         return least_forces([limit] * len(gammas), gammas, len(ties), np.ones(len(ties)), most)
 
@@ -183,6 +216,11 @@ class Statics:
         if self.options.acceleration is not None:
             return float(self.options.acceleration) / GRAVITY
         return MotionDemand(self.context).peak_g or 0.0
+
+    @property
+    def aimed(self) -> float:
+        """The capacity for which ties are sized [g]: the target, and the distance that rounding leaves between bounds."""
+        return self.target + 2.0 * closed(len(self.context.building.blocks().a), self.target)
 
     @property
     def target(self) -> float:

@@ -14,9 +14,6 @@ from extrados.schema.table import Table, key
 if TYPE_CHECKING:
     from extrados.views.building import Building
 
-#: Analyses by which a target may be measured, besides limit analysis
-BY = ("tilt", "local-mechanism", "code-checks", "rocking", "fragility", "dem")
-
 
 class Anchorage(Table):
     """Design strengths and sizes of a tie and its anchorage, partial and confidence factors included."""
