@@ -5,6 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import extrados
+from extrados.analyses.conclude import MotionDemand
 from extrados.analyses.context import Context
 from extrados.core import motion as core_motion
 from extrados.decks.reader import DeckError, make_deck
@@ -130,3 +131,21 @@ def test_the_floor_spectrum_of_the_code_bounds_the_response_of_oscillators_on_th
     psa = core_motion.response_spectra(moved[0], 0.01, periods, [0.05]).psa[0]
     ratio = psa / [code(t, 0.05) for t in periods]
     assert (0.5 < ratio).all() and (ratio < 1.6).all(), ratio
+
+
+def test_a_pulse_of_the_ground_is_no_pulse_of_the_floor() -> None:
+    """The demand of an analysis that knows pulses is the floor's motion: its peak, and no pulse."""
+    sine = {"kind": "sine-pulse", "amplitude": "0.15 g", "period": 0.4}
+    free, held = (
+        MotionDemand(Context(make_deck({"structure": BLOCK, "motion": {**sine, **more}, "analysis": {"kind": "tilt"}})))
+        for more in ({}, {"floor": BELOW})
+    )
+    assert free.pulse == "sine" and held.pulse == "" and held.peak_g > free.peak_g
+
+
+def test_an_assessment_takes_the_action_of_its_code() -> None:
+    code = {"jurisdiction": "NTC", "ground": "B", "accelerations": ["0.1 g"]}
+    asked = {"kind": "assess", "strategies": ["code-checks"], "budget": 5.0}
+    run = extrados.run({"structure": BLOCK, "motion": RECORD, "code": code, "analysis": asked})
+    (row,) = run["assess"].verdicts
+    assert "action of [code]" in row.parameters and run["code-checks"].peak_ground_acceleration_g == pytest.approx(0.12)

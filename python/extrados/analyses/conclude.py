@@ -26,7 +26,10 @@ class MotionDemand:
     def __init__(self, context: Context):
         self.context = context
         self.pulse, self.duration_s, self.amplitude_g = "", 0.0, 0.0
-        match context.deck.motion:
+        motion = context.deck.motion
+        match (
+            None if motion is None or motion.floor is not None else motion
+        ):  # a floor turns a pulse into another motion
             case StepPulse() as m:
                 self.pulse, self.duration_s = "step", m.duration
             case SinePulse() as m:

@@ -9,6 +9,7 @@ import numpy as np
 from extrados import kinds
 from extrados.analyses.assess.hazard import STRONG, strong_end
 from extrados.analyses.assess.tables import Assess
+from extrados.analyses.codes.actions import fits
 from extrados.analyses.context import Context
 from extrados.model.errors import NoView
 from extrados.model.structures.plan import Plan
@@ -193,7 +194,10 @@ def _codes(asked: Asked) -> Choice:
         return Choice(
             {**keys, "spectrum": spectrum.model_dump(exclude_none=True)}, f"{words}the spectrum of the deck", 0.0, kind
         )
-    if isinstance(asked.context.deck.motion, Compatible):
+    code, motion = asked.context.deck.code, asked.context.deck.motion
+    if code is not None and code.spectrum(code.concluding) is not None:
+        return Choice(keys, f"{words}the seismic action of [code], {code.name}", 0.0, kind)
+    if isinstance(motion, Compatible) and fits(code, motion):
         return Choice(keys, f"{words}the spectrum that the motions match", 0.0, kind)
     told = f"{words}no spectrum of a code is given, the demand is that of the motion itself: its peak and its response spectrum"
     return Choice({**keys, "motion_spectrum": True}, told, 0.0, kind)

@@ -99,7 +99,7 @@ def spectrum_of(context: Context, model: CodeSpectrum | None, key: str = "spectr
     without a spectrum. key: of the analysis that says it, for what is wrong with it; "code": of that table.
     """
     motion = context.deck.motion
-    if model is None and key == "spectrum" and isinstance(motion, Compatible) and _fits(context.deck.code, motion):
+    if model is None and key == "spectrum" and isinstance(motion, Compatible) and fits(context.deck.code, motion):
         model = motion
     if model is None:
         return None
@@ -116,7 +116,7 @@ def spectrum_of(context: Context, model: CodeSpectrum | None, key: str = "spectr
     return at
 
 
-def _fits(code: Code | None, model: CodeSpectrum) -> bool:
+def fits(code: Code | None, model: CodeSpectrum) -> bool:
     """Whether a spectrum may be the demand in a report by a code."""
     return code is None or code.jurisdiction == "none" or model.code in (*OWN[code.jurisdiction], "table")
 
@@ -126,7 +126,7 @@ def refuse_mixed(context: Context, options: CodeChecks | LocalMechanism) -> None
     code = context.deck.code
     for name in ("spectrum", "collapse_spectrum"):
         model = getattr(options, name, None)
-        if model is not None and not _fits(code, model):
+        if model is not None and not fits(code, model):
             assert code is not None
             raise Refused(
                 f"the spectrum is of {model.code}, the report is by {code.jurisdiction}: give the action in [code], or another jurisdiction",

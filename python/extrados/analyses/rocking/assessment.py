@@ -96,7 +96,7 @@ def run(context: Context, options: Assessment) -> Result:
             f"the criterion says that it {r.verdict}, but rocked through the whole motion it "
             f"{'comes down' if run_outcome == 'collapse' else 'stays up'}: {why}; the run (analysis `rocking`) is the better witness"
         )
-    if rows and not isinstance(context.deck.motion, SinePulse):
+    if rows and (not isinstance(context.deck.motion, SinePulse) or context.deck.motion.floor is not None):
         first = rows[0]
         result.warnings.append(
             f"the criterion was made for single sines: the strongest impulse of this motion is replaced by a sine of "
