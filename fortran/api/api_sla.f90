@@ -233,7 +233,7 @@ contains
       integer(c_int), intent(out) :: integers(4, room)
       real(c_double), intent(out) :: monitored(monitors, room)
       real(c_double), intent(out) :: cracked             !! crack energy, the last event's included [J]
-      real(c_double), intent(out) :: released            !! energy lost as motion between states of iterations [J]
+      real(c_double), intent(out) :: released            !! energy lost as motion between steps, see sla_state [J]
       integer(c_int), intent(out) :: status              !! cancelled leaves what was recorded
       type(element_model), pointer :: model
       !f2py threadsafe

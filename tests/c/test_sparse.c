@@ -101,6 +101,18 @@ int main(void) {
   memcpy(x, b, sizeof x);
   assert(extrados_sparse_plain(handle, value, 2, x) == EXTRADOS_ok);
   assert(residual(x, b) < 1e-13 && residual(x + n, b + n) < 1e-13);
+  /* A negative pivot: the diagonal of one equation with the other sign. */
+  const double turned = -value[start[n / 2]];
+  value[start[n / 2]] = dense[n / 2][n / 2] = turned;
+  memcpy(x, b, sizeof x);
+  assert(extrados_sparse_plain(handle, value, 2, x) == EXTRADOS_not_positive_definite);
+  memcpy(x, b, sizeof x);
+  assert(extrados_sparse_indefinite(handle, value, 2, x) == EXTRADOS_ok);
+  assert(residual(x, b) < 1e-12 && residual(x + n, b + n) < 1e-12);
+  value[start[n / 2]] = dense[n / 2][n / 2] = -turned;
+  memcpy(x, b, sizeof x);
+  assert(extrados_sparse_indefinite(handle, value, 2, x) == EXTRADOS_ok);
+  assert(residual(x, b) < 1e-13 && residual(x + n, b + n) < 1e-13);
   assert(extrados_sparse_factor(handle, value, &ratio, &weakest) == EXTRADOS_ok);
 
   /* A spring between two neighbours of the grid is added, then taken away again. */

@@ -179,3 +179,31 @@ def test_other_rules_remain_and_what_cannot_be_followed_is_reported() -> None:
     result = run_deck(pier(0.01, 3.0, 0.125, cracking="orthotropic", events=3000))
     assert "equilibrium_steps" not in result.results
     assert any("Equilibrium iterations follow rotating cracks" in text for text in result.warnings)
+
+
+def test_shells_are_followed_by_the_same_iterations() -> None:
+    """A box of four walls, whose walls in the push have openings: beyond the last event the load continues where it was."""
+    opening = [{"storey": 1, "x": [1.0, 2.0], "z": [1.0, 2.0]}]
+    corners = [[0, 0], [3, 0], [3, 3], [0, 3]]
+    walls = [
+        {"name": name, "start": corners[k], "end": corners[(k + 1) % 4], "thickness": 0.25, **({"openings": opening} if k % 2 == 0 else {})}
+        for k, name in enumerate("abcd")
+    ]  # fmt: skip
+    data = {
+        "structure": {"kind": "building", "storeys": [3.0], "walls": walls},
+        "material": {"density": 1900.0, "young": 3e9, "tensile_strength": 1e5, "fracture_energy": 40.0},
+        "analysis": [{
+            "kind": "pushover", "mesh": {"size": 0.5, "layers": 3}, "ripple": 0.2, "events": 6000, "crack_closure": True,
+            "target_displacement": 1.4e-3, "without_equilibrium": "continue",
+        }],
+    }  # fmt: skip
+    result = run_deck(data)
+    r = result.results
+    assert r["equilibrium_steps"] > 3 and r["unbalanced_steps"] == 0
+    assert r["step_residual_ratio"] <= RESIDUAL
+    assert r["step_balance_ratio"] <= 2 * BALANCE
+    step = array(result, "event_step") > 0
+    first = int(np.argmax(step))
+    load = array(result, "event_load")
+    assert load[first] == pytest.approx(load[first - 1], rel=0.1)
+    assert np.diff(array(result, "event_lost")[step]).min() >= 0.0

@@ -473,7 +473,7 @@ class Model(Owner):
         return np.array(values, order="F")
 
     def go_on(self, displacement: npt.ArrayLike, histories: npt.ArrayLike) -> None:
-        """Begin a stage with equilibrium iterations, at displacements (nodes, freedoms) [m] and histories (2, points) of another."""
+        """Begin a stage with equilibrium iterations, at a displacement (nodes, freedoms) [m] and histories (2, points) of another."""
         status = _core.api_sla.go_on(
             self.handle, real("displacement", np.transpose(displacement), (self.freedoms, self.nodes)),
             real("histories", histories, (2, self.points)),

@@ -64,6 +64,11 @@ class ShellModel:
         return float(np.ptp(self.mesh.xyz, axis=0).max())
 
     @property
+    def reach(self) -> float:
+        """Height of the building, over which a drift is counted [m]."""
+        return float(np.ptp(self.mesh.xyz[:, 2]))
+
+    @property
     def driven(self) -> bool:
         """Whether the multiplier moves supports."""
         return bool(self.rate.any())
@@ -171,7 +176,9 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
                 stiffness.astype(float),
             )
         )  # fmt: skip
-    if options.without_equilibrium != "load-unload" and any(np.isfinite(j.strength["friction"]) for j in mesh.joints):
+    if options.without_equilibrium not in ("load-unload", "continue") and any(
+        np.isfinite(j.strength["friction"]) for j in mesh.joints
+    ):
         raise Refused(
             'joints that slide keep forces that only load-unload can follow: give them friction = "no-sliding", or leave '
             "without_equilibrium out",

@@ -169,9 +169,12 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
         1e4, "stop where the compliance has grown by this factor"
     )
     crack_closure: bool = key(False, "cracks that close regain their stiffness")
-    without_equilibrium: Literal["load-unload", "proportional", "force-release"] = key(
-        "load-unload", "where no load suits all points, see sla", source="thesis 4.3.1"
+    without_equilibrium: Literal["load-unload", "continue", "proportional", "force-release"] = key(
+        "load-unload",
+        "where no load suits all points, see sla; continue, not in stages: equilibrium iterations in displacement control",
+        source="thesis 4.3.1",
     )
+    continuation: Literal["newton", "implicit-explicit"] = key("newton", "equilibrium iterations, see sla")
     states: list[Annotated[int, Field(ge=1)]] = key(
         [], "events whose state is kept (the peak and the last are anyway)", max_length=200
     )
@@ -217,6 +220,7 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
                 "directions": self.directions != ["+"], "drives": bool(self.drives), "variants": bool(self.variants),
                 "target_displacement": self.target_displacement is not None, "stop_fraction": self.stop_fraction > 0.0,
                 'without_equilibrium = "proportional"': self.without_equilibrium == "proportional",
+                'without_equilibrium = "continue"': self.without_equilibrium == "continue",
                 "constant_damage = false": not self.constant_damage,
             }
         )  # fmt: skip

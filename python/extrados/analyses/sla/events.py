@@ -388,6 +388,7 @@ def run_reference_loads(
     batch, start = GRID, way.before_best
     best_step: State | None = None
     drop_step: State | None = None
+    last_step: State | None = None
     while (done := way.done) < options.events:
         # What is on its way from one point to others has no name
         # Steps of equilibrium iterations are found again from the events before them
@@ -433,12 +434,14 @@ def run_reference_loads(
             load = np.where(found, load, -np.inf)
             if part.reason == "mechanism" and model.mesh.has_joints:
                 load[-1] = -np.inf  # on the way of the mechanism
+            if part.steps[-1] and np.isfinite(load[-1]):
+                last_step = _state(core_model, done + len(part) - 1, part)
             if load.max() > way.best:
                 way.best, way.before_best = float(load.max()), start
-                best_step = _state(core_model, done + len(part) - 1, part) if part.steps[-1] else None
+                best_step = last_step if part.steps[-1] else None
                 drop_step = None
             elif part.steps[-1] and drop_step is None and load[-1] < DROP * way.best:
-                drop_step = _state(core_model, done + len(part) - 1, part)
+                drop_step = last_step
         done += len(part)
         if len(part) and done - 1 in wanted:
             way.states.append(_state(core_model, done - 1, part))
@@ -507,8 +510,9 @@ def run_reference_loads(
                     curve.warnings.append("the state at the peak could not be reproduced from the batch before it")
                 else:
                     kept_states.append(state)
-        if drop_step is not None and drop_step.event not in {s.event for s in kept_states}:
-            kept_states.append(drop_step)
+        for step in (drop_step, last_step):
+            if step is not None and step.event not in {s.event for s in kept_states}:
+                kept_states.append(step)
         kept_states.sort(key=lambda s: s.event)
     curve.seconds = spent_before + time.perf_counter() - begin
     return curve

@@ -132,6 +132,13 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
             raise Refused(
                 f"resume_event is {event}, that run has {len(get['event_point'])} events", ("analysis", "resume_event")
             )
+        if event >= 1 and "event_step" in get and get["event_step"][event - 1]:
+            first = int(np.argmax(get["event_step"])) + 1
+            raise Refused(
+                f"resume_from: event {event} is a step of equilibrium iterations, whose damage has no teeth; the last event before "
+                f"them is {first - 1}",
+                ("analysis", "resume_event"),
+            )
         earlier = None
         if event >= 1:
             totals = [float(get[f"event_{name}"][event - 1]) for name in LEDGER]
