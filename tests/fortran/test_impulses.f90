@@ -74,6 +74,13 @@ contains
          end do
       end do
       if (min(slid, parted) < 30) error stop 'hardly anything slides or opens: this tests nothing'
+      ! One round from nothing does not find where points slide, and says by how much they miss
+      problem%impulse = 0.0_wp
+      problem%rate = 0.0_wp
+      call solve_impulses(problem, tolerance, 1, effort)
+      if (effort%rounds /= 1 .or. effort%factors < 1) error stop 'the effort is not counted'
+      if (effort%converged) error stop 'one round is said to be enough'
+      if (.not. effort%residual > tolerance) error stop 'a violation is not told'
    end subroutine shake
 
    subroutine weigh(problem, at)

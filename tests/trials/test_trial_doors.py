@@ -79,9 +79,7 @@ SQUARES = "".join(
     f"0\nLWPOLYLINE\n100\nAcDbEntity\n8\n0\n100\nAcDbPolyline\n90\n4\n70\n1\n10\n0\n20\n{k}\n10\n1\n20\n{k}\n10\n1\n20\n{k + 1}\n10\n0\n20\n{k + 1}\n"
     for k in range(3)
 )
-DRAWING = (
-    f"0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1015\n9\n$INSUNITS\n70\n6\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n{SQUARES}0\nENDSEC\n0\nEOF\n"
-)
+DRAWING = f"0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1015\n9\n$INSUNITS\n70\n6\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n{SQUARES}0\nENDSEC\n0\nEOF\n"
 PHASED = """[structure]
 kind = "blocks"
 file = "a.dxf"
