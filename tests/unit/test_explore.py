@@ -402,3 +402,32 @@ def test_free_stones_are_as_heavy_deep_and_rough_as_they_were(session: Session) 
     assert free["tilt"].collapse_acceleration_g == pytest.approx(before)
     stones = free.deck.building.blocks()
     assert stones.mass.sum() == pytest.approx(1800.0 * 3.0 * 2.0) and "density" not in str(free.deck.data["structure"])
+
+
+def test_a_block_tilted_beyond_its_capacity_falls_as_it_turns_about_its_toe(session: Session) -> None:
+    """The fall on the page, by rigid contacts, against the equation of rotation about the toe from the same first velocity."""
+    do(session, do="open", text='[structure]\nkind = "block"\nwidth = 1.0\nheight = 4.0\n[[analysis]]\nkind = "tilt"\n')
+    (reply,) = do(session, do="show", gamma=-0.4)
+    scene = reply.words["scene"]
+    assert scene["falls"] == "minus"
+    assert "0.4 g exceeds the capacity of 0.25 g towards −x" in scene["why"]
+    pieces = do(session, do="fall")
+    assert [reply.words["fall"]["done"] for reply in pieces] == [False] * (len(pieces) - 1) + [True]
+    time = np.concatenate([reply.arrays["fall_time"] for reply in pieces])
+    pose = np.concatenate([reply.arrays["fall_pose"] for reply in pieces])
+    assert len(time) == 91 and time[-1] == pytest.approx(3.0, abs=0.02)
+    gravity, theta, arm = 9.80665, np.arctan(-0.4), np.array([0.5, 2.0])  # of the centroid, from the left toe
+    radius2 = float(arm @ arm)
+    inertia = radius2 + (1.0 + 16.0) / 12.0
+    turn = 0.0
+    rate = 0.01 * np.sqrt(gravity * session.picture.assembly.size / radius2)
+    step, found = 1e-4, [0.0]
+    for _ in range(8000):
+        x, y = np.cos(turn) * arm[0] - np.sin(turn) * arm[1], np.sin(turn) * arm[0] + np.cos(turn) * arm[1]
+        rate += step * gravity * (-x * np.cos(theta) - y * np.sin(theta)) / inertia
+        turn += step * rate
+        found.append(turn)
+    early = (time > 0.1) & (time < 0.8)
+    expected = np.interp(time[early], step * np.arange(8001), found)
+    np.testing.assert_allclose(pose[early, 0, 2], expected, rtol=0.02)
+    assert abs(pose[-1, 0, 2] - np.pi / 2) < 0.02, "it lies on its side"
