@@ -250,7 +250,6 @@ def test_tilt_tells_refuses_and_draws(tmp_path) -> None:
         assert (tmp_path / "out" / name).stat().st_size > 100
     dome = {"kind": "dome", "radius": 5, "thickness": 0.5, "rings": 5, "lunes": 8}
     assert "cannot take fracture into account" in run(dome, fracture=True).reason
-    assert "non-associated" in run(dome, friction_rule="non-associated").reason
     strong = make_deck({"structure": dome, "material": {"compressive_strength": 1e6}, "analysis": {"kind": "tilt"}})
     assert "compressive_strength" in run_analyses(Context(strong, threads=1))[0].reason
 

@@ -17,7 +17,7 @@ from scipy import sparse
 from extrados.limit.certificate import CLOSING
 from extrados.limit.contact_points import ContactPoints, SlidingState
 
-ROUNDS, TRIES = 12, 30
+ROUNDS, TRIES = 12, 12
 FOLLOWS = (0.2, 0.8)  # share by which compressions follow
 ROOMS = (1e-7, 1e-6, 1e-5, 1e-4, 2e-3)  # of gamma: gaps that are let pass on the way
 GUESSES = (-2.0, 0.5)  # decades of random compressions over the mean

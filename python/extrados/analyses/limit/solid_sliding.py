@@ -11,7 +11,7 @@ from extrados.limit.solids import Programme, SolidLimit
 from extrados.results import solids as out
 from extrados.results.limit import design_value
 
-GUESS_CONTACTS = 100  # with more contacts states from random compressions take too long
+GUESS_CONTACTS = 60  # with more contacts states from random compressions take too long
 
 
 def slide(
