@@ -52,7 +52,7 @@ def asked(peak_g: float) -> Demanded:
 
 
 def test_a_sliding_wall_has_an_interval() -> None:
-    """Below the least state it stands, above the associated bound it collapses, between them the outcome is open."""
+    """Below the design value it stands, above the associated bound it collapses, between them the outcome is open."""
     result = run(coursed(2), kind="tilt")
     r = result.results
     assert isinstance(r, Tilt) and r.dilating_joints and DILATANT in result.answer
@@ -65,6 +65,8 @@ def test_a_sliding_wall_has_an_interval() -> None:
         [-r.collapse_acceleration_opposite_g, r.collapse_acceleration_g], abs=1e-9
     )
     least, most = (min(r.interval(o)[k] for o in (False, True)) for k in (0, 1))
+    design = min(r.capacity(o) for o in (False, True))
+    assert least - 1e-6 <= design < most
     spread = max(r.non_dilatant.spread_g, r.non_dilatant_opposite.spread_g)
     for peak, outcome in (
         (0.99 * (least - spread), "stands"),
@@ -72,10 +74,14 @@ def test_a_sliding_wall_has_an_interval() -> None:
         (1.01 * most, "collapses"),
     ):
         verdict = r.judged(asked(peak))
-        assert (verdict.outcome, verdict.capacity) == (outcome, least) and DILATANT in verdict.statement
-        assert verdict.ratio == pytest.approx(least / peak)
-        place = {"stands": "below the least state found", "open": "between both", "collapses": "above the upper bound"}
-        assert place[outcome] in verdict.statement, "no lower end of the interval is known"
+        assert (verdict.outcome, verdict.capacity) == (outcome, design) and DILATANT in verdict.statement
+        assert verdict.ratio == pytest.approx(design / peak)
+        place = {
+            "stands": "below the design value",
+            "open": "between design value and upper bound",
+            "collapses": "above the upper bound",
+        }
+        assert place[outcome] in verdict.statement
 
 
 def test_a_demand_just_below_the_least_state_is_open() -> None:
@@ -143,10 +149,11 @@ def test_the_certificate_sees_what_is_wrong(strength: float | None) -> None:
 
 
 def test_solids_are_labelled() -> None:
-    """In space no state without dilatancy is sought: a wall that slides has an upper bound, by which nothing stands."""
+    """In space a wall that slides has an upper bound, a design value by load paths and a least state (test_load_path)."""
     sliding, turning = (run(s, f, kind="tilt", direction=0.0, rose=4) for s, f in ((WALL, 0.65), (ARCH, 0.7)))
     assert sliding.results.dilating_contacts and DILATANT in sliding.answer
-    assert sliding.results.judged(asked(0.1)).outcome == "open"
+    design = min(row.load_path_g for row in sliding.results.non_dilatant)
+    assert sliding.results.judged(asked(0.9 * design)).outcome == "stands"
     column = {"kind": "column", "width": 0.8, "height": 4.0, "drums": 2}
     assert run(column, 0.7, kind="tilt", direction=0.0, rose=4).results.dilating_contacts == 0
     assert turning.status == "ok"
