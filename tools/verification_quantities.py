@@ -5,6 +5,7 @@ import re
 #: Quantity -> patterns of `analysis.key` (without indices) that belong to it; the first that fits wins
 QUANTITIES: dict[str, tuple[str, ...]] = {
     "size of a strengthening": (r"^strengthen\S*\.",),
+    "start of sliding": (r"hand_over\.time_s$", r"\.handed_over$"),
     "code check": (r"(?:local-mechanism|code-checks)\S*\.", r"checks\."),
     "ground motion and spectrum": (r"^motion", r"^shake-table"),
     "displacement": (r"dowel", r"slip_m$", r"displacement_m$", r"permanent_elongation"),

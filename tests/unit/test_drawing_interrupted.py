@@ -1,5 +1,6 @@
 """Signals while figures are drawn side by side: everything ends within seconds, the results stay, the exit code is the signal's."""
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -23,6 +24,22 @@ def children(process: int) -> list[int]:
         return [int(n) for n in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
     except OSError:
         return []
+
+
+def drawers(process: int) -> list[int]:
+    """Processes forked from a command that stay with its own command line; the reader of files takes another."""
+
+    def forked() -> set[int]:
+        said, found = Path(f"/proc/{process}/cmdline").read_bytes(), set()
+        for child in children(process):
+            with contextlib.suppress(OSError):
+                if Path(f"/proc/{child}/cmdline").read_bytes() == said:
+                    found.add(child)
+        return found
+
+    first = forked()
+    time.sleep(0.1 if first else 0.0)
+    return sorted(first & forked()) if first else []
 
 
 def group(leader: int) -> list[int]:
@@ -58,7 +75,7 @@ def drawing(
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
     )  # fmt: skip
     end = time.monotonic() + 120.0
-    while not ((folder / written).exists() and (found := children(process.pid))):
+    while not ((folder / written).exists() and (found := drawers(process.pid))):
         assert process.poll() is None and time.monotonic() < end, process.communicate()[0]
         time.sleep(0.005)
     return process, found
