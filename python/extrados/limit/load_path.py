@@ -33,6 +33,7 @@ NEARLY_FREE, LOOSE = 5e-3, 1e-7  # holds below which a step without it is tried,
 HOLDS = 60
 SHRUNK = 1e-3  # of the first step: no smaller step is tried
 MOST_STEPS = 600
+MOST_SOLVES = 2500  # of Newton's method on a whole path: a path that is found takes a third of it
 STIFFENING = 1e-10  # of the normal stiffness, in the tangent alone: blocks without contact
 
 
@@ -58,6 +59,7 @@ class LoadPath:
         held = points.stiffness.mean()
         self.shear = ratio * np.where(points.stiffness > 0.0, points.stiffness, held)
         self.least = BALANCED * points.weight
+        self.solves = 0
 
     def follow(self) -> SlidingState:
         """The end of the path; NoAnswer where no step leads on."""
@@ -210,7 +212,10 @@ class LoadPath:
         return out, np.ones(self.points.answers.shape[1])
 
     def _factor(self, tangent: tuple[np.ndarray, np.ndarray], hold: float, *, border: bool) -> SuperLU:
-        """Factors of the stiffness of the blocks, bordered by the live load."""
+        """Factors of the stiffness of the blocks, bordered by the live load; NoAnswer where the path takes too many."""
+        self.solves += 1
+        if self.solves > MOST_SOLVES:
+            raise NoAnswer(f"the load path was given up after {MOST_SOLVES} linear systems")
         p = self.points
         points, answers = tangent
         m, d = len(self.normal), p.dimension

@@ -20,7 +20,7 @@ from extrados.results.model import Array, Result
 from extrados.results.solid_files import scene_files
 from extrados.schema.constants import GRAVITY
 
-MOST_BESIDE = 200  # contacts up to which sliding without dilatancy is followed beside an upper bound: half a minute
+MOST_BESIDE = 80  # contacts up to which sliding without dilatancy is followed beside an upper bound: some ten seconds
 FEW = 300  # stones: of more the rose is drawn on request alone
 DIRECTIONS = 16
 SHOWN = 0.08  # of the size: how far the fastest point goes in pictures of a mechanism

@@ -65,7 +65,7 @@ class Tilt(LimitAnalysisTable, Animated):
         ge=4, le=720,
     )  # fmt: skip
     face_law: bool | None = key(
-        None, "of solids: also the capacity with an even pressure on faces, which resists torsion less; default where up to 200 contacts "
+        None, "of solids: also the capacity with an even pressure on faces, which resists torsion less; default where up to 80 contacts "
         "slide", source="after Orduna and Lourenco 2005",
     )  # fmt: skip
     pyramids: int | None = key(
