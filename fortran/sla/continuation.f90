@@ -19,7 +19,8 @@ module sla_continuation
    use common_lists, only : code_newton => sla_event_newton, code_staggered => sla_event_staggered, &
       code_extrapolated => sla_event_extrapolated, code_unbalanced => sla_event_unbalanced, &
       stop_axial => sla_stop_axial, stop_displacement => sla_stop_displacement, stop_far => sla_stop_far, &
-      stop_fraction => sla_stop_fraction, stop_load => sla_stop_load, stop_none => sla_stop_none
+      stop_fraction => sla_stop_fraction, stop_load => sla_stop_load, stop_mechanism => sla_stop_mechanism, &
+      stop_none => sla_stop_none
    use common_status, only : status_cancelled, status_not_positive_definite, status_ok, status_out_of_memory
    use sla_assembly, only : position
    use sla_c_bindings, only : extrados_sparse_indefinite
@@ -227,7 +228,8 @@ contains
                call restore_state(model)
                length = part * length
             end do
-            if (.not. carried) reason = stop_axial
+            ! without constant loads nothing but the growing one carries it away
+            if (.not. carried) reason = merge(stop_axial, stop_mechanism, any(model%load%fa /= 0.0_wp))
             if (status /= status_ok .or. .not. carried) then
                call restore_state(model)
                exit

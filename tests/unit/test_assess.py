@@ -280,8 +280,8 @@ def test_a_suite_of_records_is_a_hazard(tmp_path: Path) -> None:
     )
     rows = {v.strategy: v for v in r.verdicts}
     assert rows["probability"].demand == 0.25, "one of four"
-    assert rows["tilt"].demand == pytest.approx(5.0 / GRAVITY, rel=0.01) and rows["rocking"].outcome == "open"
-    assert run["rocking"].outcome == "collapse" and "Hinges form elsewhere" in rows["rocking"].violated[0], "drums part"
+    assert rows["tilt"].demand == pytest.approx(5.0 / GRAVITY, rel=0.01) and rows["rocking"].outcome == "collapses"
+    assert run["rocking"].outcome == "collapse" and run["rocking"].hand_over is not None, "drums part"
     alone = extrados.run(
         make_deck({"structure": COLUMN, "motion": {**motion, "member": 3}, "analysis": {"kind": "rocking"}}, tmp_path)
     )
@@ -556,8 +556,6 @@ def test_what_strategies_cannot_look_at_ends_no_assessment(structure: dict) -> N
     run = extrados.run({"structure": structure, "motion": PULSE, "analysis": [{"kind": "assess", "budget": 5}]})
     r = run["assess"]
     rows = {v.strategy: v for v in r.verdicts}
-    # In space joints that slide leave an upper bound alone, by which nothing stands.
-    bound = "upper bound (dilatant friction)" in rows["tilt"].statement
-    assert rows["tilt"].status == "ok" and (r.overall == "open") is bound
-    assert bound is (structure["kind"] == "wall")
+    # joints that slide leave no upper bound alone: load paths give a design value, in space too
+    assert rows["tilt"].status == "ok" and rows["tilt"].outcome in ("stands", "collapses")
     assert not [v.reason for v in r.verdicts if "internal" in v.reason] + [n for n in r.not_done if "internal" in n]

@@ -99,7 +99,7 @@ def _title(r: Tilt) -> str:
         return f"Collapse at {r.collapse_acceleration_g:.4f} g to +x (tilt {r.tilt_angle_deg:.2f} deg)"
     least = r.collapse_acceleration_non_associated_g
     design = r.collapse_acceleration_load_path_g
-    value = "" if design is None else f"{design:.4f} g (design value), "
+    value = "" if design is None else f"{design:.4f} g (design value),\n"
     without = "" if least is None else f"\nwithout dilatancy {value}{least:.4f} g (least found)"
     return f"Collapse to +x at {r.collapse_acceleration_g:.4f} g at most (dilatant friction){without}"
 
