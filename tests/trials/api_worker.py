@@ -67,6 +67,21 @@ def wall(xy, held, connect, thickness, young, nu, band, strength, energy, latera
         return *found, before
 
 
+def followed(xy, held, connect, thickness, young, nu, band, strength, energy, reference, longest, least, unit, before, histories,
+             room, watch, way, share, load) -> Any:  # fmt: skip
+    """A wall followed by equilibrium iterations from a state of another stage."""
+    groups = [sla.Plane("Q4", connect, thickness, young, nu, band, sla.Softening(strength, energy), points=(2, 2))]
+    with sla.Model(xy, sla.Freedoms.make(4, held), groups, sla.Behaviour(cracking="rotating", closure=True), threads=1) as model:
+        model.factorise()
+        model.loads(np.zeros((4, 2)), reference)
+        model.follow("newton", longest, least, unit)
+        if not model.continues:
+            return None
+        model.go_on(before, histories)
+        events = model.run(room, [sla.Monitor(watch, way, share)], sla.Stop(load=load))
+        return events.load, model.histories()
+
+
 def plates(xyz, held, connect, thickness, young, nu, band, strength, energy, layers, through, bends, reference, room, watch,
            way, share, load, threads) -> Any:  # fmt: skip
     """A shell bent until it cracks."""
@@ -355,6 +370,11 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
             strength=1e5, energy=50.0, lateral=0.0, axis=np.nan, points=(2, 2), bar=np.array([[0, 2]]), area=1e-4,
             node=np.array([[2, -1]]), direction=np.array([[0, 0]]), stiffness=np.array([1e6]), constant=np.zeros((4, 2)),
             reference=push, room=4, watch=np.array([2]), way=np.array([0]), share=np.array([1.0]), load=1e9, damage=1.0, threads=2,
+        )),
+        (followed, dict(
+            xy=BOX, held=[(0, 0), (0, 1), (1, 0), (1, 1)], connect=np.array([[0, 1, 2, 3]]), thickness=0.2, young=1e9, nu=0.2, band=0.5,
+            strength=1e5, energy=50.0, reference=push, longest=1e-4, least=1e-2, unit=1.0, before=np.zeros((4, 2)),
+            histories=np.zeros((2, 4)), room=4, watch=np.array([2]), way=np.array([0]), share=np.array([1.0]), load=1e9,
         )),
         (plates, dict(
             xyz=np.column_stack([BOX[:, 0], np.zeros(4), BOX[:, 1]]), held=[(n, d) for n in (0, 1) for d in range(6)] + [(2, 5), (3, 5)],

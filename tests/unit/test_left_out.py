@@ -107,7 +107,7 @@ DECKS = {
     "sla": (STACK, None, {"mesh": {"size": 0.5}, "events": 30}),
     "arch rocking": (ARCH, SINE, {"kind": "rocking"}),
     "arch spectrum": (ARCH, RECORD, {"kind": "rocking-spectrum", "periods": [12.0, 20.0]}),
-    "pier": (WALL, None, {"kind": "code-checks", "axial_load": 1e5}),
+    "pier": (WALL, None, {"kind": "code-checks", "axial_load": 1e5, "fixity": "double"}),
     "arch by codes": (ARCH, None, {"kind": "local-mechanism", "mechanism": "building"}),
     "rigid contacts": (BLOCK, SINE, {"kind": "dem", "end_time": 0.4, "solver": "nonsmooth"}),
     "rigid solids": (BLOCK, SINE, {"kind": "dem", "end_time": 0.2, "solver": "nonsmooth", "direction": 0.0}),
