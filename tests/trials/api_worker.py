@@ -71,7 +71,9 @@ def followed(xy, held, connect, thickness, young, nu, band, strength, energy, re
              room, watch, way, share, load) -> Any:  # fmt: skip
     """A wall followed by equilibrium iterations from a state of another stage."""
     groups = [sla.Plane("Q4", connect, thickness, young, nu, band, sla.Softening(strength, energy), points=(2, 2))]
-    with sla.Model(xy, sla.Freedoms.make(4, held), groups, sla.Behaviour(cracking="rotating", closure=True), threads=1) as model:
+    with sla.Model(
+        xy, sla.Freedoms.make(4, held), groups, sla.Behaviour(cracking="rotating", closure=True), threads=1
+    ) as model:
         model.factorise()
         model.loads(np.zeros((4, 2)), reference)
         model.follow("newton", longest, least, unit)
