@@ -63,5 +63,6 @@ duration = 0.2
 kind = "tilt"
 [[analysis]]
 kind = "rocking"
+hand_over = false
 end_time = 3.0
 """
