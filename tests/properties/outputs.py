@@ -6,7 +6,7 @@ import numpy as np
 from asking import Answer, Deck, ask, must, near
 from buildings import changed, decks, number, pulses
 from conservation import building
-from definitions import ARCH, PULSE
+from definitions_keys import ARCH, PULSE
 from fields import LOADS, asymmetric
 from hypothesis import strategies as st
 from relations import EARTHQUAKES, GRAVITY, ok, relation

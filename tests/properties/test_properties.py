@@ -35,7 +35,11 @@ CHAPTERS = (
     "fields",
     "geometry",
     "sums",
-    "definitions",
+    "definitions_codes",
+    "definitions_elements",
+    "definitions_statics",
+    "definitions_statistics",
+    "definitions_keys",
     "kernels",
     "outputs",
 )

@@ -33,7 +33,7 @@ NEARLY_FREE, LOOSE = 5e-3, 1e-7  # holds below which a step without it is tried,
 HOLDS = 60
 SHRUNK = 1e-3  # of the first step: no smaller step is tried
 MOST_STEPS = 600
-MOST_SOLVES = 2500  # of Newton's method on a whole path: a path that is found takes a third of it
+MOST_SOLVES = 20000  # linear systems of a whole path, half a minute of a wall of 50 bricks
 STIFFENING = 1e-10  # of the normal stiffness, in the tangent alone: blocks without contact
 
 
@@ -124,6 +124,8 @@ class LoadPath:
         self, old: _State, u: np.ndarray, gamma: float, work: float | None, hold: float, about: np.ndarray
     ) -> _State | None:
         """The state in equilibrium after a step, with springs `hold` to the displacements `about`; None without one."""
+        if self.solves > MOST_SOLVES:
+            raise NoAnswer(f"the load path ended at {gamma:.4f} g: it took more than {MOST_SOLVES} linear systems")
         p = self.points
 
         def left(u: np.ndarray, gamma: float) -> tuple[_State, np.ndarray, float, float]:
@@ -212,10 +214,8 @@ class LoadPath:
         return out, np.ones(self.points.answers.shape[1])
 
     def _factor(self, tangent: tuple[np.ndarray, np.ndarray], hold: float, *, border: bool) -> SuperLU:
-        """Factors of the stiffness of the blocks, bordered by the live load; NoAnswer where the path takes too many."""
+        """Factors of the stiffness of the blocks, bordered by the live load."""
         self.solves += 1
-        if self.solves > MOST_SOLVES:
-            raise NoAnswer(f"the load path was given up after {MOST_SOLVES} linear systems")
         p = self.points
         points, answers = tangent
         m, d = len(self.normal), p.dimension

@@ -40,6 +40,7 @@ __all__ = ["geometry_arrays", "run", "state_arrays"]
 
 FILM = 90  # tilts of an animation
 
+MOST_FOLLOWED = 80  # joints up to which load paths are followed beside an upper bound: some seconds
 MOST_NAMED = 6  # hinges and sliding joints told in words
 
 
@@ -217,7 +218,12 @@ def _without_dilatancy(
             told["non_associated_reason"] = str(error)
             continue
         way = "to +x" if direction > 0 else "to -x"
-        if beside.coulomb[direction].falling is None:
+        if limit.associated and len(limit.assembly.a) > MOST_FOLLOWED:
+            result.warnings.append(
+                f'Load paths {way} are not followed: of more than {MOST_FOLLOWED} joints friction_rule = "non-associated" requests '
+                "them. The capacity is the least state found, not the design value."
+            )
+        elif beside.coulomb[direction].falling is None:
             paths, ends = _paths(beside, direction)
             lowest = min(ends, key=lambda one: direction * one[0].gamma, default=pair)
             if direction * (pair[0].gamma - lowest[0].gamma) > out.SAME:
