@@ -33,7 +33,8 @@ NEARLY_FREE, LOOSE = 5e-3, 1e-7  # holds below which a step without it is tried,
 HOLDS = 60
 SHRUNK = 1e-3  # of the first step: no smaller step is tried
 MOST_STEPS = 600
-MOST_SOLVES = 20000  # linear systems of a whole path, half a minute of a wall of 50 bricks
+#: Linear systems of a whole path: where the deck requests it, and beside an upper bound
+PATIENT, QUICK = 20000, 1500
 STIFFENING = 1e-10  # of the normal stiffness, in the tangent alone: blocks without contact
 
 
@@ -53,8 +54,9 @@ class _State:
 class LoadPath:
     """The path of one structure under one live load at one ratio of joint stiffnesses."""
 
-    def __init__(self, points: ContactPoints, ratio: float):
-        self.points = points
+    def __init__(self, points: ContactPoints, ratio: float, effort: int = PATIENT):
+        """effort: linear systems after which the path is given up."""
+        self.points, self.effort = points, effort
         self.normal = points.stiffness
         held = points.stiffness.mean()
         self.shear = ratio * np.where(points.stiffness > 0.0, points.stiffness, held)
@@ -124,8 +126,8 @@ class LoadPath:
         self, old: _State, u: np.ndarray, gamma: float, work: float | None, hold: float, about: np.ndarray
     ) -> _State | None:
         """The state in equilibrium after a step, with springs `hold` to the displacements `about`; None without one."""
-        if self.solves > MOST_SOLVES:
-            raise NoAnswer(f"the load path ended at {gamma:.4f} g: it took more than {MOST_SOLVES} linear systems")
+        if self.solves > self.effort:
+            raise NoAnswer(f"the load path ended at {gamma:.4f} g: it took more than {self.effort} linear systems")
         p = self.points
 
         def left(u: np.ndarray, gamma: float) -> tuple[_State, np.ndarray, float, float]:

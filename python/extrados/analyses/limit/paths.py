@@ -4,16 +4,21 @@ from collections.abc import Callable
 
 from extrados.limit.certificate import Certificate
 from extrados.limit.errors import NoAnswer
-from extrados.limit.load_path import RATIOS
+from extrados.limit.load_path import PATIENT, QUICK, RATIOS
 from extrados.results.limit import LoadPath
 
 
-def follow_paths(follow: Callable[[float], tuple[float, Certificate]]) -> list[LoadPath]:
-    """The load paths of one push; follow(ratio): collapse acceleration along the push [g] and its certificate."""
-    rows = []
+def follow_paths(follow: Callable[[float, int], tuple[float, Certificate]], *, patient: bool) -> list[LoadPath]:
+    """The load paths of one push; follow(ratio, effort): collapse acceleration along the push [g] and its certificate.
+
+    Without patience the effort is small, and no path is followed after one that was given up.
+    """
+    rows: list[LoadPath] = []
     for ratio in RATIOS:
         try:
-            gamma, proof = follow(ratio)
+            if not patient and rows and rows[-1].collapse_acceleration_g is None:
+                raise NoAnswer("not followed: the path before was given up")
+            gamma, proof = follow(ratio, PATIENT if patient else QUICK)
         except NoAnswer as error:
             rows.append(
                 LoadPath(

@@ -15,21 +15,21 @@ GUESS_CONTACTS = 60  # with more contacts states from random compressions take t
 
 
 def slide(
-    limit: SolidLimit, direction: float, associated: float | None, starts: int
+    limit: SolidLimit, direction: float, associated: float | None, starts: int, *, patient: bool = True
 ) -> tuple[out.SolidNonDilatant, Programme | None]:
     """What a push along a direction [deg] gives without dilatancy, and the least state; associated: its upper bound [g]."""
     points = limit.contact_points(direction)
     programmes = LeastLoad(points)
     ends: list[SlidingState] = []
 
-    def follow(ratio: float) -> tuple[float, Certificate]:
-        end = rigid_motion(points, LoadPath(points, ratio).follow())
+    def follow(ratio: float, effort: int) -> tuple[float, Certificate]:
+        end = rigid_motion(points, LoadPath(points, ratio, effort).follow())
         proof = limit.certify(direction, end)[1]
         if proof.holds(end.gamma):
             ends.append(end)
         return end.gamma, proof
 
-    paths = follow_paths(follow)
+    paths = follow_paths(follow, patient=patient)
     found = [programmes.descended(end) for end in ends]
     if len(limit.assembly.a) <= GUESS_CONTACTS:
         found += [state for k in range(starts) if (state := programmes.guessed(np.random.default_rng(k))) is not None]

@@ -125,7 +125,9 @@ def _without_dilatancy(
         associated = found_at[direction]
         if not isinstance(associated, Programme):
             continue
-        row, state = slide(limit, direction, associated.gamma, options.starts)
+        row, state = slide(
+            limit, direction, associated.gamma, options.starts, patient=options.friction_rule == "non-associated"
+        )
         rows.append(row)
         if state is not None:
             states[direction] = state

@@ -224,7 +224,7 @@ def _without_dilatancy(
                 "them. The capacity is the least state found, not the design value."
             )
         elif beside.coulomb[direction].falling is None:
-            paths, ends = _paths(beside, direction)
+            paths, ends = _paths(beside, direction, patient=not limit.associated)
             lowest = min(ends, key=lambda one: direction * one[0].gamma, default=pair)
             if direction * (pair[0].gamma - lowest[0].gamma) > out.SAME:
                 pair = lowest  # below the states that the programmes found
@@ -263,18 +263,20 @@ def _without_dilatancy(
     return told
 
 
-def _paths(limit: LimitAnalysis, direction: int) -> tuple[list[out.LoadPath], list[tuple[State, Mechanism]]]:
+def _paths(
+    limit: LimitAnalysis, direction: int, *, patient: bool
+) -> tuple[list[out.LoadPath], list[tuple[State, Mechanism]]]:
     """The load paths to +x (1) or to -x (-1), and the certified collapses at their ends."""
     ends = []
 
-    def follow(ratio: float) -> tuple[float, Certificate]:
-        state, mechanism = collapse_along_path(limit, direction, ratio)
+    def follow(ratio: float, effort: int) -> tuple[float, Certificate]:
+        state, mechanism = collapse_along_path(limit, direction, ratio, effort)
         proof = certify(limit.assembly, limit.loads, limit.friction, state, mechanism, None)
         if proof.holds(state.gamma):
             ends.append((state, mechanism))
         return direction * state.gamma, proof
 
-    return follow_paths(follow), ends
+    return follow_paths(follow, patient=patient), ends
 
 
 def _fracture(building: Building, options: Tilt, answer: Answer, result: Result) -> dict[str, out.Fracture]:

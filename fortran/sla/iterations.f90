@@ -1,0 +1,410 @@
+!> One step of equilibrium iterations under displacement control, for sla_continuation.
+!>
+!> A step prescribes the displacement on which the reference load does its work (fb.u, or the movement of supports) and
+!> finds displacements and multiplier in equilibrium by the total law of the points (sla_coaxial).
+!>
+!>   Newton      with the tangent of histories that grow with the strain, halving a step that does not lower the
+!>               residual; where no step does, three iterations with the secant matrix
+!>   staggered   where Newton stalls: damage frozen, Newton on the convex energy with Armijo's rule; histories follow;
+!>               again until the new damage leaves no force out of balance. Damage only grows and is bounded
+!>   explicit    implicit-explicit integration (Oliver, Huespe and Cante 2008): histories that continue at the rate of
+!>               the last step, one convex problem a step, and a step length from the force that this leaves out of
+!>               balance
+module sla_iterations
+   use common_cancel, only : cancel_requested
+   use common_kinds, only : wp
+   use common_lists, only : code_newton => sla_event_newton, code_staggered => sla_event_staggered, &
+      code_extrapolated => sla_event_extrapolated, code_unbalanced => sla_event_unbalanced
+   use common_status, only : status_cancelled, status_not_positive_definite, status_ok
+   use sla_assembly, only : position
+   use sla_c_bindings, only : extrados_sparse_indefinite
+   use sla_coaxial, only : by_frozen, by_secant, by_tangent
+   use sla_group, only : element_group, history_group, most_entries, unbounded
+   use sla_model, only : element_model
+   use, intrinsic :: iso_c_binding, only : c_int
+   implicit none
+   private
+   public :: implicit_step, explicit_step, evaluate, is_driven, longest_step, few, growth
+
+   !> Residual over the largest nodal force; of the convex problems
+   real(wp), parameter :: tolerance = 1.0e-4_wp, inner_tolerance = 1.0e-5_wp
+   integer, parameter :: most_newton = 12, most_loops = 300, most_inner = 40, most_halvings = 4
+   !> Iterations of a step after which the next may be longer
+   integer, parameter :: few = 10
+   real(wp), parameter :: growth = 1.5_wp
+   !> Of the greatest displacement: no step is longer
+   real(wp), parameter :: part_of_way = 0.1_wp
+   !> Displacement over that of the control beyond which a structure has run away
+   real(wp), parameter :: farthest = 5.0_wp
+   !> Force that extrapolated damage may leave out of balance, over the largest nodal force
+   real(wp), parameter :: explicit_tolerance = 5.0e-3_wp
+   !> Times that force beyond which such a step is no state in equilibrium
+   real(wp), parameter :: largest_error = 4.0_wp
+
+contains
+
+   !> Do supports move with the multiplier?
+   pure function is_driven(model) result(yes)
+      type(element_model), intent(in) :: model
+      logical :: yes
+      yes = any(abs(model%support%moved(:, 2)) > 0.0_wp)
+   end function is_driven
+
+   !> Newton's method, then the staggered one
+   subroutine implicit_step(model, length, code, iterations, carried, lost, status)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: length           !! of the control [J]
+      integer(c_int), intent(out) :: code      !! of the list sla_event
+      integer, intent(out) :: iterations
+      logical, intent(out) :: carried
+      real(wp), intent(inout) :: lost          !! [J]
+      integer(c_int), intent(out) :: status
+      logical :: found
+      carried = .true.
+      code = code_newton
+      found = .false.
+      status = status_ok
+      if (abs(length) > 0.0_wp) then
+         call predict(model, length, status)
+         if (status == status_ok) call newton_step(model, length, iterations, found, status)
+      end if
+      if (status == status_ok .and. .not. found) then
+         code = code_staggered
+         call predict(model, length, status)
+         if (status == status_ok) call staggered_step(model, length, iterations, found, carried, lost, status)
+         if (.not. found) code = code_unbalanced
+      end if
+      if (status == status_ok .and. carried) call update_all(model, lost)
+   end subroutine implicit_step
+
+   !> Displacements and multiplier at the end of a step: the last two states extrapolated, or by the secant matrix
+   subroutine predict(model, length, status)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: length
+      integer(c_int), intent(out) :: status
+      real(wp) :: ratio, scale, energy
+      status = status_ok
+      associate (path => model%path)
+         path%u(:) = path%now
+         path%lambda = path%lambda_now
+         if (.not. abs(length) > 0.0_wp) return
+         if (path%last_step > 0.0_wp) then
+            ratio = length / path%last_step
+            path%u(:) = path%now + ratio * (path%now - path%before)
+            path%lambda = path%lambda_now + ratio * (path%lambda_now - path%lambda_before)
+            return
+         end if
+         call evaluate(model, by_frozen, .true., energy, scale)
+         call correct(model, path%drive + length, status)
+         if (status == status_ok) call move(model, 1.0_wp)
+      end associate
+   end subroutine predict
+
+   !> Forces, and where wanted the matrix, of the path's displacements; residual forces go into solution%force
+   subroutine evaluate(model, how, whole, energy, scale)
+      type(element_model), intent(inout) :: model
+      integer, intent(in) :: how               !! by_... of sla_coaxial
+      logical, intent(in) :: whole             !! with the matrix
+      real(wp), intent(out) :: energy          !! stored [J]
+      real(wp), intent(out) :: scale           !! largest nodal force of an element [N]
+      real(wp) :: local(most_entries), f(most_entries), k(most_entries, most_entries), part
+      integer :: g, e, i, n
+      n = model%mesh%equations
+      energy = 0.0_wp
+      scale = 0.0_wp
+      model%solution%force(:) = 0.0_wp
+      if (whole) then
+         model%stiffness%value(:) = 0.0_wp
+         model%path%push(:) = 0.0_wp
+      end if
+      do g = 1, size(model%mesh%holders)
+         associate (group => model%mesh%holders(g)%group, force => model%solution%force)
+            do e = 1, group%elements
+               call group%gather(e, model%path%u, local)
+               call respond(group, e, local, how, f, k, part)
+               energy = energy + part
+               do i = 1, group%freedoms
+                  force(group%equation(i, e)) = force(group%equation(i, e)) + f(i) * group%factor(i, e)
+                  scale = max(scale, abs(f(i)))
+               end do
+               if (whole) call add_matrix(model, group, e, k)
+            end do
+         end associate
+      end do
+      model%solution%force(0) = 0.0_wp
+      model%solution%force(0:n) = model%solution%force(0:n) - model%load%fa - model%path%lambda * model%load%fb
+   end subroutine evaluate
+
+   !> Response of an element; what has no histories is linear
+   pure subroutine respond(group, e, local, how, f, k, energy)
+      class(element_group), intent(in) :: group
+      integer, intent(in) :: e
+      real(wp), intent(in) :: local(:)
+      integer, intent(in) :: how
+      real(wp), intent(out) :: f(:)
+      real(wp), intent(out) :: k(:, :)
+      real(wp), intent(out) :: energy
+      integer :: i, n
+      select type (group)
+      class is (history_group)
+         call group%respond(e, local, how, f, k, energy)
+      class default
+         n = group%freedoms
+         call group%matrix(e, k)
+         do i = 1, n
+            f(i) = dot_product(k(i, 1:n), local(1:n))
+         end do
+         energy = 0.5_wp * dot_product(f(1:n), local(1:n))
+      end select
+   end subroutine respond
+
+   !> An element's matrix into that of the unknowns, and the forces by which moved supports act on them
+   pure subroutine add_matrix(model, group, e, k)
+      type(element_model), intent(inout) :: model
+      class(element_group), intent(in) :: group
+      integer, intent(in) :: e
+      real(wp), intent(in) :: k(:, :)
+      integer :: i, j, n, row, column
+      real(wp) :: value
+      n = model%mesh%equations
+      do j = 1, group%freedoms
+         column = int(group%equation(j, e))
+         if (column == 0) cycle
+         do i = 1, group%freedoms
+            row = int(group%equation(i, e))
+            if (row == 0) cycle
+            value = k(i, j) * group%factor(i, e) * group%factor(j, e)
+            if (column > n) then
+               model%path%push(row) = model%path%push(row) + value * model%support%moved(column - n, 2)
+            else if (row >= column .and. row <= n) then
+               associate (at => position(model%stiffness%start, model%stiffness%row, row, column))
+                  model%stiffness%value(at) = model%stiffness%value(at) + value
+               end associate
+            end if
+         end do
+      end do
+   end subroutine add_matrix
+
+   !> Residual over the largest nodal force; the equations of supports have none
+   pure function residual_of(model, scale) result(ratio)
+      type(element_model), intent(in) :: model
+      real(wp), intent(in) :: scale
+      real(wp) :: ratio
+      ratio = maxval(abs(model%solution%force(1:model%mesh%equations)))
+      if (scale > 0.0_wp) ratio = ratio / scale
+   end function residual_of
+
+   !> The change of displacements and multiplier that takes the linearised residual away at a value of the control: into
+   !> z(:, 1), and the multiplier's into z's second column by `step_of`
+   subroutine correct(model, target, status)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: target           !! of the control [J]
+      integer(c_int), intent(out) :: status
+      real(wp) :: change, slope
+      integer :: n
+      n = model%mesh%equations
+      associate (path => model%path, z => model%solution%z, fb => model%load%fb)
+         z(:, 1) = -model%solution%force(1:n)
+         z(:, 2) = fb(1:n) - path%push(1:n)
+         status = extrados_sparse_indefinite(model%stiffness%factor, model%stiffness%value, 2_c_int, z)
+         path%solutions = path%solutions + 1
+         if (status /= status_ok) return
+         if (is_driven(model)) then
+            change = target - path%lambda
+         else
+            slope = dot_product(fb(1:n), z(:, 2))
+            change = target - dot_product(fb, path%u(0:n)) - dot_product(fb(1:n), z(:, 1))
+            change = merge(change / slope, 0.0_wp, abs(slope) > 0.0_wp)
+         end if
+         z(:, 1) = z(:, 1) + change * z(:, 2)
+         z(1, 2) = change
+         if (.not. all(abs(z(:, 1)) <= unbounded)) status = status_not_positive_definite
+      end associate
+   end subroutine correct
+
+   !> Go a part of the way of the last correction
+   pure subroutine move(model, part)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: part
+      integer :: n, m
+      n = model%mesh%equations
+      m = size(model%support%moved, 1)
+      associate (path => model%path, z => model%solution%z)
+         path%u(1:n) = path%u(1:n) + part * z(:, 1)
+         path%lambda = path%lambda + part * z(1, 2)
+         path%u(n + 1:n + m) = model%support%moved(:, 1) + path%lambda * model%support%moved(:, 2)
+      end associate
+   end subroutine move
+
+   !> Newton's method by the tangent, with a line search on the residual
+   subroutine newton_step(model, length, iterations, found, status)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: length
+      integer, intent(out) :: iterations
+      logical, intent(out) :: found
+      integer(c_int), intent(out) :: status
+      real(wp) :: energy, scale, ratio, trial, part
+      integer :: secants, i
+      status = status_ok
+      secants = 0
+      found = .false.
+      do iterations = 0, most_newton
+         call evaluate(model, merge(by_secant, by_tangent, secants > 0), .true., energy, scale)
+         ratio = residual_of(model, scale)
+         model%path%residual = ratio
+         found = ratio < tolerance .and. iterations > 0
+         if (found .or. .not. ratio <= unbounded) return
+         call correct(model, model%path%drive + length, status)
+         if (status == status_not_positive_definite) then
+            status = status_ok
+            return
+         end if
+         if (status /= status_ok) return
+         if (secants > 0) then
+            secants = secants - 1
+            call move(model, 1.0_wp)
+            cycle
+         end if
+         part = 1.0_wp
+         call move(model, part)
+         do i = 0, most_halvings
+            call evaluate(model, by_secant, .false., energy, scale)
+            trial = residual_of(model, scale)
+            if (trial <= 0.9_wp * ratio .or. i == most_halvings) exit
+            call move(model, -0.5_wp * part)
+            part = 0.5_wp * part
+         end do
+         if (iterations > 0 .and. .not. trial <= 0.95_wp * ratio) secants = 3
+      end do
+   end subroutine newton_step
+
+   !> Damage frozen, then updated, until nothing changes
+   subroutine staggered_step(model, length, iterations, found, carried, lost, status)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: length
+      integer, intent(out) :: iterations
+      logical, intent(out) :: found
+      logical, intent(out) :: carried
+      real(wp), intent(inout) :: lost
+      integer(c_int), intent(out) :: status
+      real(wp) :: energy, scale
+      found = .false.
+      carried = .true.
+      do iterations = 1, most_loops
+         call frozen_solution(model, length, status)
+         if (status /= status_ok) return
+         carried = .not. has_run_away(model, length)
+         if (.not. carried) return
+         call update_all(model, lost)
+         call evaluate(model, by_frozen, .false., energy, scale)
+         model%path%residual = residual_of(model, scale)
+         found = model%path%residual < tolerance
+         if (found) return
+         if (cancel_requested()) status = status_cancelled
+         if (status /= status_ok) return
+      end do
+   end subroutine staggered_step
+
+   !> The one equilibrium at the present damage: Newton's method on a convex energy
+   subroutine frozen_solution(model, length, status)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: length
+      integer(c_int), intent(out) :: status
+      real(wp) :: energy, scale, before, slope, part, trial
+      integer :: i, k, n
+      n = model%mesh%equations
+      status = status_ok
+      do i = 0, most_inner
+         call evaluate(model, by_frozen, .true., energy, scale)
+         if (residual_of(model, scale) < inner_tolerance .and. i > 0) return
+         before = energy - dot_product(model%load%fa, model%path%u(0:n))
+         call correct(model, model%path%drive + length, status)
+         if (status /= status_ok) return
+         slope = dot_product(model%solution%force(1:n) + model%path%lambda * model%load%fb(1:n), model%solution%z(:, 1))
+         part = 1.0_wp
+         call move(model, part)
+         if (i == 0) cycle          ! to the control's value
+         do k = 1, 10
+            call evaluate(model, by_frozen, .false., trial, scale)
+            trial = trial - dot_product(model%load%fa, model%path%u(0:n))
+            if (trial <= before + 1.0e-4_wp * part * slope + 1.0e-12_wp * abs(before)) exit
+            call move(model, -0.5_wp * part)
+            part = 0.5_wp * part
+         end do
+      end do
+   end subroutine frozen_solution
+
+   !> One convex problem with histories that go on at the rate of the last step; the step is then adapted to its error
+   subroutine explicit_step(model, length, code, carried, lost, status)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: length
+      integer(c_int), intent(out) :: code
+      logical, intent(out) :: carried
+      real(wp), intent(inout) :: lost
+      integer(c_int), intent(out) :: status
+      real(wp) :: energy, scale, ratio
+      integer :: g
+      code = code_extrapolated
+      carried = .true.
+      ratio = 0.0_wp
+      if (model%path%last_step > 0.0_wp) ratio = length / model%path%last_step
+      do g = 1, size(model%mesh%holders)
+         select type (group => model%mesh%holders(g)%group)
+         class is (history_group)
+            call group%extrapolate(ratio)
+         end select
+      end do
+      call predict(model, length, status)
+      if (status == status_ok) call frozen_solution(model, length, status)
+      if (status /= status_ok) return
+      carried = .not. has_run_away(model, length)
+      if (.not. carried) return
+      do g = 1, size(model%mesh%holders)
+         select type (group => model%mesh%holders(g)%group)
+         class is (history_group)
+            call group%restore()
+         end select
+      end do
+      call update_all(model, lost)
+      call evaluate(model, by_frozen, .false., energy, scale)
+      model%path%residual = residual_of(model, scale)
+      if (model%path%residual > largest_error * explicit_tolerance) code = code_unbalanced
+      ratio = sqrt(explicit_tolerance / max(model%path%residual, 1.0e-12_wp))
+      model%path%step = min(model%path%step * min(max(ratio, 1.0_wp / growth), growth), longest_step(model))
+   end subroutine explicit_step
+
+   !> No step is longer than a part of the displacements so far: stiff structures lose equilibrium early
+   pure function longest_step(model) result(step)
+      type(element_model), intent(in) :: model
+      real(wp) :: step
+      associate (path => model%path)
+         step = min(path%longest, part_of_way * path%unit * maxval(abs(path%now(1:model%mesh%equations))))
+         if (.not. step > 0.0_wp) step = path%longest
+      end associate
+   end function longest_step
+
+   !> Have displacements left those of the control behind?
+   pure function has_run_away(model, length) result(yes)
+      type(element_model), intent(in) :: model
+      real(wp), intent(in) :: length
+      logical :: yes
+      associate (path => model%path)
+         yes = maxval(abs(path%u(1:model%mesh%equations) - path%start(1:model%mesh%equations))) > &
+            max(farthest * abs(path%drive + length - path%drive_start) / path%unit, path%least_runaway)
+      end associate
+   end function has_run_away
+
+   !> All histories follow the displacements
+   subroutine update_all(model, lost)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(inout) :: lost          !! [J]
+      integer :: g
+      do g = 1, size(model%mesh%holders)
+         select type (group => model%mesh%holders(g)%group)
+         class is (history_group)
+            call group%update(model%path%u, lost)
+         end select
+      end do
+   end subroutine update_all
+
+end module sla_iterations
