@@ -14,7 +14,8 @@ module sla_continuation
    use common_status, only : status_cancelled, status_ok, status_out_of_memory
    use sla_coaxial, only : by_frozen
    use sla_group, only : history_group, point_group, unbounded
-   use sla_iterations, only : evaluate, explicit_step, few, growth, implicit_step, is_driven, longest_step
+   use sla_iterations, only : evaluate, explicit_step, few, growth, implicit_step, is_driven, longest_step, &
+      loads_run_away
    use sla_ledger, only : event_log, judge_fall
    use sla_model, only : element_model
    use sla_regions, only : regions_settled
@@ -25,8 +26,11 @@ module sla_continuation
    public :: model_continues, begin_path, resume_path, run_steps, path_histories
 
    !> Steps that are tried to end at a target, and how near to it a step must end, of its length
-   integer, parameter :: most_trials = 8
+   integer, parameter :: most_trials = 12
    real(wp), parameter :: near = 1.0e-6_wp
+   !> Times that a step without a state is tried again, each time by so small a part of it
+   integer, parameter :: most_retreats = 3
+   real(wp), parameter :: retreat = 0.25_wp
    !> First step over the longest
    real(wp), parameter :: first_step = 0.1_wp
 
@@ -172,7 +176,7 @@ contains
       real(wp) :: lost, load, length
       integer(c_int) :: code
       real(wp) :: part
-      integer :: iterations, trials, g
+      integer :: iterations, trials, retreats, g
       logical :: carried, fallen
       reason = stop_none
       status = status_ok
@@ -182,6 +186,7 @@ contains
             if (status /= status_ok) exit
             length = path%step
             if (path%steps == 0) length = 0.0_wp
+            retreats = 0
             do trials = 1, most_trials
                lost = 0.0_wp
                if (path%implicit .or. path%steps < 2) then
@@ -190,14 +195,21 @@ contains
                   call explicit_step(model, length, code, carried, lost, status)
                   iterations = few
                end if
-               if (status /= status_ok .or. .not. carried) exit
+               if (status /= status_ok) exit
+               if (.not. carried) then
+                  if (retreats == most_retreats .or. .not. abs(length) > 0.0_wp .or. trials == most_trials) exit
+                  retreats = retreats + 1
+                  call restore_state(model)
+                  length = retreat * length
+                  path%step = retreat * path%step
+                  cycle
+               end if
                part = part_to_target(model, monitors)
                if (part >= 1.0_wp - near .or. trials == most_trials) exit
                call restore_state(model)
                length = part * length
             end do
-            ! without constant loads nothing but the growing one carries it away
-            if (.not. carried) reason = merge(stop_axial, stop_mechanism, any(model%load%fa /= 0.0_wp))
+            if (.not. carried) reason = merge(stop_axial, stop_mechanism, loads_run_away(model))
             if (status /= status_ok .or. .not. carried) then
                call restore_state(model)
                exit

@@ -24,7 +24,7 @@ module sla_iterations
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: implicit_step, explicit_step, evaluate, is_driven, longest_step, few, growth
+   public :: implicit_step, explicit_step, evaluate, is_driven, longest_step, loads_run_away, few, growth
 
    !> Residual over the largest nodal force; of the convex problems
    real(wp), parameter :: tolerance = 1.0e-4_wp, inner_tolerance = 1.0e-5_wp
@@ -34,8 +34,11 @@ module sla_iterations
    real(wp), parameter :: growth = 1.5_wp
    !> Of the greatest displacement: no step is longer
    real(wp), parameter :: part_of_way = 0.1_wp
-   !> Displacement over that of the control beyond which a structure has run away
-   real(wp), parameter :: farthest = 5.0_wp
+   !> Times the displacement of the control that the constant loads may follow their own direction, on the average of their
+   !> forces, and that anything may move: rocking raises the loads, parts that rotate far from the control move many times as far
+   real(wp), parameter :: farthest = 5.0_wp, farthest_of_all = 500.0_wp
+   !> Of the greatest displacement: so far, on the average, the constant loads have followed their own direction
+   real(wp), parameter :: share_of_loads = 1.0e-3_wp
    !> Force that extrapolated damage may leave out of balance, over the largest nodal force
    real(wp), parameter :: explicit_tolerance = 5.0e-3_wp
    !> Times that force beyond which such a step is no state in equilibrium
@@ -383,16 +386,34 @@ contains
       end associate
    end function longest_step
 
-   !> Have displacements left those of the control behind?
+   !> Have the constant loads gone their way without the control, or displacements left it far behind?
    pure function has_run_away(model, length) result(yes)
       type(element_model), intent(in) :: model
       real(wp), intent(in) :: length
       logical :: yes
-      associate (path => model%path)
-         yes = maxval(abs(path%u(1:model%mesh%equations) - path%start(1:model%mesh%equations))) > &
-            max(farthest * abs(path%drive + length - path%drive_start) / path%unit, path%least_runaway)
+      real(wp) :: way, loads
+      integer :: n
+      n = model%mesh%equations
+      associate (path => model%path, fa => model%load%fa)
+         way = abs(path%drive + length - path%drive_start) / path%unit
+         loads = sum(abs(fa(1:n)))
+         yes = maxval(abs(path%u(1:n) - path%start(1:n))) > max(farthest_of_all * way, path%least_runaway)
+         if (loads > 0.0_wp) yes = yes .or. dot_product(fa(1:n), path%u(1:n) - path%start(1:n)) > &
+            loads * max(farthest * way, path%least_runaway)
       end associate
    end function has_run_away
+
+   !> Do the constant loads do the work of displacements that have run away?
+   pure function loads_run_away(model) result(yes)
+      type(element_model), intent(in) :: model
+      logical :: yes
+      integer :: n
+      n = model%mesh%equations
+      associate (path => model%path, fa => model%load%fa)
+         yes = dot_product(fa(1:n), path%u(1:n) - path%start(1:n)) > &
+            share_of_loads * sum(abs(fa(1:n))) * maxval(abs(path%u(1:n) - path%start(1:n)))
+      end associate
+   end function loads_run_away
 
    !> All histories follow the displacements
    subroutine update_all(model, lost)

@@ -74,7 +74,7 @@ def _run(context: Context, options: Sla) -> Result:
         raise
     if options.stages:
         main = curves[min(options.main, len(curves) - 1)]
-        model = replace(model, unit=main.unit, acceleration=main.acceleration)
+        model = replace(model, unit=main.unit, acceleration=main.acceleration, control=main.control or model.control)
         numbers = _describe(result, model, options, [main], stones)
         numbers["stages"] = _stages(result, model, options, curves, main)
     else:
@@ -128,7 +128,7 @@ def _stages(result: Result, model: SlaModel, options: Sla, curves: list[Curve], 
     """Numbers of all stages; arrays, tables, files and warnings of those that do not stand for the analysis."""
     found = []
     for k, curve in enumerate(curves, 1):
-        own = replace(model, unit=curve.unit, acceleration=curve.acceleration)
+        own = replace(model, unit=curve.unit, acceleration=curve.acceleration, control=curve.control or model.control)
         prefix = "" if curve is main else f"stage_{k}_"
         if prefix:
             curve_arrays(result, own, curve, prefix)

@@ -67,6 +67,7 @@ class Curve:
     extent: float = np.inf  # greatest extent of the structure [m]
     releases: bool = False  # events between states are on the way of forces that are released
     acceleration: float | None = None  # of the reference load of a stage
+    control: core.Monitor | None = None  # of a stage, across which its drift is counted
     already: float = 0.0  # load in the direction of the reference load that was on before [N]
     driven: bool = False  # the multiplier is a displacement of supports, the load their force
     residual: float | None = None  # measured at the end; None where the end is a mechanism without displacements
@@ -469,7 +470,7 @@ def run_reference_loads(
     if core_model.iterates and len(events):
         curve.histories = core_model.histories()
     curve.already, curve.driven, curve.releases = model.already, model.driven, release
-    curve.before, curve.unit, curve.extent = before, model.unit, model.extent
+    curve.before, curve.unit, curve.extent, curve.control = before, model.unit, model.extent, model.control
     if len(events) and not model.driven:
         curve.most_compliance = floor * float(events.compliance[0])
     if ends_by_drift and events.reason == REACHED:
@@ -539,7 +540,7 @@ def _incremental_stage(
     kept_states = [_state(core_model, len(events) - 1, events)] if len(events) else []
     curve = Curve(
         events, None, kept_states, NOTHING, core_model.damage(), time.perf_counter() - begin, sign, [],
-        core_model.equations, core_model.points, before=before, unit=model.unit, extent=model.extent,
+        core_model.equations, core_model.points, before=before, unit=model.unit, extent=model.extent, control=model.control,
     )  # fmt: skip
     if len(events):
         curve.residual = core_model.residual()

@@ -52,10 +52,11 @@ def steps_in_words(r: dict[str, Any]) -> str:
     """What equilibrium iterations have found, where events lost equilibrium."""
     if "equilibrium_steps" not in r:
         return ""
-    text = (
-        f" Equilibrium under the constant loads is lost in single events at {r['equilibrium_from_m'] * 1e3:.3g} mm; "
-        f"{r['equilibrium_steps']} steps in displacement control continue from there."
-    )
+    steps, begin = r["equilibrium_steps"], r["equilibrium_from_m"] * 1e3
+    if steps == r["events"]:  # a stage that continues another one
+        text = f" All {steps} steps are in displacement control, from {begin:.3g} mm."
+    else:
+        text = f" Single events find no equilibrium beyond {begin:.3g} mm; {steps} steps in displacement control continue from there."
     if r["drop_displacement_m"] is not None:
         text += f" The load drops to 80 % of the peak at {r['drop_displacement_m'] * 1e3:.3g} mm (drift {r['drop_drift']:.2%})."
     if r["axial_loss_displacement_m"] is not None:
