@@ -218,7 +218,10 @@ def test_without_ties_and_changes_usual_ones_are_taken():
     }).results  # fmt: skip
     assert {one.name for one in r.interventions} == {"horizontal tie", "greater thickness", "greater buttress width"}
     wall = run({"structure": WALL, "analysis": [{"kind": "strengthen", "acceleration": "0.3 g"}]}).results
-    assert {one.name for one in wall.interventions} == {"anchor to the structure behind", "greater width"}
+    assert {one.name for one in wall.interventions} == {
+        "anchor, in tension and compression, to an existing structure behind",
+        "greater width",
+    }
     assert wall.best is not None and wall.best.kind == "spring"
 
 

@@ -55,7 +55,7 @@ def left_out(deck: Deck) -> list[Remark]:
                 if name not in asked[k] and (names[k], name) not in found:
                     words = f"{names[k]} does not use it{_known_to(name, deck.analyses)}"
                     found[names[k], name] = Remark(deck.complaint(options, ("analysis", *at), words), k)
-    if deck.code is not None and not any(options.kind in BY_CODE for options in deck.analyses):
+    if deck.code is not None and not any(getattr(o, "by", o.kind) in BY_CODE for o in deck.analyses):
         found["", "code"] = Remark(
             deck.complaint(None, ("code",), f"no analysis of this deck uses it; {', '.join(BY_CODE)} do"), 0
         )

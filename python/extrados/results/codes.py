@@ -97,11 +97,11 @@ class Checked(KindResults):
         """One verdict for all: the most unfavourable check that applies, of alternatives the one that allows most. Formulas for
         comparison and the computed rocking do not count; without a demand the weakest strength of a pier [N]."""
         decided, undecided = self.governing(), sorted({code for code, _, known in self._groups() if not known})
-        remarks = f" Open for want of a demand: {', '.join(undecided)}." if undecided else ""
+        remarks = f" Open, because the deck gives no demand: {', '.join(undecided)}." if undecided else ""
         if self.by_default:
             remarks += f" The deck names no code: the rules of {self.code} are applied. Give [code] for another."
         if self.confidence_factor == 1.0 and self.jurisdiction not in ("NZSEE", "none"):
-            remarks += " All partial and confidence factors are 1: the capacity holds no margin for what is not known of the masonry."
+            remarks += " All partial and confidence factors are 1: the capacity contains no margin for uncertain masonry properties."
         if decided:
             _, name, worst = decided[0]
             holds = (
@@ -112,8 +112,8 @@ class Checked(KindResults):
             if not holds and (self.margin_associated or 0.0) >= 1.0:
                 outcome = "open"
                 remarks = (
-                    f" Joints slide: by the {DILATANT} the check holds with a margin of {self.margin_associated:.3g}, so collapse is possible "
-                    f"and not proved.{remarks}"
+                    f" Joints slide: the {DILATANT} satisfies the check (factor {self.margin_associated:.3g}), the state without dilatancy does not. "
+                    f"The outcome is open.{remarks}"
                 )
             return judge(
                 f"{worst.words} governs and {worst.verdict}, by {name}: demand {worst.demand:.3g}, capacity {worst.capacity:.3g}{unit}."
@@ -133,13 +133,13 @@ class Checked(KindResults):
             f"{c.code}, {n}": c.reason for n, c in self.checks.items() if c.code and c.verdict == "not-applicable"
         }
         if self.jurisdiction == "none":
-            return judge("The deck chooses no code: formulas for comparison decide nothing.")
+            return judge("No code is applied (jurisdiction none). Formulas for comparison give no verdict.")
         if undecided or not barred:
             return judge(
-                f"The deck holds no demand for the checks that apply: give the seismic action in [code], or a spectrum.{remarks}"
+                f"The deck gives no seismic action, so no check has a demand. Give the action in [code], or a spectrum.{remarks}"
             )
         told = "; ".join(f"{rule}: {reason}" for rule, reason in barred.items())
-        return judge(f"No rule of the code applies to this element. {told[:1].upper()}{told[1:]}.")
+        return judge(f"This program implements no rule of the code for this element. {told[:1].upper()}{told[1:]}.")
 
     def conclusion(self) -> str:
         """The verdict in one sentence, for the head of a report."""

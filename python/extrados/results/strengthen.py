@@ -55,6 +55,7 @@ class Intervention(ResultModel):
     meets_target: bool = fact("whether any size considered meets the target")
     required_size: float | None = fact("least size that meets the target, in `unit`; null: none does")
     required_N: float | None = maybe("least yield force of a tie; null: none suffices", "N")
+    depth_m: float = maybe("depth out of plane for which the force of a tie holds", "m")
     greatest_capacity: float | None = fact(
         "greatest value reached, in the unit of the target; null: no collapse mechanism is left, or nothing was reached"
     )
@@ -140,7 +141,7 @@ class Strengthen(KindResults):
         best = self.best
         if best is None:
             return f"{text} No intervention considered meets the target."
-        word = "Intervention" if best.cost is None else "Cheapest intervention"
+        word = "Intervention" if best.cost is None else "Intervention of least relative cost"
         return f"{text} {word} that meets it: {best.name}, {size_told(best)}."
 
 
@@ -150,6 +151,8 @@ def size_told(one: Intervention) -> str:
     if size is None:
         return "no size suffices"
     if one.required_N is not None:
-        return f"{size / 1e3:.3g} kN {one.place}"
+        depth = getattr(one, "depth_m", None)
+        per = "" if depth is None else f" for the depth of {depth:.3g} m ({size / 1e3 / depth:.3g} kN/m)"
+        return f"{size / 1e3:.3g} kN{per} {one.place}"
     scale, unit = {"Pa": (1e6, "MPa"), "N": (1e3, "kN")}.get(one.unit, (1.0, one.unit))
     return f"{one.key} = {size / scale:.3g} {unit}".rstrip()

@@ -7,6 +7,7 @@ from extrados import kinds
 from extrados.results.assess import Assess
 from extrados.results.codes import Checked, LocalMechanism
 from extrados.results.store import Stored
+from extrados.results.strengthen import Strengthen
 from extrados.show.document import Block, Figure, Table, Words
 
 Figures = list[tuple[str, str]]
@@ -39,11 +40,16 @@ def opening(run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | 
 
 
 def leading(run: Stored) -> dict[str, Any] | None:
-    """The analysis by which the report concludes: an assessment, else the gravest verdict; None where there is none."""
+    """The analysis by which the report concludes: an assessment, else the gravest verdict, of these the least ratio; None without any."""
     judged = [a for a in run.analyses if a["verdict"]]
     whole = [a for a in judged if a["kind"] == "assess"]
     order = list(OUTCOMES)
-    return min(whole or judged, key=lambda a: order.index(a["verdict"]["outcome"]), default=None)
+
+    def gravity(a: dict[str, Any]) -> tuple[int, float]:
+        ratio = a["verdict"]["ratio"]
+        return order.index(a["verdict"]["outcome"]), float("inf") if ratio is None else ratio
+
+    return min(whole or judged, key=gravity, default=None)
 
 
 def governing_figure(run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | None) -> Figure | None:
@@ -107,7 +113,7 @@ def _confidence(run: Stored, lead: dict[str, Any]) -> str:
         told = ", ".join(f"{n} {word}" for word, n in groups.items()) or "none"
         said.append(f"{len(judged)} of {len(r.verdicts)} strategies have a verdict: {told}.")
         said.append(
-            f"{len(r.unexplained)} differences are unexplained."
+            f"Unexplained differences between strategies: {len(r.unexplained)}."
             if r.unexplained
             else "Every difference between strategies has a stated reason."
         )
@@ -119,7 +125,12 @@ def _confidence(run: Stored, lead: dict[str, Any]) -> str:
         if r.by_default:
             said.append(f"The deck names no code; the report applies {r.code}.")
         if "verify clause" in (r.clause or ""):
-            said.append("The clause is quoted from memory of the standard: compare it with the text before use.")
+            said.append("The clause was not verified against the standard. Compare it before use.")
+        open_parts = [
+            a["name"] for a in run.analyses if isinstance(run[a["name"]], Checked) and a["verdict"]["ratio"] is None
+        ]
+        if open_parts:
+            said.append(f"No check decides for: {', '.join(open_parts)}.")
     if v["bound"] in ("upper", "lower"):
         said.append(f"The capacity is {'an upper' if v['bound'] == 'upper' else 'a lower'} bound.")
     if v["violated"]:
@@ -149,8 +160,10 @@ def _next_step(run: Stored, lead: dict[str, Any]) -> str:
         return "Compare the reasons below, and refine the model that decides: measured friction, thickness and restraints first."
     if outcome == "stands":
         if factor is not None and factor < THIN:
-            return f"The safety factor of {factor:.3g} is thin. Vary thickness, friction and strength (sensitivity = true) before you rely on it."
-        return "No intervention follows from this result. It holds for the stated mechanism and hazard: check the other parts of the building too."
+            return f"The safety factor of {factor:.3g} is small. Check its sensitivity to thickness, friction and strength (sensitivity = true)."
+        return "This result requires no intervention. It covers the stated mechanism and hazard only: check the other parts of the building too."
+    if isinstance(r, Strengthen):
+        return "Check the anchorage, assess the strengthened building by all strategies (assess = true), and see what governs afterwards."
     if isinstance(r, Checked) and any(c.verdict == "" for c in r.checks.values()):
         return "Give the seismic action of the site in [code]."
-    return "No rule decides for this element. Use limit analysis and rocking (kind assess), or a jurisdiction with a rule for it."
+    return "No implemented rule covers this element. Use limit analysis and rocking dynamics (kind assess)."

@@ -474,7 +474,13 @@ def draw_code_checks(run: Stored, name: str, folder: Path) -> list[tuple[str, st
         ax.set_yticks(range(len(rows)), [rule for rule, _, _ in rows])
         ax.invert_yaxis()
         ax.set_xlabel("demand over capacity")
+        alternatives = (
+            " The NTC checks at SLV are alternatives: one satisfied check suffices."
+            if any(check.alternative for check in run[name].checks.values())
+            else ""
+        )
+        pale = " Pale bars: formulas for comparison." if any(not code for _, _, code in rows) else ""
         return [(style.save(fig, folder, name), (
-            "Demand over capacity of each rule that applies; above 1 it fails. The checks of NTC at SLV are alternatives, of which one that "
-            f"holds suffices, and so are Ishiyama's; pale bars are formulas for comparison. {run[name].overall().statement}"
+            f"Demand over capacity of each rule that applies; above 1 the check is not satisfied.{alternatives}{pale} "
+            f"{run[name].overall().statement}"
         ))]  # fmt: skip

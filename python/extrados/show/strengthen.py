@@ -196,7 +196,7 @@ def _costs(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[str, st
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-costs")
     best = r.best
-    told = "" if best is None else f" Cheapest that meets the target: {best.name}, {size_told(best)}."
+    told = "" if best is None else f" Least relative cost that meets the target: {best.name}, {size_told(best)}."
     return saved, f"Cost against safety of all alternatives (Pareto front: thick line).{told}"
 
 

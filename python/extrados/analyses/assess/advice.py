@@ -55,13 +55,14 @@ def _rocks(asker: Asker, one: Intervention) -> str:
 
 def _statement(r: Strengthen, rocking: dict[str, str]) -> str:
     """The mechanism, the least interventions, and what governs then."""
-    now = "no capacity" if r.value_before is None else f"a capacity of {r.value_before:.3g} g"
+    now = "none" if r.value_before is None else f"{r.value_before:.3g} g (horizontal, constant)"
     said = [
-        f"The existing building has {now}; {r.mechanism_before}. To carry the peak of the hazard, {r.target:.3g} g, as a sustained load, alternatives are:"
+        f"Collapse acceleration of the existing building: {now}. Governing mechanism: {r.mechanism_before}. Each of these interventions carries the "
+        f"peak of the hazard, {r.target:.3g} g, as a sustained load:"
     ]
     met = [one for one in r.interventions if one.meets_target]
     for one in met:
-        then = f", then {one.next_mechanism}" if one.next_mechanism else ""
+        then = f"; afterwards {one.next_mechanism}" if one.next_mechanism else ""
         moves = f" (under the hazard the strengthened building {rocking[one.name]})" if one.name in rocking else ""
         said.append(f"{one.name}, {size_told(one)}{then}{moves}.")
     if not met:

@@ -60,13 +60,17 @@ class Part:
 def en1998(part: Part, peak: float | None, state: str = "SD") -> list[Line]:
     """Action on a non-structural element, F_a = S_a W_a/q_a, against the weight that holds it; peak: a_g S [m/s^2]."""
     q_a, barred, asked = PART_FACTOR.get(part.element), "", None
-    tuned = 0.0 if part.period is None or part.first is None else part.period / part.first
+    # the least favourable ratio, resonance, where a period is not known
+    known = part.period is not None and part.first is not None
+    tuned = part.period / part.first if part.period is not None and part.first is not None else 1.0
     if q_a is None:
         barred = f"Table 4.4 gives no q_a for this element ({part.element})"
     elif part.loaded:
-        barred = "the wall carries floors: a wall with floors is no non-structural element"
+        barred = "the wall carries floors and is a structural element"
     elif not part.elevated:
-        barred = "the part does not stand on a building, above the ground"
+        barred = (
+            "the part does not stand on a building, above the ground: give base_height and building_height if it does"
+        )
     elif peak is not None:
         assert part.building is not None
         shape = 3.0 * (1.0 + part.place / part.building) / (1.0 + (1.0 - tuned) ** 2) - 0.5
@@ -76,7 +80,7 @@ def en1998(part: Part, peak: float | None, state: str = "SD") -> list[Line]:
             "EN 1998-1 part of a building", "S_a", None if q_a is None else part.multiplier * q_a, asked, "g",
             "EN 1998-1:2004 4.3.5.2 Eqs (4.24), (4.25): F_a = S_a W_a gamma_a/q_a, S_a = a_g S (3 (1 + z/H)/(1 + (1 - T_a/T_1)^2) - 0.5) "
             ">= a_g S, gamma_a 1; Table 4.4 (verify clause)",
-            f"T_a/T_1 {tuned:.3g}" + ("" if q_a is None else f", q_a {q_a:g}"), "EN 1998-1", state=state, barred=barred,
+            (f"T_a/T_1 {tuned:.3g}" if known else "T_a or T_1 unknown: resonance, T_a/T_1 1, is taken") + ("" if q_a is None else f", q_a {q_a:g}"), "EN 1998-1", state=state, barred=barred,
             scope="non-structural element (parapet, gable, chimney, wall without floors on it); fixed at its foot; on a building, at z > 0",
         ),
         Line(
@@ -96,16 +100,16 @@ def asce41(
     barred = ""
     if part.element not in ("facade", "vertical-bending") or not part.anchored:
         barred = (
-            "Table 11-5 is for walls between anchored diaphragms: "
-            + ("nothing anchors the top of this facade" if part.element == "facade" else f"this is none ({part.element})")
+            "Table 11-5 covers walls between anchored diaphragms: "
+            + ("nothing anchors the top of this facade" if part.element == "facade" else f"this element is a {part.element}")
         )  # fmt: skip
     elif state == "IO":
-        barred = "Table 11-5 is of stability, at LS and CP: at IO the wall may not crack"
+        barred = "Table 11-5 limits stability at LS and CP. At IO no cracking is permitted, which this program does not check"
     limit = (
         None if s_x1 is None else SLENDER[storey][0 if s_x1 <= 0.24 * GRAVITY else 1 if s_x1 <= 0.37 * GRAVITY else 2]
     )
     told = "S_X1 is not known" if s_x1 is None else f"S_X1 {s_x1 / GRAVITY:.3g} g"
-    free = "" if part.element == "parapet" else f"the limit is of parapets, this is none ({part.element})"
+    free = "" if part.element == "parapet" else f"the limit covers parapets only; this element is a {part.element}"
     high = s_x1 is not None and (s_x1 >= HIGH[1] * GRAVITY or (s_xs or 0.0) >= HIGH[0] * GRAVITY)
     most = None if s_x1 is None else PARAPET[1 if high or state == "CP" else 0]
     return [

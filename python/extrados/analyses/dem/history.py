@@ -60,7 +60,7 @@ def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> R
         result.warnings.append(f"joints slide by up to {1e3 * seen.sliding.peak:.3g} mm")
     if who := numbers["off_footing"]:
         result.warnings.append(
-            f"{', '.join(who[:6])} slides off its footing: floor = {measures.ground_level(model):.4g} names a floor to slide on"
+            f"{', '.join(who[:6])} slides off its footing: in `dem`, floor = {measures.ground_level(model):.4g} names a floor to slide on"
         )
     if found.residual > 0.01:
         result.warnings.append(

@@ -30,7 +30,7 @@ def slide(
         return end.gamma, proof
 
     paths = follow_paths(follow, patient=patient)
-    found = [programmes.descended(end) for end in ends]
+    found = [*ends, *(programmes.descended(end) for end in ends)]
     if len(limit.assembly.a) <= GUESS_CONTACTS:
         found += [state for k in range(starts) if (state := programmes.guessed(np.random.default_rng(k))) is not None]
     certified = [one for one in (limit.certify(direction, state) for state in found) if one[1].holds(one[0].gamma)]

@@ -162,7 +162,8 @@ def _by_faces(
         if found.gamma < (1.0 - TWISTS) * one.gamma:
             result.warnings.append(
                 f"Faces twist along {direction:g} degrees: the upper bound is {one.gamma:.4f} g if their pressure concentrates at corners "
-                f"(default), and {found.gamma:.4f} g under an even pressure (face law). Do not rely on the difference"
+                f"(default), and {found.gamma:.3f} g under an even pressure (face law, a fixed point that varies by {found.spread:.3f} g). Do not rely on the "
+                "difference"
             )
     return told | {"face_law_spread_g": spread}
 

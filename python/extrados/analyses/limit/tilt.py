@@ -218,7 +218,11 @@ def _without_dilatancy(
             told["non_associated_reason"] = str(error)
             continue
         way = "to +x" if direction > 0 else "to -x"
-        if limit.associated and len(limit.assembly.a) > MOST_FOLLOWED:
+        if limit.strength is not None:
+            result.warnings.append(
+                f"Load paths {way} do not consider crushing: the capacity is the least state found, not the design value."
+            )
+        elif limit.associated and len(limit.assembly.a) > MOST_FOLLOWED:
             result.warnings.append(
                 f'Load paths {way} are not followed: of more than {MOST_FOLLOWED} joints friction_rule = "non-associated" requests '
                 "them. The capacity is the least state found, not the design value."

@@ -160,7 +160,7 @@ def _elsewhere(rocker: Rocker) -> str:
     astray = astray_of(rocker)
     if astray > LOST:
         return (
-            f"an impact leaves {100.0 * astray:.0f} % of its kinetic energy outside the mechanism that rocks on, or the thrust line "
+            f"after an impact {100.0 * astray:.0f} % of the kinetic energy lies outside the assumed mechanism, or the thrust line "
             "leaves a joint"
         )
     return "the thrust line leaves a joint"
@@ -192,7 +192,7 @@ def of_one(rocker: Rocker, response: Response, handed: bool = False) -> Conditio
         slides = JointTime(joint="" if at_rest else watch.name(int(joints.slips)), time_s=float(joints.slips_at))
         if at_rest:
             text = (
-                f"Friction {given:.2f} lets the resting {rocker.word} slide at {slides.time_s:.3f} s, from {min(watch.capacity):.3g} g on; "
+                f"The resting {rocker.word} slides at {slides.time_s:.3f} s: friction {given:.2f} is exceeded at {min(watch.capacity):.3g} g, before "
                 f"rocking starts at {rocker.uplift:.3g} g.{check}"
             )
         elif np.isfinite(needed):
@@ -220,8 +220,8 @@ def of_one(rocker: Rocker, response: Response, handed: bool = False) -> Conditio
         impacts = [t for kind, t, _ in response.events if kind == "impact"]
         found.append((
             impacts[0] if impacts else response.stop_time,
-            f"Hinges form elsewhere: an impact leaves {100.0 * astray:.0f} % of its kinetic energy outside the mechanism that rocks "
-            f"on.{use}",
+            f"Hinges form elsewhere: after an impact {100.0 * astray:.0f} % of the kinetic energy lies outside the assumed "
+            f"mechanism.{use}",
         ))  # fmt: skip
     return Conditions(
         friction=given if np.isfinite(given) else None,

@@ -297,7 +297,10 @@ def answer_of(context: Context, ran: Ran, who: str, falls: str, uplift: float) -
     if over is None or ran.run is None:
         return answer(context, response, who, falls, uplift)
     before = f"rocks ({count(response.impacts, 'impact')})" if response.half_cycles else "rests"
-    return f"{who} {before} until {over.time_s:.3f} s. {over.reason} Rigid contacts from that state: {ran.run.answer}"
+    return (
+        f"By rigid contacts: {ran.run.answer} {who} {before} by the assumed mechanism until {over.time_s:.3f} s, from when on contacts "
+        f"follow the blocks. {over.reason}"
+    )
 
 
 def answer(context: Context, response: Response, who: str, falls: str, uplift: float) -> str:

@@ -123,7 +123,10 @@ def usual_ties(building: Building) -> list[TieAlternative]:
             x, away = (parts[0][0], -1.0) if left else (parts[0][1], 1.0)
             anchors.append(_tie((x, y), (x + away * BEHIND * float(high - low), y), "ground", "both", stones))
     found = []
-    for name, ties in (("horizontal tie", spans), ("anchor to the structure behind", [] if spans else anchors)):
+    for name, ties in (
+        ("horizontal tie", spans),
+        ("anchor, in tension and compression, to an existing structure behind", [] if spans else anchors),
+    ):
         placed = [tie for tie in ties if _holds(building, tie)]
         if placed:
             found.append(TieAlternative(name, placed, np.inf, None))

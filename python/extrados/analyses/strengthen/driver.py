@@ -171,8 +171,12 @@ class _Work:
         place = int(np.argmin(costs)) if np.isfinite(costs).any() else self._strongest(one, statics)
         required = forces[place] if np.isfinite(forces[place]) else None
         worth, bound_by_friction = None, False
+        no_result = ""
         if required is not None:
-            required, worth, bound_by_friction = self._checked(one, place, required, statics)
+            try:
+                required, worth, bound_by_friction = self._checked(one, place, required, statics)
+            except NoAnswer as error:  # of this alternative alone
+                required, no_result = None, str(error)
         points, ranges = self._curve(one, place, required, statics)
         greatest = None if points is None else points[-1].capacity
         if worth is None and points is not None:
@@ -183,9 +187,9 @@ class _Work:
             if np.isinf(one.most)
             else "no force up to the greatest one considered suffices"
         )
-        reason = "" if required is not None else no_force
+        reason = no_result or ("" if required is not None else no_force)
         if bound_by_friction and required is None:
-            reason = "with dilatant friction the target is met, without dilatancy it is not"
+            reason = "the upper bound (dilatant friction) meets the target; the state without dilatancy does not"
         curve = ([], []) if points is None else _polyline(points)
         row = self._row(
             name=one.name, kind=word_of(tie), place=_placed(tie), unit="N", required=required, greatest=greatest,
@@ -456,6 +460,8 @@ class _Work:
             more["stiffness_N_m"] = stiffness
         if tie is not None:
             more |= {"start_m": list(tie.start), "end_m": list(tie.far), "required_N": required}
+            if self.context.building.structure is not None:
+                more["depth_m"] = self.context.building.blocks().depth
         adverse = self._adverse(worth, volume if key.startswith("structure.") else 0.0, met)
         if met and anchorage is not None:
             more["anchorage"] = check_anchorage(force, anchorage)
@@ -711,11 +717,11 @@ def _words(r: out.Strengthen) -> str:
             said.append(f"- {one.name}: {one.reason}{most}.")
             continue
         after = "no collapse mechanism is left" if one.capacity_after is None else f"{one.capacity_after:.3g}{unit}"
-        cost = "" if one.cost is None else f"; cost {one.cost:.3g}"
-        then = f" Then governs: {one.next_mechanism}." if one.next_mechanism else ""
-        said.append(f"- {one.name}: {out.size_told(one)}, for {after}{cost}.{then}")
+        cost = "" if one.cost is None else f"; relative cost {one.cost:.3g} by the weights of the deck"
+        then = f" Governing mechanism afterwards: {one.next_mechanism}." if one.next_mechanism else ""
+        said.append(f"- {one.name}: {out.size_told(one)}: afterwards {after}{cost}.{then}")
         said += [f"  {text}" for text in one.adverse]
     if r.combination:
         told = ", ".join(f"{row.force_N / 1e3:.3g} kN of {row.name}" for row in r.combination)
-        said.append(f"- Combination of ties of least total force: {told}; cost {r.combination_cost:.3g}.")
+        said.append(f"- Combination of ties of least total force: {told}; relative cost {r.combination_cost:.3g}.")
     return "\n".join(said)
