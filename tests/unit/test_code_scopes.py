@@ -70,11 +70,13 @@ def test_a_facade_that_ties_anchor_at_its_top_has_the_slenderness_of_asce_41() -
 
 @pytest.mark.parametrize(("element", "q_a"), [("parapet", 1.0), ("gable", 1.0), ("wall", 2.0), ("facade", 2.0)])
 def test_the_factor_of_an_element_is_that_of_table_4_4(element: str, q_a: float) -> None:
-    """alpha_0 q_a against S_a of Eq. 4.25 with T_a = 0; the behaviour factor of NTC has no part in it."""
-    line, in_plane = en1998(Part(element, 0.25, 1.2, 0.3, 9.0, 10.0), 0.18 * GRAVITY)
+    """alpha_0 q_a against S_a of Eq. 4.25: of a rigid part T_a = 0, and resonance, T_a = T_1, where the periods are not known."""
+    line, in_plane = en1998(Part(element, 0.25, 1.2, 0.3, 9.0, 10.0, period=0.0, first=0.3), 0.18 * GRAVITY)
     assert in_plane.verdict == "not-applicable" and "in their plane alone" in in_plane.barred
     assert line.capacity == pytest.approx(0.25 * q_a) and line.demand == pytest.approx(0.18 * (3.0 * 1.9 / 2.0 - 0.5))
     assert line.verdict == ("holds" if 0.25 * q_a >= 0.423 else "fails")
+    unknown, _ = en1998(Part(element, 0.25, 1.2, 0.3, 9.0, 10.0), 0.18 * GRAVITY)
+    assert unknown.demand == pytest.approx(0.18 * (3.0 * 1.9 - 0.5)) and "unknown" in unknown.note
     for other in (Part(element, 0.25, 1.2, 0.3, 0.0, None), Part(element, 0.25, 1.2, 0.3, 9.0, 10.0, loaded=True)):
         assert en1998(other, 0.18 * GRAVITY)[0].verdict == "not-applicable"
     assert en1998(Part("tower", 0.25, 1.2, 0.3, 9.0, 10.0), 0.18 * GRAVITY)[0].verdict == "not-applicable"

@@ -56,7 +56,9 @@ def test_the_corner_of_the_reference(
     assert all(p.certified for p in row.load_paths) and all(paths[0] < g < paths[1] for g in found if g is not None)
     assert row.load_path_g == min(g for g in found if g is not None)
     assert row.least_g == pytest.approx(least, abs=1e-5) and state is not None
-    assert len(row.starts_g) == len(RATIOS) + 2, "random compressions lead to certified states too"
+    assert len(row.starts_g) == 2 * len(RATIOS) + 2, (
+        "the ends of the paths, what they descend to, and random compressions lead to certified states too"
+    )
     upper = limit.push(direction)
     assert isinstance(upper, Programme) and upper.gamma == pytest.approx(associated, abs=5e-5)
 

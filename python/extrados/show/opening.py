@@ -163,7 +163,7 @@ def _next_step(run: Stored, lead: dict[str, Any]) -> str:
             return f"The safety factor of {factor:.3g} is small. Check its sensitivity to thickness, friction and strength (sensitivity = true)."
         return "This result requires no intervention. It covers the stated mechanism and hazard only: check the other parts of the building too."
     if isinstance(r, Strengthen):
-        return "Check the anchorage, assess the strengthened building by all strategies (assess = true), and see what governs afterwards."
+        return "Check the anchorage, assess the strengthened building by all strategies (assess = true), and check the mechanism that governs afterwards."
     if isinstance(r, Checked) and any(c.verdict == "" for c in r.checks.values()):
         return "Give the seismic action of the site in [code]."
     return "No implemented rule covers this element. Use limit analysis and rocking dynamics (kind assess)."
