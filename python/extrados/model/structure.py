@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Literal
 
+from extrados.model.errors import NoView
 from extrados.model.geometry.assembly import Assembly
 from extrados.schema.table import Table
 
@@ -32,9 +33,9 @@ class Structure(Table):
     def assembly(self, density: float, folder: Path) -> Assembly:
         """Stones and joints, of a density [kg/m^3]; `folder` is where its files are looked for.
 
-        Raises BadGeometry with the part and the bound, NoView where it has none. Only of kinds with the view `blocks`.
+        Raises BadGeometry with the part and the bound, NoView where it has none.
         """
-        raise NotImplementedError(self.kind)
+        raise NoView(f"a structure of kind '{self.kind}' has no blocks in a plane section", ("structure", "kind"))
 
     def inspection(self, folder: Path) -> "Inspection | None":
         """Gaps, overlaps and near misses of a surveyed structure; None where its geometry is exact by its making."""
@@ -49,5 +50,5 @@ class Structure(Table):
         return made
 
     def pier_assembly(self, density: float) -> Assembly:
-        """A wall as few rigid bodies, of a density [kg/m^3]. Only of kinds with the view `piers`."""
-        raise NotImplementedError(self.kind)
+        """A wall as few rigid bodies, of a density [kg/m^3]; NoView where it is no wall."""
+        raise NoView(f"a structure of kind '{self.kind}' is no wall of piers", ("structure", "kind"))
