@@ -14,7 +14,7 @@ from extrados.analyses.limit import solids as driver
 from extrados.analyses.limit.solid_sliding import slide
 from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import make_deck
-from extrados.limit.certificate import certify
+from extrados.limit.certificate import Certificate, certify
 from extrados.limit.errors import NoAnswer
 from extrados.limit.least_load import LeastLoad
 from extrados.limit.load_path import RATIOS, LoadPath
@@ -23,6 +23,7 @@ from extrados.limit.programme import LimitAnalysis
 from extrados.limit.solids import Programme, SolidLimit
 from extrados.model.geometry.solids.assembly import assemble
 from extrados.model.structures.dome import make_dome
+from extrados.results import limit as results
 from extrados.results.limit import judge_design
 from extrados.results.model import Result
 
@@ -200,3 +201,22 @@ def test_the_verdict_warns_above_the_least_state() -> None:
     assert [v.outcome for v in verdicts] == ["stands", "stands", "open", "collapses"]
     assert [("Warning" in v.statement) for v in verdicts] == [False, True, False, False]
     assert all(v.capacity == 0.3 for v in verdicts)
+
+
+@pytest.mark.parametrize("wrong", ["equilibrium", "friction", "tension", "closing", "zero_gap"])
+def test_a_certificate_holds_by_all_that_it_states(wrong: str) -> None:
+    good = Certificate(1e-9, 1e-9, 1e-9, 1e-9, 1e-9)
+    assert good.holds(0.3) and not replace(good, **{wrong: 1e-3}).holds(0.3)
+
+
+def test_the_design_value_is_of_certified_paths() -> None:
+    """The least path counts only with its certificate; without any there is no design value."""
+
+    def path(gamma: float | None, certified: bool) -> results.LoadPath:
+        return results.LoadPath(
+            shear_stiffness_ratio=1.0, collapse_acceleration_g=gamma, certified=certified, zero_gap_g=None,
+            equilibrium_residual=None, friction_residual=None, overlap_residual=None,
+        )  # fmt: skip
+
+    assert results.design_value([path(0.2, False), path(0.3, True), path(0.25, True), path(None, False)]) == 0.25
+    assert results.design_value([path(0.2, False)]) is None and results.design_value(None) is None
