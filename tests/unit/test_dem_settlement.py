@@ -296,7 +296,7 @@ def test_what_slides_off_its_footing_is_told_of_the_floor(tmp_path) -> None:
     off = extrados.run(deck).results[0]
     deck.write_text(sliding + "floor = 0.0\n")
     on = extrados.run(deck).results[0]
-    assert any("slides off its footing: floor = " in text for text in off.warnings)
+    assert any("slides off its footing: in `dem`, floor = " in text for text in off.warnings)
     assert not any("footing" in text for text in on.warnings)
     assert on.arrays["place"].data[:, 0, 1].min() == pytest.approx(0.1, abs=1e-3)
     assert np.abs(on.arrays["place"].data[:, 0, 0] - 0.25).max() > 0.125
