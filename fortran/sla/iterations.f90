@@ -34,8 +34,9 @@ module sla_iterations
    real(wp), parameter :: growth = 1.5_wp
    !> Of the greatest displacement: no step is longer
    real(wp), parameter :: part_of_way = 0.1_wp
-   !> Times the displacement of the control that the constant loads may follow their own direction, on the average of their
-   !> forces, and that anything may move: rocking raises the loads, parts that rotate far from the control move many times as far
+   !> Times the displacement of the control that the constant loads may follow their own direction, on the average of
+   !> their forces, and that anything may move: rocking raises the loads, and parts that rotate far from the control
+   !> move many times as far
    real(wp), parameter :: farthest = 5.0_wp, farthest_of_all = 500.0_wp
    !> Of the greatest displacement: so far, on the average, the constant loads have followed their own direction
    real(wp), parameter :: share_of_loads = 1.0e-3_wp
