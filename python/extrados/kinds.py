@@ -76,7 +76,7 @@ ROCKER = "views.rockers.rocker:make_rocker"
 SECTION, SPATIAL = "views.solids.sections:solids_of_section", "views.solids.sections:solids_of_spatial"
 MESH_OF_STONES, RODS = "views.mesh.stones:make_stones", "views.mesh.rods:add_rods"
 MESH_OPTIONS, SHELL_OPTIONS = "views.mesh.options:MeshOptions", "views.shell.options:ShellOptions"
-NO_SECTION = Lacks("it is no plane section; `tilt` and `dem` look at its solids")
+NO_SECTION = Lacks("it is no plane section; `tilt` and `dem` analyse its solids")
 NO_STONES = Lacks("a mesh file holds elements, no stones: describe the wall as `panel` or `blocks`")
 NO_PIERS = Lacks("only a wall, of the kinds panel and brickwork, has piers")
 NO_SHELL = Lacks("this kind of structure has no shells; `extrados explain pushover` lists those that have")
@@ -126,7 +126,7 @@ STRUCTURES: dict[str, StructureKind] = {
               "`pushover`, with [analysis.frame] for its piers by codes, its walls out of plane for `local-mechanism`"),
         NO_PIERS, SECTION, RIGID,
         Lacks("a building on a plan does not rock as one body: draw one of its walls"),
-        Lacks("the walls of a building stand in space: its analysis is `pushover`; draw one of them as `panel`"),
+        Lacks("the walls of a building form a structure in space: its analysis is `pushover`; draw one of them as `panel`"),
         "views.shell.plan:shell_of_plan", None,
     ),
     "wall": _solids("wall:Wall"),

@@ -405,7 +405,7 @@ def test_no_scheduler_answers() -> None:
     c.scheduler = "tcp://127.0.0.1:9"
     batches_seconds, batches.CONNECT_SECONDS = batches.CONNECT_SECONDS, 1.0
     try:
-        with pytest.raises(Refused, match=r"no dask scheduler answers at tcp://127\.0\.0\.1:9"):
+        with pytest.raises(Refused, match=r"no dask scheduler responds at tcp://127\.0\.0\.1:9"):
             sweep(c, "t", Squares(), 10, "squares")
     finally:
         batches.CONNECT_SECONDS = batches_seconds

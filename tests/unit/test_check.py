@@ -55,7 +55,7 @@ WRONG = {
     "tie of an unknown stone": (
         "there is no stone 'none'", ARCH + '[[ties]]\nstart = [0.0, 1.0]\nstart_stone = "none" # here\nground = [0.0, 0.0]\n' + TILT,
     ),
-    "rigid tie of what rocks": ("needs its stiffness", BLOCK + PULSE + "[[ties]] # here\nstart = [0.2, 2.0]\nground = [3.0, 0.0]\n" + ROCKING),
+    "rigid tie of what rocks": ("requires its stiffness", BLOCK + PULSE + "[[ties]] # here\nstart = [0.2, 2.0]\nground = [3.0, 0.0]\n" + ROCKING),
     "hinge at an unknown joint": (
         "there is no joint 'sole'", ARCH + PULSE + '[[hinges]]\ndamping = 1e3\njoints = ["sole"] # here\n' + ROCKING,
     ),
@@ -65,7 +65,7 @@ WRONG = {
     ),
     "wall with tilt": ("cannot take [supports] abutting_wall into account", BLOCK + '[supports]\nabutting_wall = "left" # here\n' + TILT),
     "start against a wall": (
-        "cannot start turned to the left",
+        "cannot start rotated to the left",
         BLOCK + PULSE + '[supports]\nabutting_wall = "left"\n[initial]\nrotation_ratio = -0.1 # here\n' + ROCKING,
     ),
     "mesh that is not there": ("none.msh", '[structure]\nkind = "mesh"\nfile = "none.msh" # here\nthickness = 0.1\n' + SLA),
@@ -105,7 +105,7 @@ WRONG = {
     ),
     "unknown joint of a type": ("names no joint", ARCH + '[[joints.types]]\njoints = ["none"] # here\nfriction = 0.3\n' + TILT),
     "load beside the structure": (
-        "stands beside", ARCH + TILT + "[[analysis.load]]\nx = 0.0\nforce = 1e3\n[[analysis.load]] # here\nx = 99.0\nforce = 1e3\n",
+        "lies beside", ARCH + TILT + "[[analysis.load]]\nx = 0.0\nforce = 1e3\n[[analysis.load]] # here\nx = 99.0\nforce = 1e3\n",
     ),
     "chain of another name": ("there is no 'nave'", ARCH + '[[analysis]]\nkind = "thrust"\nchain = "nave" # here\n'),
     "sweep of no key": (
@@ -251,10 +251,10 @@ WRONG = {
         "has no floors", ARCH + PUSH + '[[analysis.variants]]\nname = "stiff"\nfloors = 2.0 # here\n',
     ),
     "mortar of rigid contacts": (
-        "know no mortar", ARCH + PULSE + "[joints]\ncohesion = 1e5 # here\n" + DEM + 'solver = "nonsmooth"\n',
+        "have no mortar", ARCH + PULSE + "[joints]\ncohesion = 1e5 # here\n" + DEM + 'solver = "nonsmooth"\n',
     ),
     "springs under rigid contacts": (
-        "know no springs", ARCH + PULSE + "[supports]\nstiffness = 1e9 # here\n" + DEM + 'solver = "nonsmooth"\n',
+        "have no springs", ARCH + PULSE + "[supports]\nstiffness = 1e9 # here\n" + DEM + 'solver = "nonsmooth"\n',
     ),
     "first swings of solids": (
         "dem of solids cannot take mode_II into account", BLOCK + '[[analysis]]\nkind = "dem-domain"\ndirection = 10\nmode_II = true # here\n'

@@ -615,9 +615,9 @@ def test_dowels_are_checked_and_threads_and_pauses_change_no_bit(monkeypatch) ->
     ):  # fmt: skip
         with pytest.raises(error):
             dem3.Model(replace(model, dowels=wrong), options)
-    with pytest.raises(ValueError, match="rigid contacts know no dowels"):
+    with pytest.raises(ValueError, match="rigid contacts have no dowels"):
         dem3.Model(replace(whole, laws=[Law(1e9, 1e9, 0.3)]), replace(options, rigid=True))
-    with pytest.raises(ValueError, match="rigid contacts know no mortar"):
+    with pytest.raises(ValueError, match="rigid contacts have no mortar"):
         dem3.Model(model, replace(options, rigid=True))
 
 

@@ -249,7 +249,7 @@ def test_what_does_not_fit_is_refused() -> None:
 def test_an_arch_too_thin_for_its_weight_cannot_stand() -> None:
     """Elements lead to a mechanism, of which limit analysis of the same blocks holds a certificate."""
     found = sla({**STRUCTURES["arch"], "thickness": 0.5, "voussoirs": 20})
-    assert found.status == "ok" and isinstance(found.results, SelfWeight) and "proof" in found.results.certificate
+    assert found.status == "ok" and isinstance(found.results, SelfWeight) and "certificate" in found.results.certificate
     assert found.results.judged(Demanded(0.1)).outcome == "cannot-stand"
 
 
@@ -279,7 +279,7 @@ def test_a_semicircle_above_the_least_thickness_bears_what_limit_analysis_says(t
 
 
 def test_without_a_certificate_what_is_not_carried_is_refused(monkeypatch) -> None:
-    """Limit analysis finds equilibrium: elements have no answer."""
+    """Limit analysis finds equilibrium: elements have no result."""
     monkeypatch.setattr("extrados.analyses.sla.driver.LimitAnalysis.stands", lambda self: True)
     found = sla({**SEMICIRCLE, "thickness": 1.05})
     assert found.status == "refused" and "not carried" in found.reason and "a tenth" in found.reason

@@ -163,7 +163,7 @@ class _Batches:
         self.names: tuple[str, ...] = ()
         self.on_disk = large and context.checkpoint is not None and count > IN_MEMORY
         self.name = ""
-        self.again = "; --resume goes on from here" if context.checkpoint is not None else ""
+        self.again = "; --resume continues from here" if context.checkpoint is not None else ""
         if context.checkpoint is not None:
             self.name = f"{name}-{fingerprint(job)[:16]}-{count}"
             end = 0
@@ -172,7 +172,7 @@ class _Batches:
                     self._put(first, arrays, path)
                     end = first + _rows(arrays)
                 else:  # of another run that was going on at the same time
-                    context.warnings.append(f"a kept batch overlaps others and is left out: member {first} on")
+                    context.warnings.append(f"a kept batch overlaps others and is not used: member {first} on")
         self.done = sum(self.rows.values())
         tell(self.done)
 
@@ -322,7 +322,7 @@ def _on_cluster(context: Context, batches: _Batches, job: Job, pace: _Pace) -> S
     try:
         client = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)
     except (OSError, ValueError, TimeoutError) as error:
-        raise Refused(f"no dask scheduler answers at {address}: {error}", WHOLE) from None
+        raise Refused(f"no dask scheduler responds at {address}: {error}", WHOLE) from None
     try:
         return _collect(batches, job, pace, client, address)
     except OSError:  # what distributed raises where the connection breaks within a call
@@ -409,7 +409,7 @@ class Chain:
     @property
     def again(self) -> str:
         """What to say to the user whose run was stopped."""
-        return "; --resume goes on from here" if self._checkpoint is not None else ""
+        return "; --resume continues from here" if self._checkpoint is not None else ""
 
     def keep(self, step: int, state: dict[str, np.ndarray]) -> None:
         """Keep the state after a step; of those before, one stays in case this one is damaged."""

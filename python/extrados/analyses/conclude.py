@@ -73,7 +73,7 @@ def concluded(result: Result, options: Analysis, context: Context, building: Bui
     # Half a motion, half a curve: neither stands for the whole
     if result.status == "interrupted" and not result.results.whole_in_parts:
         verdict = judge("It was interrupted before its end: no verdict.")
-        answer = f"Interrupted before its end; of what was computed: {answer}"
+        answer = f"Interrupted before its end; of the computed part: {answer}"
     return replace(result, verdict=verdict, assumptions=assumptions, answer=answer)
 
 

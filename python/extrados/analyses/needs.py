@@ -45,7 +45,7 @@ def _needs(context: Context, options: Analysis) -> Iterator[Need]:
     for what, key in building.special_keys.items() if options.view or options.uses else ():
         if what not in options.bears:
             yield _refused(
-                f"{options.kind} cannot take {what} into account: leave it out of its deck, or ask {_who(what)}", key
+                f"{options.kind} cannot take {what} into account: remove it from its deck, or use {_who(what)}", key
             )
     if getattr(options, "animation", "none") == "mp4" and ffmpeg() is None:
         yield _refused(

@@ -23,11 +23,11 @@ class Animated(Table):
 
     animation: Literal["none", "gif", "mp4"] = key(
         "none",
-        "also write what moves as a film, 1280 x 720, among the figures; mp4 needs ffmpeg or the package imageio-ffmpeg",
+        "also write the motion as a film, 1280 x 720, among the figures; mp4 needs ffmpeg or the package imageio-ffmpeg",
     )
     animation_speed: float = key(
         1.0,
-        "speed of the film: 1 is real time, 0.2 five times slower; what has no time of its own lasts 8 s at 1",
+        "speed of the film: 1 is real time, 0.2 five times slower; results without a time last 8 s at 1",
         gt=0,
         le=10,
     )

@@ -90,7 +90,7 @@ class Model(BodyModel[Run]):
         if not solids.laws or any(not 0 <= k < len(solids.laws) for k in solids.joints.values()):
             raise ValueError("a joint names a law that is not there")
         if options.rigid and any(max(law.cohesion, law.tension) > 0.0 for law in solids.laws):
-            raise ValueError("rigid contacts know no mortar")
+            raise ValueError("rigid contacts have no mortar")
         if (most := max((len(face) for faces in solids.faces for face in faces), default=0)) > MOST_CORNERS:
             raise ValueError(f"a face has {most} corners, expected at most {MOST_CORNERS}")
         n, parts = len(solids.mass), len(solids.vertices)
@@ -146,7 +146,7 @@ class Model(BodyModel[Run]):
         if dowels is None:
             return
         if self.options.rigid:
-            raise ValueError("rigid contacts know no dowels")
+            raise ValueError("rigid contacts have no dowels")
         n = self._dowels
         body = indices("body", np.transpose(dowels.body), self.count, (2, n))
         bounded = [

@@ -240,7 +240,7 @@ def history(
     if start_side not in (1, -1) or not start_rotation >= 0.0:
         raise ValueError(f"start is {start_rotation} rad to side {start_side}, expected 0 or more to side 1 or -1")
     if not 0 <= room <= 10**7:
-        raise ValueError(f"room is {room}, expected 0 to 10,000,000 events")
+        raise ValueError(f"number of events kept is {room}, expected 0 to 10,000,000 events")
     room_for(8, int(min(end_time / output_step, 1e12)))
     times = np.arange(int(np.floor(end_time / output_step * (1 + 1e-12))) + 1) * output_step
     with MotionSet([ground]) as motions, BodyList([body]) as bodies:

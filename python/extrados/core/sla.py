@@ -415,7 +415,7 @@ class Model(Owner):
         """
         stop = stop or Stop()
         if room < 1 or not monitors:
-            raise ValueError("a run needs room for an event, and a monitor")
+            raise ValueError("a run needs memory for an event, and a monitor")
         room_for(15 + len(monitors), room)
         first = integers("monitors", np.cumsum([1] + [len(m.node) for m in monitors]))
         huge = float(np.finfo(float).max)

@@ -115,7 +115,7 @@ def base_contact(
     values, status = _core.api_soft_base.contact(
         real("base", base.numbers, (9,)), real("state", [rotation, sinking, rate, sinking_rate], (4,))
     )
-    check(status, "contact of a soft base")
+    check(status, "contact of a compliant base")
     force, moment, stored, spent, low, high, most = (float(x) for x in values)
     return BaseContact(force, moment, stored, spent, (low, high), most)
 
@@ -126,7 +126,7 @@ def base_held(base: SoftBase, rotation: npt.ArrayLike) -> tuple[np.ndarray, np.n
     values, status = _core.api_soft_base.held(
         real("base", base.numbers, (9,)), real("rotation", np.atleast_1d(rotation), (None,))
     )
-    check(status, "statics of a soft base")
+    check(status, "statics of a compliant base")
     return values[0], values[1], values[2]
 
 
@@ -144,7 +144,7 @@ def soft_base_history(
     if not (0.0 < end_time < np.inf and 0.0 < output_step < np.inf and 0.0 < tolerance < 1.0 and np.isfinite(scale)):
         raise ValueError("end time, output step and tolerance must be positive, the scale a number")
     if not 1 <= room <= 10**7:
-        raise ValueError(f"room is {room}, expected 1 to 10,000,000 events")
+        raise ValueError(f"number of events kept is {room}, expected 1 to 10,000,000 events")
     rows = int(_core.api_soft_base.rows())
     room_for(rows, int(min(end_time / output_step, 1e12)))
     times = np.arange(int(np.floor(end_time / output_step * (1 + 1e-12))) + 1) * output_step
@@ -155,11 +155,11 @@ def soft_base_history(
         )  # fmt: skip
     interrupted = status == status_code("cancelled")
     if not interrupted:
-        check(status, "rocking on a soft base")
+        check(status, "rocking on a compliant base")
     outcome, left, right, steps, half_cycles, points, events = (int(k) for k in counts)
     s = state[:, :points].T
     if not (np.isfinite(s).all() and np.isfinite(measures).all()):
-        check(status_code("not_finite"), "rocking on a soft base")
+        check(status_code("not_finite"), "rocking on a compliant base")
     found = min(events, room)
     turn, sunk, stop, *end = (float(x) for x in measures)
     return SoftBaseResponse(

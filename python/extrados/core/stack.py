@@ -71,7 +71,7 @@ def stack_history(
     if not (0.0 < end_time < np.inf and 0.0 < output_step < np.inf and 0.0 < tolerance < 1.0 and np.isfinite(scale)):
         raise ValueError("end time, output step and tolerance must be positive, the scale a number")
     if not 1 <= room <= 10**7:
-        raise ValueError(f"room is {room}, expected 1 to 10,000,000 events")
+        raise ValueError(f"number of events kept is {room}, expected 1 to 10,000,000 events")
     rows = int(_core.api_stack.rows())
     room_for(rows, int(min(end_time / output_step, 1e12)))
     times = np.arange(int(np.floor(end_time / output_step * (1 + 1e-12))) + 1) * output_step

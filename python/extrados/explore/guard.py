@@ -104,16 +104,16 @@ class Guard:
         if not self.requests.take():
             return 429, "too many requests"
         if len(heads.get(b"host", [])) != 1 or heads[b"host"][0] not in self.hosts:
-            return 421, "this server answers to its own address only"
+            return 421, "this server responds at its own address only"
         origin = heads.get(b"origin", [])
         if len(origin) > 1 or (origin and origin[0] != b"http://" + heads[b"host"][0]):
-            return 403, "requests of other sites are not answered"
+            return 403, "requests of other sites are refused"
         if not origin and (socket or scope["method"] not in ("GET", "HEAD")):
-            return 403, "a request that does not say its origin is not answered"
+            return 403, "a request without an origin is refused"
         # A tab that goes to the page from the file of `supervisor` is no danger: it needs the token, and reads nothing
         leads = scope.get("method") == "GET" and heads.get(b"sec-fetch-dest") == [b"document"]
         if heads.get(b"sec-fetch-site", [b"none"])[0] not in (b"none", b"same-origin") and (socket or not leads):
-            return 403, "requests of other sites are not answered"
+            return 403, "requests of other sites are refused"
         if not socket and scope["method"] not in ("GET", "HEAD", "POST"):
             return 405, "only GET and POST are known"
         if len(scope.get("raw_path") or b"") + len(scope.get("query_string") or b"") > LONGEST_PATH:
@@ -132,7 +132,7 @@ class Guard:
         if door is None:
             return 403, "the address lacks its token: take the whole address that `extrados explore` has printed"
         if heads[b"host"][0].decode("latin-1") not in [host.lower() for host in door.hosts]:
-            return 421, "this server answers to its own address only"
+            return 421, "this server responds at its own address only"
         if door.near and not _is_near(scope):
             return 403, "this address is for the machine itself"
         return None

@@ -51,7 +51,7 @@ def history(
         "peak_rotation_rad": response.peak, "peak_rotation_ratio": response.peak_ratio,
         "critical_rad": list(rocker.critical), "uplift_g": rocker.uplift, "restitution": rocker.restitution,
         "peak_ground_g": motion.peak / GRAVITY, "stop_time_s": response.stop_time, "end_time_s": end, "word": rocker.word,
-        "answer": answer(context, response, f"The {rocker.word}", "comes down", rocker.uplift),
+        "answer": answer(context, response, f"The {rocker.word}", "collapses", rocker.uplift),
         "violated": conditions.violated, "warnings": [*told(conditions), *rocker.warnings, *motion.notes],
     }  # fmt: skip
     moving = np.flatnonzero(response.rotation)
@@ -164,7 +164,7 @@ def domain(
     codes = np.full((len(durations), len(amplitudes)), 255, dtype=np.uint8)
     words: dict[str, Any] = {
         "pulse": options.pulse, "conditions": [], "uplift_g": rocker.uplift, "mode_I": MODE_I, "word": rocker.word,
-        "outcomes": ["does not rock", "recovers", "collapses after an impact (Mode I)", "collapses at once (Mode II)"],
+        "outcomes": ["does not rock", "recovers", "collapses after an impact (Mode I)", "collapses in the first half cycle (Mode II)"],
     }  # fmt: skip
     axes = {"duration": durations, "amplitude": amplitudes / GRAVITY}
     drawn, count = (STRIDES[0], codes), CELLS if building.supports.stiffness is None else FEW

@@ -48,6 +48,6 @@ class Session(Desk):
         except RecursionError:
             yield Reply({"of": number, "to": message["do"], "complaints": ["is nested too deeply for a deck"]})
         except Exception as error:  # the page lives on: it is told, and what it holds stays as it was
-            log.exception("a page asked for %s", message["do"])
+            log.exception("a page requested %s", message["do"])
             told = f"this is a fault of the program, please report it: {type(error).__name__}: {error}"
             yield Reply({"of": number, "to": message["do"], "complaints": [told[:2000]]})

@@ -179,11 +179,11 @@ def cannot_stand(limit: LimitAnalysis) -> CannotStand:
             upright = [limit.collapse(direction)[1].upper_bound for direction in (1, -1)]
         except NoEquilibrium:
             return CannotStand(
-                f"{why_not(limit)}; proof: planes outside the curves of strength already leave no forces"
+                f"{why_not(limit)}; certificate: planes outside the curves of strength already leave no forces"
             )
         if upright[0] < 0.0 or upright[1] > 0.0:
             return CannotStand(
-                f"{why_not(limit)}; proof: the work of loads and crushing in the mechanism that this load sets in motion"
+                f"{why_not(limit)}; certificate: the work of loads and crushing in the mechanism that this load sets in motion"
             )
     if motion is None:
         raise NoAnswer("no state was found upright, but no motion proves that there is none")
@@ -193,7 +193,7 @@ def cannot_stand(limit: LimitAnalysis) -> CannotStand:
     velocity[:, :2] *= assembly.size
     fastest = assembly.block_names[int(np.hypot(velocity[:, 0], velocity[:, 1]).argmax())]
     return CannotStand(
-        f"{why_not(limit)}; proof: a motion, fastest at {fastest}, by which the loads do work that no joint takes",
+        f"{why_not(limit)}; certificate: a motion, fastest at {fastest}, by which the loads do work that no joint takes",
         velocity,
     )
 

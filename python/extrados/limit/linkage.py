@@ -97,7 +97,7 @@ def linkage(assembly: Assembly, mechanism: Mechanism, side: int) -> Linkage:
     slides = [j for j in _moving(mechanism) if abs(mechanism.slip[j]) > SLIPS * fastest]
     if slides:
         raise CannotRock(
-            f"the mechanism slides along {_listed(names, slides)}: a mechanism that rocks turns about hinges without sliding"
+            f"the mechanism slides along {_listed(names, slides)}: a rocking mechanism rotates about hinges without sliding"
         )
     crushes = [j for j in _moving(mechanism) if ends[:2, j].min() < -SLIPS * fastest]
     if crushes:
@@ -169,7 +169,7 @@ def _driver(
         for h in candidates:
             if 0 in joined[h] and turning[joined[h].max()]:
                 return int(joined[h].max())
-    raise CannotRock("no part of the mechanism turns about a hinge on what stays at rest")
+    raise CannotRock("no part of the mechanism rotates about a hinge on a part at rest")
 
 
 def _jacobian(centroid: np.ndarray, joined: np.ndarray, point: np.ndarray, size: float) -> np.ndarray:

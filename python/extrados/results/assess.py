@@ -32,7 +32,7 @@ class StrategyVerdict(ResultModel):
     label: str = fact("its name in words")
     part: str | None = fact("name of the analysis of this run with its results; null without a result")
     status: Literal["ok", "refused", "failed", "left out"] = fact("whether it has a result")
-    reason: str = fact("why it has none; empty where it has")
+    reason: str = fact("reason without a result; else empty")
     axis: Axis = fact("quantity that is compared")
     demand: float | None = fact("demand, in `unit`")
     capacity: float | None = fact("capacity, in `unit`")
@@ -122,8 +122,8 @@ class Assess(KindResults):
 
     whole_in_parts = True
 
-    overall: Overall = fact("one answer for all strategies")
-    statement: str = fact("the overall answer in words")
+    overall: Overall = fact("conclusion over all strategies")
+    statement: str = fact("conclusion in words")
     hazard: AssessHazard = fact("the hazard")
     verdicts: list[StrategyVerdict] = fact("one row a strategy")
     agreement: dict[str, dict[str, Agreement]] = fact(

@@ -149,7 +149,7 @@ def refuse_other_deck(out: Path, deck: str) -> None:
         if by != program():
             raise StoreError(
                 f"{folder}: was begun by extrados {by}, this one is {program()}: not resumed, for the two may compute "
-                "another result; run anew without --resume, or go on with that version"
+                "another result; run anew without --resume, or continue with that version"
             )
 
 

@@ -15,9 +15,9 @@ class Check(ResultModel):
     """One rule of a code."""
 
     capacity: float | None = fact("capacity by the rule, in `unit`; null where the rule gives none for this element")
-    demand: float | None = fact("demand, in `unit`; null where it is not known")
+    demand: float | None = fact("demand, in `unit`; null if unknown")
     unit: str = fact("unit of capacity and demand")
-    quantity: str = fact("what is compared: displacement, acceleration, lateral strength, drift, slenderness")
+    quantity: str = fact("quantity that is compared: displacement, acceleration, lateral strength, drift, slenderness")
     verdict: Applied = fact("verdict of the rule; not-applicable outside its scope; empty without a demand")
     source: str = fact("clause of the rule, with edition and equation")
     note: str = fact("values on which capacity and demand rest")
@@ -29,7 +29,7 @@ class Check(ResultModel):
     alternative: str = fact(
         "checks of one code and limit state with the same word are alternatives: one that holds suffices; empty: must hold by itself"
     )
-    reason: str = fact("why the rule does not apply; empty where it does")
+    reason: str = fact("reason for which the rule does not apply; else empty")
 
     @property
     def words(self) -> str:
@@ -189,7 +189,7 @@ class WallMechanism(ResultModel):
     """A wall of a building on a plan above the foot of one of its storeys."""
 
     wall: str = fact("its name")
-    storey: int = fact("the storey at whose foot it turns, from 1")
+    storey: int = fact("storey at whose foot it rotates, from 1")
     foot_m: float = fact("height of that foot above the ground", "m")
     multiplier: float = fact("alpha_0")
     activation_acceleration_g: float = fact("a_0*", "g")

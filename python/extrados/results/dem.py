@@ -59,7 +59,7 @@ class DemRun(KindResults):
 
     outcome: DemOutcome = fact("no joint opens or slides, joints slide, joints open and the blocks stand, or collapse")
     collapse_criterion: CollapseCriterion | None = fact(
-        "by what the block collapsed, besides its displacement; null without collapse"
+        "criterion of collapse besides the displacement; null without collapse"
     )
     governing_block: str = fact("the block that collapsed first, else the block that moved farthest")
     collapse_time_s: float | None = fact("when the first block collapsed", "s")
@@ -78,11 +78,11 @@ class DemRun(KindResults):
     slip_limit_ratio: float = fact(
         "limit of that ratio (0.25): beyond it more than half of the lever arm to the end of the joint is lost, and the verdict is open"
     )
-    slipped_joint: str | None = fact("joint of that ratio; null where none slides by 1 %")
-    off_footing: list[str] = fact("blocks that slid farther than their footings reach, where no floor is named")
+    slipped_joint: str | None = fact("joint of that ratio; null if no joint slides by 1 %")
+    off_footing: list[str] = fact("blocks that slid beyond their footings, without a named floor")
     decided_by_last_digits: bool = fact(
-        "whether last digits decide: under the motion times 1 + 1e-6 the displacements part by more than a hundredth of the one that counts "
-        "as collapse, or the run ends in collapse where the other does not; false where this was not checked"
+        "chaotic response: under the motion times 1 + 1e-6 the displacements differ by more than a hundredth of the one that counts "
+        "as collapse, or only one of the two runs collapses; false without this check"
     )
     perturbation_growth: float | None = fact(
         "greatest separation of the displacements of a block, over the one that counts as collapse, under the motion times 1 + 1e-6, over "
@@ -176,7 +176,7 @@ class SolidDemRun(KindResults):
         "no contact opens or slides, contacts slide, contacts open and the blocks stand, or collapse"
     )
     collapse_criterion: CollapseCriterion | None = fact(
-        "by what the block collapsed, besides its displacement; null without collapse"
+        "criterion of collapse besides the displacement; null without collapse"
     )
     governing_block: str = fact("the block that collapsed first, else the block that moved farthest")
     collapse_time_s: float | None = fact("when the first block collapsed", "s")
@@ -189,9 +189,9 @@ class SolidDemRun(KindResults):
     blocks: int = fact("stones")
     contacts: int = fact("polygons along which they touch")
     dowels: int = fact("dowels across contacts")
-    dowel_slip_m: float = fact("how far one of them gave way at most, settling included", "m")
+    dowel_slip_m: float = fact("greatest displacement of a support, settling included", "m")
     dowels_out: int = fact("how many of them came out")
-    peak_rotation_rad: dict[str, float] = fact("greatest angle by which each followed block has turned", "rad")
+    peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block", "rad")
     collapse_displacement_m: float = fact(
         "displacement of a block that counts as collapse where the block did more than slide", "m"
     )
@@ -204,11 +204,11 @@ class SolidDemRun(KindResults):
     slip_limit_ratio: float = fact(
         "limit of that ratio (0.25): beyond it more than half of the lever arm to the end of the joint is lost, and the verdict is open"
     )
-    slipped_joint: str | None = fact("joint of that ratio; null where none slides by 1 %")
-    off_footing: list[str] = fact("blocks that slid farther than their footings reach, where no floor is named")
+    slipped_joint: str | None = fact("joint of that ratio; null if no joint slides by 1 %")
+    off_footing: list[str] = fact("blocks that slid beyond their footings, without a named floor")
     decided_by_last_digits: bool = fact(
-        "whether last digits decide: under the motion times 1 + 1e-6 the displacements part by more than a hundredth of the one that counts "
-        "as collapse, or the run ends in collapse where the other does not; false where this was not checked"
+        "chaotic response: under the motion times 1 + 1e-6 the displacements differ by more than a hundredth of the one that counts "
+        "as collapse, or only one of the two runs collapses; false without this check"
     )
     perturbation_growth: float | None = fact(
         "greatest separation of the displacements of a block, over the one that counts as collapse, under the motion times 1 + 1e-6, over "
@@ -321,7 +321,7 @@ class DemCurve(ResultModel):
     damping_ratio_rotation: float | None = fact("least fraction of critical damping at rotational impact")
     damping_ratio_corner: float | None = fact("least fraction of critical damping at corner impact")
     damping_ratio_edge: float | None = fact("least fraction of critical damping at edge impact")
-    shortest_durations_s: list[float | None] = fact("at each amplitude; null where none of those tried fails", "s")
+    shortest_durations_s: list[float | None] = fact("at each amplitude; null if no tried value causes collapse", "s")
 
 
 class CellApart(ResultModel):
@@ -347,7 +347,7 @@ class DemDomain(KindResults):
     pulse: Literal["step", "sine"] = fact("shape of the pulses")
     direction_deg: float | None = maybe("of solids: direction in plan of the motion, from +x to +y", "deg")
     amplitudes_g: list[float] = fact("amplitudes of the pulses", "g")
-    shortest_durations_s: list[float | None] = fact("at each amplitude; null where none of those tried fails", "s")
+    shortest_durations_s: list[float | None] = fact("at each amplitude; null if no tried value causes collapse", "s")
     curves: list[DemCurve] = fact("failure curves with other damping, stiffness or friction; the first is as given")
     mode_II_durations_s: list[float | None] | None = maybe(
         "shortest durations that cause collapse in the first half cycle; null without collapse at any duration that was run",

@@ -122,9 +122,9 @@ class NonDilatant(ResultModel):
         source="Drucker 1954",
     )
     frictionless_g: float | None = fact(
-        "lower bound: the same without friction; null where nothing stands then", "g", source="Drucker 1954"
+        "lower bound: the same without friction; null if it cannot stand then", "g", source="Drucker 1954"
     )
-    starts_g: list[float] = fact("load that each start led to; the least is the answer", "g")
+    starts_g: list[float] = fact("load reached from each start; the least is the result", "g")
     spread_g: float = fact("greatest less least of them: such states are not unique", "g")
     certified: bool = fact(
         "whether the certificate holds: equilibrium, |s| <= mu N and zero gap, recomputed apart from the solver"
@@ -142,7 +142,7 @@ class NonDilatant(ResultModel):
     complementarity_residual: float = fact(
         "greatest lesser of force and motion where a joint presses and opens, or holds and slides"
     )
-    work_residual: float = fact("work of the load less what weight and friction take, over the former")
+    work_residual: float = fact("work of the load less that of weight and friction, over the former")
 
 
 class Tilt(KindResults):
@@ -180,7 +180,7 @@ class Tilt(KindResults):
     required_friction_joint: int = fact("the joint that needs it")
     geometric_safety_factor: float | None = fact(
         "upright: one over the least part of the joints, about their middles, that holds a thrust line, at most 100; null where the line "
-        "runs through all middles within 1 % of the joints (no horizontal demand), or where it was not sought"
+        "runs through all middles within 1 % of the joints (no horizontal demand), or if not requested"
     )
     weight_N: float = fact("weight of the structure with its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
@@ -326,8 +326,8 @@ class ThrustLine(ResultModel):
     horizontal_N: float = maybe("horizontal thrust of the chain at its left springing, or its base", "N")
     horizontal_kN_per_m: float = maybe("horizontal thrust per metre of depth", "kN/m")
     crown_N: float = maybe(
-        "horizontal thrust at the crown of an arch whose stones ties hold: what the left springing and the ties take "
-        "together; the lines of least and greatest thrust are those of the crown then",
+        "horizontal thrust at the crown of an arch with ties at its voussoirs: sum of the left springing and the ties; "
+        "the lines of least and greatest thrust are those of the crown then",
         "N",
     )
     over_weight: float = maybe("horizontal thrust over the weight of the structure")
@@ -350,7 +350,7 @@ class Thrust(KindResults):
     admissible_interval_g: list[float] = fact("accelerations between which a thrust line is admissible", "g")
     geometric_safety_factor: float | None = fact(
         "one over the least part of the joints, about their middles, that holds a thrust line, at most 100; null where the line runs "
-        "through all middles within 1 % of the joints (no horizontal demand), or where it was not sought"
+        "through all middles within 1 % of the joints (no horizontal demand), or if not requested"
     )
     least_part_of_joints: float = maybe("the part of the joints, about their middles, that the most central line needs")
     weight_N: float = fact("weight of the structure with its fill", "N")
@@ -362,7 +362,7 @@ class Thrust(KindResults):
     duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
     least: ThrustLine = maybe("the line of least thrust")
     most: ThrustLine = maybe("the line of greatest thrust")
-    central: ThrustLine = maybe("the most central line; a warning gives the reason where it is missing")
+    central: ThrustLine = maybe("the most central line; if missing, a warning gives the reason")
 
     def judged(self, demand: Demand) -> Verdict:
         """The part of the joints that the most central line needs against the whole; the ratio is the safety factor."""
@@ -384,11 +384,11 @@ CHARACTERISTIC = "All partial factors are 1.0: characteristic loads and strength
 class MovingLoad(KindResults):
     """moving-load: collapse load, or adequacy factor of a train, at every place along an arch or a bridge."""
 
-    chain: str | None = fact("the arch that the load crosses; null where it crosses the whole top")
+    chain: str | None = fact("arch that the load crosses; null if it crosses the whole top")
     collapse_load_N: float = fact("least collapse load; of a train, the load then on the structure", "N")
     collapse_load_kN_per_m: float = fact("least load per metre of depth", "kN/m")
-    worst_place_m: float = fact("x of the first axle where that is", "m")
-    worst_place_over_span: float = fact("x of the first axle where that is, from the left springing, over the span")
+    worst_place_m: float = fact("x of the first axle at that position", "m")
+    worst_place_over_span: float = fact("x of the first axle at that position, from the left springing, over the span")
     worst_way: Literal["+x", "-x"] = fact("heading of the train there")
     hinges: list[NamedHinge] = fact("hinges of the mechanism there")
     sliding_joints: list[int] = fact("joints that slide or part in the mechanism there")
@@ -508,8 +508,8 @@ class Gap(ResultModel):
     """A value of a sweep at which the structure has no mechanism under the load."""
 
     value: float = fact("the value of the key, in its unit")
-    status: SectionStatus = fact("cannot-stand (capacity 0, by a certificate), locked, or no-answer")
-    reason: str = fact("why, with the certificate where it cannot stand")
+    status: SectionStatus = fact("cannot-stand (capacity 0, by a certificate), locked, or no-answer (no result)")
+    reason: str = fact("reason, with the certificate of a structure that cannot stand")
 
 
 class Sweep(KindResults):
@@ -527,12 +527,12 @@ class Sweep(KindResults):
     optimum_inside: bool = fact("whether it lies inside the range")
     values: list[float] = fact("the values, in the unit of the key")
     collapse_accelerations_g: list[float | None] = fact(
-        "capacity at each value; 0 where it cannot stand, null without an answer", "g"
+        "capacity at each value; 0 for a structure that cannot stand, null without a result", "g"
     )
     upper_bound_values: list[float] = fact(
         "values at which pressed joints slide in the mechanism: the capacity is an upper bound (dilatant friction)"
     )
-    gaps: list[Gap] = fact("values without a mechanism: cannot stand, locked, or no answer")
+    gaps: list[Gap] = fact("values without a mechanism: cannot stand, locked, or no result")
     duality_gap: float = fact("greatest difference between the bounds", "g")
     fractured_collapse_accelerations_g: list[float | None] = maybe(
         "collapse accelerations with the leeward buttress cracked", "g"
@@ -568,7 +568,7 @@ class Survey(KindResults):
     cannot_stand: list[NoAnswerRow] = fact(
         "sections that a certificate proves to collapse under their own weight, the first hundred; their capacity is 0"
     )
-    without_answer: list[NoAnswerRow] = fact("sections without an answer, the first hundred")
+    without_answer: list[NoAnswerRow] = fact("sections without a result, the first hundred")
     upper_bounds: int = fact(
         "sections in whose mechanism pressed joints slide: their capacity is an upper bound (dilatant friction)"
     )

@@ -73,7 +73,7 @@ def _told(shape: ShapeFacts) -> str:
 
 def _line(f: Fact) -> str:
     unit, source = f" [{f.unit}]" if f.unit else "", f" ({f.source})" if f.source else ""
-    return f"{f.key}{unit}: {f.about}{source}" + ("" if f.always else "; where it applies")
+    return f"{f.key}{unit}: {f.about}{source}" + ("" if f.always else "; if applicable")
 
 
 def manual(results: ResultFacts) -> str:
@@ -82,7 +82,7 @@ def manual(results: ResultFacts) -> str:
         "# Results reference",
         "",
         "Generated from the result models by `extrados explain --results`. Keys are those of `summary.json`;",
-        "`[]` stands for the rows of a list, `.NAME` for the entries of a table of names. From Python they read as",
+        "`[]` denotes the rows of a list, `.NAME` for the entries of a table of names. From Python they read as",
         '`run["tilt"].collapse_acceleration_g` or `run["tilt"]["collapse_acceleration_g"]`.',
         "",
         "## Every analysis",
@@ -108,5 +108,5 @@ def _table(shape: ShapeFacts) -> list[str]:
     rows = ["| key | meaning | unit | given |", "|---|---|---|---|"]
     for f in shape.facts:
         about = (f.about + (f" ({f.source})" if f.source else "")).replace("|", "\\|")
-        rows.append(f"| `{f.key}` | {about} | {f.unit} | {'always' if f.always else 'where it applies'} |")
+        rows.append(f"| `{f.key}` | {about} | {f.unit} | {'always' if f.always else 'if applicable'} |")
     return [*rows, ""]

@@ -74,7 +74,7 @@ class RestraintForces(ResultModel):
     greatest_force_N: float = maybe("greatest force, tension positive; of a tie or damper", "N")
     permanent_elongation_m: float = maybe("residual yield or slip at the end; of a tie or damper", "m")
     least_moment_Nm: float = maybe(
-        "least moment, counter-clockwise turn of the first stone positive; of an added hinge", "N*m"
+        "least moment, counter-clockwise rotation of the first block positive; of an added hinge", "N*m"
     )
     greatest_moment_Nm: float = maybe("greatest moment; of an added hinge", "N*m")
     permanent_turn_rad: float = maybe("residual yield at the end; of an added hinge", "rad")
@@ -115,7 +115,7 @@ class SoftBaseRocking(ResultModel):
     free_share: float = fact("share of the time in which the base does not press at all")
     energy_taken_up_J: float = fact("energy that the dashpots of the base have taken up", "J")
     rigid_outcome: RockingOutcome | None = fact("outcome on a rigid base, with Housner's impact; null: no result")
-    rigid_peak_rotation_rad: float | None = fact("greatest rotation on a rigid base; null: no answer", "rad")
+    rigid_peak_rotation_rad: float | None = fact("greatest rotation on a rigid base; null: no result", "rad")
 
 
 class HandOver(ResultModel):
@@ -139,12 +139,12 @@ class Rocking(KindResults):
     )
     settled: bool = fact("whether it came to rest, or down, before the run ended; false leaves the outcome open")
     collapse_half_cycle: int | None = fact("half cycle of the collapse")
-    collapse_time_s: float | None = fact("when it turned past recall", "s")
+    collapse_time_s: float | None = fact("time from which its rotation is past recovery", "s")
     half_cycles: int = fact("half cycles of rocking")
     impacts: int = fact("number of impacts")
     impact_times_s: list[float] = fact("when they happen", "s")
     peak_rotation_rad: float = fact("greatest rotation, positive to +x", "rad")
-    peak_rotation_ratio: float = fact("greatest rotation over the critical one, from which gravity takes it down")
+    peak_rotation_ratio: float = fact("greatest rotation over the critical one, from which gravity causes collapse")
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
     energy_supplied_J: float = fact("work of the ground", "J")
     energy_lost_at_impacts_J: float = fact("energy lost at impacts", "J")
@@ -213,7 +213,7 @@ class ModeCurve(ResultModel):
     """Lowest failing amplitudes of a mode of collapse."""
 
     durations_s: list[float] = fact("durations or periods of the pulses", "s")
-    amplitudes_g: list[float | None] = fact("lowest failing amplitude at each; null where none below the cap", "g")
+    amplitudes_g: list[float | None] = fact("lowest failing amplitude at each; null if above the cap", "g")
     amplitude_ratios: list[float | None] = maybe(
         "of a block: failing amplitudes over the uplift acceleration, that on rigid ground"
     )
@@ -370,7 +370,7 @@ class FailureCurves(KindResults):
 
     pulse: Pulse = fact("shape of the pulses")
     curves: list[FailureCurve] = fact("one for each variant and number of cycles")
-    impulses: list[MotionImpulse] = fact("of the motions of the deck; none where it has no motion")
+    impulses: list[MotionImpulse] = fact("of the motions of the deck; empty without a motion")
     agreement: float | None = fact(
         "share of verdicts by the curves that the whole motions confirm; null: none to compare"
     )
@@ -438,7 +438,7 @@ class Assessment(KindResults):
     impulses: list[AssessedImpulse] = fact("the strongest impulses of the motion")
     verdict: Literal["stands", "fails"] = fact("whether one of them causes collapse by the criterion")
     run_outcome: RockingOutcome | None = fact("outcome of the whole motion by the equation of motion")
-    margin: float | None = fact("least failing amplitude over amplitude; null where no impulse can do harm")
+    margin: float | None = fact("least failing amplitude over amplitude; null if no impulse causes collapse")
     conditions: Conditions = fact("under the whole motion: whether blocks slide or hinges form elsewhere")
     margins_by_rule: dict[str, float | None] = maybe(
         "margin by each impact rule, from a curve fitted by it, where their c_v differ by more than 1.3; null: no impulse can do harm"

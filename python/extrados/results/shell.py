@@ -14,7 +14,7 @@ class WallShare(ResultModel):
     shear_N: float = fact("in its plane, along the push", "N")
     share: float = fact("part of the base shear")
     normal_N: float = fact("compression is negative", "N")
-    normal_change_N: float = fact("beside what the constant loads bring; uplift is positive", "N")
+    normal_change_N: float = fact("besides those of the constant loads; uplift is positive", "N")
     elastic_share: float = fact("part of the base shear before it cracks")
     drifts: list[float | None] = fact("drift of each storey; null where the wall has none")
 
@@ -76,7 +76,7 @@ class PushCurve(SlaCurve):
     """The events of one sense of the push; loads are base shears."""
 
     capacity_N: float | None = fact(
-        "greatest base shear, or the sliding limit where that is less; null without a state, and of ground that moves",
+        "greatest base shear, or the sliding limit if less; null without a state, and of ground that moves",
         "N",
     )
     sliding_capacity_N: float = maybe("least base shear under which a level slides by Coulomb's limit", "N")
@@ -100,8 +100,8 @@ class StageOfPush(PushCurve):
     gives way they are the forces that move it."""
 
     name: str = fact("its name, or its number")
-    of: Literal["push", "settlement"] = fact("what it is")
-    prefix: str = fact("how the names of its arrays begin; empty of the stage that stands for the analysis")
+    of: Literal["push", "settlement"] = fact("quantity")
+    prefix: str = fact("how the names of its arrays begin; empty for the stage that represents the analysis")
     start_load_N: float = fact("load at its start", "N")
     end_load_N: float | None = fact("load at its end", "N")
 
@@ -118,7 +118,7 @@ class Variation(ResultModel):
     """The same push with another assumption."""
 
     name: str = fact("its name")
-    factors: dict[str, float] = fact("on what the deck says")
+    factors: dict[str, float] = fact("by the deck")
     greatest_base_shear_N: float | None = fact("greatest base shear in equilibrium", "N")
     passed: bool = fact("whether that was a peak")
     base_shear_coefficient: float | None = fact("over the weight of that variant")

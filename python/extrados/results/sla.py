@@ -17,9 +17,7 @@ class Bilinear(ResultModel):
     stiffness_N_m: float = fact("secant stiffness at 60 % of the peak", "N/m")
     yield_load_N: float = fact("load of the plateau", "N")
     yield_displacement_m: float = fact("displacement at its start", "m")
-    ultimate_displacement_m: float = fact(
-        "displacement where the load has fallen to 80 % of the peak, or the last", "m"
-    )
+    ultimate_displacement_m: float = fact("displacement at a load of 80 % of the peak after it, or the last", "m")
     ductility: float = fact("ultimate over yield displacement")
 
 
@@ -37,7 +35,7 @@ class BarForce(ResultModel):
 
     name: str = fact("its name; bars of the wall are called by their number")
     force_at_greatest_load_N: float | None = fact(
-        "force at the greatest load in equilibrium, of an embedded bar where it is greatest in size; null where that state "
+        "force at the greatest load in equilibrium, of an embedded bar at its section of greatest force; null if that state "
         "was not kept",
         "N",
     )
@@ -85,16 +83,16 @@ class SlaCurve(ResultModel):
     )
     stored_energy_J: float | None = fact("elastic energy at that event", "J")
     dissipated_energy_J: float | None = fact(
-        "energy dissipated up to that event; never negative, never decreasing. Basis: the work of the loads less what is stored, from one "
+        "energy dissipated up to that event; never negative, never decreasing. Basis: the work of the loads less the stored energy, from one "
         "state in equilibrium to the next, friction included; through events without equilibrium the area of their teeth",
         "J",
     )
     crack_energy_J: float = fact(
-        "area of the teeth passed across cracks and along joints, in all events. Basis: the material laws (what the fracture energy "
-        "counts), without friction and without what is lost between states: it need not equal dissipated_energy_J",
+        "area of the teeth passed across cracks and along joints, in all events. Basis: the material laws (fracture "
+        "energy), without friction and without the energy lost between states: it need not equal dissipated_energy_J",
         "J",
     )
-    residual_ratio: float | None = fact("greatest residual of the equations that was measured; null where none was")
+    residual_ratio: float | None = fact("greatest measured residual of the equations; null without a measurement")
     guard_checks: int = fact("times that the residual was measured on the way")
     guard_resolutions: int = fact("times that the equations were solved again for it")
     guard_new_factors: int = fact("times that the factor was made anew for it")
@@ -141,14 +139,14 @@ class SlaCurve(ResultModel):
     )
     greatest_acceleration_g: float | None = maybe("the greatest load as a horizontal acceleration, likewise", "g")
     bars: list[BarForce] = maybe("forces of bars and ties")
-    bilinear: Bilinear = maybe("idealisation of the envelope, where it has a rising branch and passed its peak")
+    bilinear: Bilinear = maybe("idealisation of an envelope that has a rising branch and has passed its peak")
 
 
 class SlaStage(SlaCurve):
     """One stage of several; loads are those in the direction of its own, with what stages before have left on."""
 
     name: str = fact("its name, or its number")
-    prefix: str = fact("how the names of its arrays begin; empty of the stage that stands for the analysis")
+    prefix: str = fact("how the names of its arrays begin; empty for the stage that represents the analysis")
     start_load_N: float = fact("load at its start", "N")
     end_load_N: float | None = fact("load at its end", "N")
 
@@ -169,7 +167,7 @@ class Comparison(ResultModel):
 
     peak_ratio: float = fact("greatest load over the measured one")
     tail_ratios: list[float | None] = fact(
-        "load over the measured one where that has fallen to 75, 50, 25 % of its peak; null where either ends before"
+        "load over the measured one at 75, 50, 25 % of its peak after the peak; null if either curve ends before"
     )
     inside_ratio: float | None = fact(
         "part of the measured points between whose least and greatest load the envelope lies"

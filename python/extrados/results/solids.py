@@ -24,9 +24,7 @@ class Pyramids(ResultModel):
     """Bounds by friction pyramids, from a linear programme."""
 
     sides: int = fact("sides of the pyramids")
-    lower_g: float | None = fact(
-        "with pyramids within the cones: a bound from below; null where nothing stands so", "g"
-    )
+    lower_g: float | None = fact("with pyramids within the cones: lower bound; null if it cannot stand so", "g")
     upper_g: float | None = fact(
         "with pyramids around the cones: a bound from above; null without a collapse mechanism", "g"
     )
@@ -74,7 +72,7 @@ class SolidTilt(KindResults):
     moving_blocks: int = fact("blocks that move in the mechanism, faster than a thousandth of the fastest")
     fastest_block: str = fact("the stone with the fastest centroid")
     opening_contacts: list[OpenContact] = fact("contacts that open or slide most, at most 20 of them")
-    weight_N: float = fact("weight of the structure with what rests on it", "N")
+    weight_N: float = fact("weight of the structure with the weights that rest on it", "N")
     upper_bound_g: float = fact("bound from above by the virtual work of the mechanism", "g")
     duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
     equilibrium_residual: float = fact("greatest force, or moment over the size, left over at a stone, over the weight")

@@ -25,7 +25,7 @@ class Annual(KindResults):
         "mean annual rate of collapse", "1/year", source="Cornell and Krawinkler 2000, PEER Center News 3(2)"
     )
     annual_collapse_rate_interval: list[float | None] = maybe(
-        "its interval by what the runs leave open of the curve", "1/year"
+        "its interval by the uncertainty of the fitted curve", "1/year"
     )
     annual_collapse_rate_left_out: float = maybe(
         "possible contribution of intensities beyond the ends of the hazard curve", "1/year"
@@ -83,7 +83,7 @@ class Ensemble(Annual):
         "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
     )
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
-    critical_rotation_rad: float = fact("rotation from which gravity takes it down", "rad")
+    critical_rotation_rad: float = fact("rotation from which gravity causes collapse", "rad")
     initial_rotation_ratio: float = fact("rotation at the start over the critical one")
     motions: int = fact("number of motions")
     conditions: Conditions = fact("over the runs: whether blocks slide or hinges form elsewhere")
@@ -174,7 +174,7 @@ class OverLevels(Annual):
         "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
     )
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
-    critical_rotation_rad: float = fact("rotation from which gravity takes it down", "rad")
+    critical_rotation_rad: float = fact("rotation from which gravity causes collapse", "rad")
     initial_rotation_ratio: float = fact("rotation at the start over the critical one")
     median: float | None = maybe(
         "median of the lognormal curve of collapse at a level, in intensity_unit", source="Baker 2015"
@@ -263,7 +263,7 @@ class OverDurations(KindResults):
     restitution: float | None = fact(
         "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
     )
-    critical_rotation_rad: float = fact("rotation from which gravity takes it down", "rad")
+    critical_rotation_rad: float = fact("rotation from which gravity causes collapse", "rad")
     initial_rotation_ratio: float = fact("rotation at the start over the critical one")
     median_pga_g: list[float | None] = fact("median peak acceleration at each duration", "g")
     conditions: Conditions = fact("over all runs: whether blocks slide or hinges form elsewhere")
@@ -293,7 +293,7 @@ class Resonance(KindResults):
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     initial_rotation_ratio: float = fact("rotation at the start over the critical one")
     half_cycles: int = fact("changes of sign of the motion")
-    collapse_time_s: float | None = fact("when it turned past recall", "s")
+    collapse_time_s: float | None = fact("time from which its rotation is past recovery", "s")
     switch_times_s: list[float] = fact("when the motion changes sign", "s")
     switch_spacing_s: list[float] = fact("time between them", "s")
     peak_rotation_rad: list[float] = fact("rotation at the start and at each change of sign", "rad")
@@ -376,7 +376,7 @@ class HarmonicMap(KindResults):
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     frequencies_Hz: list[float] = fact("frequencies", "Hz")
     frequency_ratios: list[float] = fact("omega/p of the frequencies")
-    lowest_overturning_amplitude_g: list[float | None] = fact("at each frequency; null where none overturns", "g")
+    lowest_overturning_amplitude_g: list[float | None] = fact("at each frequency; null if none overturns", "g")
     safe_pocket_cells: int = fact("cells of the map above a failing amplitude that are safe")
     restitution: float | None = fact(
         "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"

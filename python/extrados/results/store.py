@@ -170,7 +170,7 @@ class NewFolder:
                 if before is not None and not written.remove(before):
                     kept = written.beside(out)  # it came while we looked
                     before.rename(kept)
-                    log.warning("%s: what was put there while results were written is in %s", out, kept)
+                    log.warning("%s: files put there while results were written are in %s", out, kept)
 
 
 def _refuse_no_folder(out: Path) -> None:
@@ -401,7 +401,7 @@ class Stored:
             first = error.errors()[0] if isinstance(error, ValidationError) else {"loc": [error], "msg": "unknown kind"}
             place = ".".join(str(part) for part in first["loc"])
             raise StoreError(
-                f"{self._place}the results of '{analysis['name']}' are not what this version gives: {place}: {first['msg']}"
+                f"{self._place}the results of '{analysis['name']}' are not those of this version: {place}: {first['msg']}"
             ) from None
 
     def series(self, analysis: str, name: str) -> list[Array]:
@@ -497,7 +497,7 @@ def _check_shape(summary: Any) -> None:
         first = error.errors()[0]
         place = ".".join(map(str, first["loc"]))
         raise ValueError(
-            f"{SUMMARY} is not what this version writes: {place}: {first['msg'].partition(' or instance')[0].lower()}"
+            f"{SUMMARY} is not a result of this version: {place}: {first['msg'].partition(' or instance')[0].lower()}"
         ) from None
 
 

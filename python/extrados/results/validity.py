@@ -148,7 +148,7 @@ Strengthen = Validity(
     "as far as its checks are made. The limits of the analysis that measures the target apply.",
 )
 Assess = Validity(
-    "Each strategy answers by its own analysis, with parameters chosen by stated rules.",
+    "Each strategy has its own analysis, with parameters chosen by stated rules.",
     "The reasons state how the models differ, not which model is right. No strategy is better than the geometry and the "
     "properties of the deck.",
 )

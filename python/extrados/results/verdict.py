@@ -68,7 +68,7 @@ class SelfWeight(KindResults):
     safety_factor: float = fact("0: the building collapses before the demand acts")
     certificate: str = fact("joints or blocks at which equilibrium fails, and the certificate")
     neglected: list[str] = fact(
-        "strengths, restraints and pressures of the deck that the proof neglects; with any the outcome is open"
+        "strengths, restraints and pressures of the deck that the certificate neglects; with any the outcome is open"
     )
 
     def statement(self) -> str:

@@ -42,7 +42,9 @@ def note(folder: Path, *sums: dict[str, str]) -> None:
     names = sorted({name for one in sums for name in one})
     listed = {name: sorted({one[name] for one in sums if name in one}) for name in names}
     fresh = folder / f"{LIST}.new"
-    fresh.write_text(json.dumps({"about": "checksums of what extrados wrote here", "files": listed}), encoding="utf-8")
+    fresh.write_text(
+        json.dumps({"about": "checksums of the files that extrados wrote here", "files": listed}), encoding="utf-8"
+    )
     fresh.replace(folder / LIST)
 
 

@@ -236,7 +236,7 @@ def _draw_restraints(run: Stored, name: str, folder: Path, t: np.ndarray) -> tup
         if len(moving):
             axes[-1].set_xlim(max(0.0, t[moving[0]] - 0.2), min(t[-1], t[moving[-1]] + 0.2))
         saved = style.save(fig, folder, f"{name}-restraints")
-    return saved, "Forces of what holds it" + (", the first twelve of each kind." if len(arrays) > 12 else ".")
+    return saved, "Forces of restraints" + (", the first twelve of each kind." if len(arrays) > 12 else ".")
 
 
 def _draw_base(run: Stored, name: str, folder: Path, t: np.ndarray) -> tuple[str, str]:
@@ -249,7 +249,7 @@ def _draw_base(run: Stored, name: str, folder: Path, t: np.ndarray) -> tuple[str
         base.set_ylabel("base that pushes\nx [m]")
         sinking.plot(t, 1e3 * run.array(name, "sinking"), color=style.THRUST, linewidth=0.9)
         sinking.axhline(1e3 * run[name].soft_base.sinking_at_rest_m, color=style.EDGE, linestyle=":", linewidth=0.8)
-        sinking.set_ylabel("sinking of its\nmiddle [mm]")
+        sinking.set_ylabel("settlement of its\nmiddle [mm]")
         sinking.invert_yaxis()
         sinking.set_xlabel("time [s]")
         moving = np.flatnonzero(
@@ -258,7 +258,7 @@ def _draw_base(run: Stored, name: str, folder: Path, t: np.ndarray) -> tuple[str
         if len(moving):
             sinking.set_xlim(max(0.0, t[moving[0]] - 0.5), min(t[-1], t[moving[-1]] + 0.5))
         saved = style.save(fig, folder, f"{name}-base")
-    return saved, "The part of the base that pushes, and the sinking at the foot of the centre (dotted: at rest)."
+    return saved, "The part of the base in contact, and the settlement at the foot of the centre (dotted: at rest)."
 
 
 def _once(ax: Any) -> tuple[list[Any], list[str]]:
@@ -416,6 +416,6 @@ def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str
         return [
             (
                 style.save(fig, folder, name),
-                "Impulses against the failure curve, and where they lie in the motion.",
+                "Impulses against the failure curve, and their times in the motion.",
             )
         ]

@@ -433,7 +433,7 @@ class Shown:
             self.send("grid", "stripe_level", "stripe_collapse_probability")
             if "stripe_level" in a:
                 rows.append(
-                    _series("stripe_collapse_probability", "share that came down", x="stripe_level", sort="points")
+                    _series("stripe_collapse_probability", "share that collapsed", x="stripe_level", sort="points")
                 )
             self._draw(
                 "Fragility",
@@ -512,7 +512,7 @@ class Shown:
     def moving_load(self) -> None:
         """The live-load factor over the place of the load."""
         self.send("place", "capacity")
-        self._draw("Load that brings it down", _axis("place", "place of the first axle", "m"), _axis("", "load", "kN"), [_series("capacity", "capacity", factor=1e-3)])  # fmt: skip
+        self._draw("Collapse load", _axis("place", "place of the first axle", "m"), _axis("", "load", "kN"), [_series("capacity", "capacity", factor=1e-3)])  # fmt: skip
         if "mechanism_pose" in self.arrays and "outline" in self.arrays:
             rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
             share = np.linspace(0.0, 1.0, 24)
@@ -537,7 +537,7 @@ class Shown:
             _series("impulse_amplitude", "impulses of the motion", x="impulse_period", sort="points"),
         ]  # fmt: skip
         rows = [r for r in known if np.isfinite(np.asarray(self.out.get(r["array"], np.nan), dtype=float)).any()]
-        self._pulses("Pulses that bring it down", _axis("period", "period", "s"), rows)
+        self._pulses("Pulses that cause collapse", _axis("period", "period", "s"), rows)
 
     def failure_curves(self) -> None:
         """The lowest failing amplitude of each structure, and the primary impulses of the motions."""

@@ -36,9 +36,14 @@ def draw_failure_curves(run: Stored, name: str, folder: Path) -> list[tuple[str,
         if len(places):
             falls = [sum(c.run_outcomes[k] == "collapse" for c in r.curves) for k in range(len(places))]
             for marker, colour, text, some in (
-                ("o", style.THRUST, "brings all down", [k for k, n in enumerate(falls) if n == len(r.curves)]),
-                ("^", style.MODES[2], "brings some down", [k for k, n in enumerate(falls) if 0 < n < len(r.curves)]),
-                ("s", style.SAFE, "brings none down", [k for k, n in enumerate(falls) if n == 0]),
+                ("o", style.THRUST, "causes collapse of all", [k for k, n in enumerate(falls) if n == len(r.curves)]),
+                (
+                    "^",
+                    style.MODES[2],
+                    "causes collapse of some",
+                    [k for k, n in enumerate(falls) if 0 < n < len(r.curves)],
+                ),
+                ("s", style.SAFE, "causes no collapse", [k for k, n in enumerate(falls) if n == 0]),
             ):
                 if some:
                     plain.plot(*places[some].T, marker, color=colour, markeredgecolor=style.EDGE, markersize=5,
@@ -63,7 +68,7 @@ def draw_failure_curves(run: Stored, name: str, folder: Path) -> list[tuple[str,
             plain.legend(loc="upper right", frameon=True)
         else:
             style.legend_below(fig, plain)
-        caption = "Lowest amplitudes that bring each down (dotted: where it starts to rock), and the same over its natural time and its uplift."
+        caption = "Lowest amplitudes of collapse of each (dotted: start of rocking), and the same over its natural time and its uplift."
         if len(places):
             named = ", ".join(f"{k + 1} {i.name}" for k, i in enumerate(r.impulses))
             caption += f" Points: primary impulses of {named}."

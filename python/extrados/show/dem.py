@@ -278,7 +278,7 @@ def draw_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ax.set_xlim(left=0.0)
         ax.legend()
         saved = style.save(fig, folder, f"{name}-curves")
-    drawn = [(saved, "Shortest failing pulses; to the right of a curve it comes down.")]
+    drawn = [(saved, "Shortest failing pulses; to the right of a curve it collapses.")]
     return [*drawn, _both_solvers(run, name, folder)] if run[name].cross_check is not None else drawn
 
 
@@ -290,10 +290,10 @@ def _both_solvers(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ("nonsmooth", "compliant") if run[name].curves[0].solver == "nonsmooth" else ("compliant", "nonsmooth")
     )
     kinds = (
-        (fails[0] & fails[1], "falls by both", {"marker": "s", "color": style.HINGE}),
-        (~fails[0] & ~fails[1] & 1, "stands by both", {"marker": "s", "color": "#d8d4c8"}),
-        (fails[0] & ~fails[1] & 1, f"falls by {first} only", {"marker": "X", "color": style.THRUST}),
-        (~fails[0] & 1 & fails[1], f"falls by {second} only", {"marker": "P", "color": "#d9a400"}),
+        (fails[0] & fails[1], "collapses by both", {"marker": "s", "color": style.HINGE}),
+        (~fails[0] & ~fails[1] & 1, "stable by both", {"marker": "s", "color": "#d8d4c8"}),
+        (fails[0] & ~fails[1] & 1, f"collapses by {first} only", {"marker": "X", "color": style.THRUST}),
+        (~fails[0] & 1 & fails[1], f"collapses by {second} only", {"marker": "P", "color": "#d9a400"}),
     )
     with style.figure(6.5, 4.6) as (fig, (ax,)):
         for cells, label, look in kinds:

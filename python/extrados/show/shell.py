@@ -87,8 +87,8 @@ def _stage_curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.set_ylabel("base shear [kN]" if push else "force that moves the ground [kN]")
             ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
-            "All stages one after the other, each with the damage that those before left: base shear of the pushes, and the "
-            "force along the way of the ground that gives way, summed over what moves."
+            "All stages one after the other, each with the damage of those before: base shear of lateral loads, and the "
+            "force along the settlement of the ground, summed over the moving supports."
         )
 
 
@@ -148,7 +148,7 @@ def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
             "Capacity curves: every state (thin), the envelope and its bilinear idealisation of equal area; dotted, Coulomb's limit of the level that slides first, "
-            "which the curve does not know; "
+            "which the curve does not include; "
             "variants of what is assumed in blue-grey, other analyses of the run in grey."
         )
 
@@ -296,8 +296,8 @@ def _from_above(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str,
             title=f"cracks, the widest {1e3 * most:.3g} mm",
         )  # fmt: skip
         return style.save(fig, folder, f"{name}{_suffix(prefix)}-plan"), (
-            "Cracks seen from above, at the greatest load and at the end: of each place the widest through the thickness, "
-            "red where it is widest towards the extrados and blue towards the intrados; the thicker the wider."
+            "Cracks seen from above, at the greatest load and at the end: the widest through the thickness at each place, "
+            "red if widest towards the extrados and blue if towards the intrados; line width in proportion."
         )
 
 

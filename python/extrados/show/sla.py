@@ -194,7 +194,7 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             low, high = min(loads.min(), 0.0), max(loads.max(), 0.0)
             ax.set_ylim((low - 0.08 * (high - low)) / 1e3, (high + 0.08 * (high - low)) / 1e3)
         ax.axhline(0.0, color="#999", linewidth=0.5)
-        ax.set_xlabel(f"control displacement [mm]{f', goes on to {1e3 * most:.0f}' if cut else ''}")
+        ax.set_xlabel(f"control displacement [mm]{f', continues to {1e3 * most:.0f}' if cut else ''}")
         ax.set_ylabel("load [kN]")
         ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (

@@ -79,8 +79,8 @@ def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         if stage.share.any():
             legend(fig, list(axes[: rows * columns]), stage.farthest)
         saved = style.save(fig, folder, f"{name}-snapshots")
-    what = f"Brought down by {r.collapse_acceleration_g:.4f} g" if tilt else "The stones as they move"
-    return saved, f"{what}; colours tell how far a stone has gone, at most {stage.farthest:.3g} m."
+    what = f"Collapse by {r.collapse_acceleration_g:.4f} g" if tilt else "The stones as they move"
+    return saved, f"{what}; colours show the displacement of each block, at most {stage.farthest:.3g} m."
 
 
 def legend(fig: Figure, axes: list[Axes], farthest: float) -> None:
@@ -107,7 +107,7 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         for axis, ax in zip("xyz", axes[:3], strict=True):
             ax.set_ylabel(f"{axis} [mm]")
         style.legend_above(axes[0])
-        axes[3].set_ylabel("turned by [mrad]")
+        axes[3].set_ylabel("rotation [mrad]")
         axes[4].plot(time, run.array(name, "ground") / GRAVITY, color=style.EDGE, label="along")
         if both:
             axes[4].plot(
@@ -119,7 +119,7 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         axes[4].set_xlim(0.0, float(time.max(initial=0.0)) or 1.0)
         saved = style.save(fig, folder, f"{name}-displacements")
     return saved, (
-        f"Displacements of the stones that go farthest, from their settled places, and by how much they turn; the ground moves along "
+        f"Greatest displacements of blocks from their settled places, and their rotations; the ground moves along "
         f"{r.direction_deg:g} degrees in plan{' and across' if both else ''}."
     )
 

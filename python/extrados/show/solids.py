@@ -119,7 +119,7 @@ def _draw_forces(run: Stored, name: str, folder: Path, r: SolidTilt, stones: sce
         saved = style.save(fig, folder, f"{name}-forces")
     return saved, (
         "Forces between the stones and from the ground at collapse, through the stones: each at the centre of its compression, "
-        f"as long as it is great; the longest is {size.max() / 1e3:.3g} kN."
+        f"with length in proportion to it; the longest is {size.max() / 1e3:.3g} kN."
     )
 
 

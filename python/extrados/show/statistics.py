@@ -79,7 +79,7 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.text(
                 0.5,
                 0.5,
-                f"{int(counts[full[0]])} runs turn by {where} of the critical rotation",
+                f"{int(counts[full[0]])} runs rotate by {where} of the critical rotation",
                 transform=ax.transAxes,
                 ha="center",
                 fontsize=8,
@@ -104,7 +104,7 @@ def _cloud(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         up, fell = outcome == RECOVERY, outcome == COLLAPSE
         place = place_of_collapse(ratio[up])
         left.plot(
-            x[up], ratio[up], "o", color=style.HINGE, markersize=3, alpha=0.6, label=f"{int(up.sum())} rock and stay up"
+            x[up], ratio[up], "o", color=style.HINGE, markersize=3, alpha=0.6, label=f"{int(up.sum())} rock and recover"
         )
         left.plot(
             x[fell],
@@ -178,7 +178,7 @@ def _annual(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         right.set_xscale("log")
         right.set_ylim(bottom=0.0)
         right.set_ylabel("rate of collapse by ln(intensity) [1/year]")
-        right.set_title("which intensities bring it down")
+        right.set_title("Intensities of collapse")
         right.legend()
         for ax in (left, right):
             ax.set_xlabel(_axis(r))
@@ -200,7 +200,7 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             right.plot(time.data, np.clip(rotation.data, -place, place), color=style.THRUST if fell else style.HINGE)
             left.set_title(f"{at.about}: ground [g]", fontsize=8, loc="left")
             right.set_title(
-                f"rotation over the critical one: {'overturns' if fell else 'stays up'}", fontsize=8, loc="left"
+                f"rotation over the critical one: {'overturns' if fell else 'recovers'}", fontsize=8, loc="left"
             )
             right.axhline(1.0, color=style.EDGE, linewidth=0.6, linestyle=":")
             right.axhline(-1.0, color=style.EDGE, linewidth=0.6, linestyle=":")
@@ -345,7 +345,7 @@ def _durations(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         )
         right.set_ylim(-0.02, 1.02)
         right.set_ylabel("probability of collapse")
-        right.set_title("share that falls, 95 % interval")
+        right.set_title("share that collapses, 95 % interval")
         for ax in (left, right):
             ax.set_xlabel("duration of the motion t_d [s]")
         return [

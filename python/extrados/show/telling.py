@@ -168,7 +168,7 @@ def _assessed(run: Stored, name: str) -> list[Block]:
                     "Values that only discrete elements consider: displacement of their blocks over that of collapse."
                 )
             )
-            head = ("key", "value", "moved", "at the value", "varied", "turns at")
+            head = ("key", "value", "moved", "at the value", "varied", "rotates at")
             found.append(Table(head, shaken, (2.2, 1.2, 1.6, 1.0, 1.6, 1.0)))
     if r.probes:
         found.append(Heading("Further runs", 2))
@@ -318,7 +318,7 @@ def _own_tables(run: Stored) -> list[tuple[str, str, Table]]:
                 )
             )
         if walls := getattr(r, "walls", None) if a["kind"] == "local-mechanism" else None:
-            head = ("wall", "turns at the foot of storey", "alpha_0", "a_0* [g]", "d_0* [m]", "margin")
+            head = ("wall", "rotates at the foot of storey", "alpha_0", "a_0* [g]", "d_0* [m]", "margin")
             rows = [
                 (w.wall, str(w.storey), f"{w.multiplier:.4g}", f"{w.activation_acceleration_g:.4g}",
                  "none" if w.zero_displacement_m is None else f"{w.zero_displacement_m:.3g}", "" if w.margin is None else f"{w.margin:.3g}")
@@ -372,7 +372,7 @@ def _repeat(run: Stored, deck: dict[str, Any], made: dict[str, Any]) -> list[Blo
     found: list[Block] = [
         Heading("To repeat it"), Code("\n".join(lines)),
         Table((), [("version", f"{made['version']} {made['commit']}"), ("compiler", made["compiler"]), ("deck", f"{deck['path']}, sha256 {deck['sha256']}")], (1.0, 5.0)),
-        Words(f"Checksums (sha256) of the files beside this report, as {SUMMARY} holds them:"),
+        Words(f"Checksums (sha256) of the files beside this report, as {SUMMARY} restrains them:"),
         Table(("file", "sha256"), sums, (1.6, 5.0)),
     ]  # fmt: skip
     rows = flat(settings)

@@ -110,7 +110,7 @@ def rigid_bodies(
         outer.append(np.ones(len(polygon), dtype=bool))
         names.append("support of " + ", ".join(assembly.joint_names[j] for j in line))
     if not support_of:
-        raise BadGeometry("no block stands on the ground")
+        raise BadGeometry("no block rests on the ground")
     cut = _cut_overlaps(parts, outer, owner, assembly.tolerance)
     middles = [polygon.mean(axis=0) for polygon in parts[len(stones) :]]
     if floor is not None:

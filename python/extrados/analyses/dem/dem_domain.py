@@ -182,24 +182,24 @@ def _found(context: Context, options: DemDomain, model: Model | SolidModel, vari
     units = {"amplitude": "g", **{f"shortest duration, {label}": "s" for label in labels}}
     result.arrays = {
         "amplitude": Array(amplitudes / GRAVITY, ("amplitude",), "g"),
-        "curve": Array(np.array(labels), ("curve",), "", "what was varied"),
+        "curve": Array(np.array(labels), ("curve",), "", "varied quantity"),
         "shortest": Array(np.array(shortest), ("curve", "amplitude"), "s", "shortest failing duration"),
     }
     if at_once is not None:
         numbers["mode_II_durations_s"] = at_once
         result.arrays["elements_mode_II"] = Array(
-            at_once, ("amplitude",), "s", "shortest duration that brings the elements down in their first swing"
+            at_once, ("amplitude",), "s", "shortest duration that causes collapse of the elements in their first swing"
         )
         table["shortest duration, mode II"], units["shortest duration, mode II"] = at_once, "s"
     if checked is not None:
         numbers["cross_check"] = _agreement(checked, amplitudes, durations)
         result.arrays |= {
-            "duration": Array(durations, ("duration",), "s", "durations of the cells that both solvers were asked"),
+            "duration": Array(durations, ("duration",), "s", "durations of the cells that both solvers computed"),
             "fails": Array(
                 checked,
                 ("solver", "amplitude", "duration"),
                 "",
-                "1 where the cell brings it down: as given, other solver",
+                "1 if the pulse of the cell causes collapse: solver of the deck, other solver",
             ),
         }
         if numbers["cross_check"].agreement_ratio < AGREE:
@@ -339,7 +339,7 @@ def _answer(r: out.DemDomain, amplitudes: np.ndarray, shortest: np.ndarray) -> s
         f"{a / GRAVITY:.3g} g for {t:.3f} s" if np.isfinite(t) else f"{a / GRAVITY:.3g} g: none of those tried"
         for a, t in zip(amplitudes, shortest, strict=True)
     ]
-    text = f"Shortest {r.pulse} pulses that bring it down: {'; '.join(told)}."
+    text = f"Shortest {r.pulse} pulses that cause collapse: {'; '.join(told)}."
     spread = [
         (c.label, np.array([np.nan if t is None else t for t in c.shortest_durations_s]))
         for c in r.curves[1:]

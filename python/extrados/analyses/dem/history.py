@@ -44,7 +44,7 @@ def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> R
     ground = context.motion.sample(found.time) if context.deck.motion else np.zeros(len(found.time))
     seen = Seen.of(model, found, options.floor is not None)
     result = Result("dem", status="interrupted" if found.interrupted else "ok")
-    again = "; --resume goes on from here" if context.checkpoint is not None and len(found.time) else ""
+    again = "; --resume continues from here" if context.checkpoint is not None and len(found.time) else ""
     result.reason = f"interrupted at {found.stop_time:.3f} s{again}" if found.interrupted else ""
     shadow = trial.job([model.values], FACTOR, output_step=step) if options.perturbed else None
 

@@ -171,7 +171,7 @@ def doubts_of_springs(values: JointValues | SolidValues) -> list[str]:
     ratio, found = values.ratios(), []
     if np.nanmax(values.tension, initial=0.0) > 0.0:
         found.append(
-            "the tensile strength of mortar acts at the ends or corners of a joint: bent, it bears up to three times what an elastic one does"
+            "the tensile strength of mortar acts at the ends or corners of a joint: in bending the joint carries up to three times the moment of an elastic one"
         )
     if ratio["rotation"] < impact_rules.LEAST_AT_ROTATION or ratio["edge"] < impact_rules.LEAST_AT_EDGE:
         found.append(

@@ -78,7 +78,7 @@ def _refuse_springs(building: Building) -> None:
     """Refused where rigid contacts are asked for what only springs have."""
     refuse_mortar(building)
     if building.supports.stiffness is not None:
-        raise Refused(f"{RIGID} know no springs", ("supports", "stiffness"))
+        raise Refused(f"{RIGID} have no springs", ("supports", "stiffness"))
 
 
 def _refuse_restitution(building: Building) -> None:

@@ -62,7 +62,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
     ground = context.motion.sample(found.time) if moved is not None else np.zeros(len(found.time))
     seen = solid_measures.look(model, found, options.floor is not None)
     result = Result("dem", status="interrupted" if found.interrupted else "ok")
-    again = "; --resume goes on from here" if context.checkpoint is not None and len(found.time) else ""
+    again = "; --resume continues from here" if context.checkpoint is not None and len(found.time) else ""
     result.reason = f"interrupted at {found.stop_time:.3f} s{again}" if found.interrupted else ""
 
     def outcome_of(one: dem3.Run) -> str:
@@ -78,7 +78,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
             Motion("", across).sample(found.time),
             ("time",),
             "m/s^2",
-            "acceleration of the ground a quarter turn from the direction",
+            "acceleration of the ground at 90 degrees to the direction",
         )
     if seen.slides:
         result.warnings.append(f"contacts slide by up to {1e3 * seen.sliding.peak:.3g} mm")

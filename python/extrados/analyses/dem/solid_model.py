@@ -161,7 +161,7 @@ def refuse_mortar(building: Building, assembly: SolidAssembly | None = None) -> 
     """Refused where joints, of the plane stones or of solids, have mortar, which rigid contacts do not know."""
     for name in ("cohesion", "tension"):
         if np.nanmax(building.joint_property(name, assembly), initial=0.0) > 0.0:
-            raise Refused(f"{RIGID} know no mortar", ("joints", name))
+            raise Refused(f"{RIGID} have no mortar", ("joints", name))
 
 
 def refuse_stones(building: Building, assembly: SolidAssembly, rigid: bool) -> None:
@@ -175,10 +175,11 @@ def refuse_stones(building: Building, assembly: SolidAssembly, rigid: bool) -> N
     if rigid:
         refuse_mortar(building, assembly)
         if assembly.keys is not None:
-            raise Refused(f"{RIGID} know no dowels", ("structure", "dowels"))
+            raise Refused(f"{RIGID} have no dowels", ("structure", "dowels"))
     if len(assembly.fill):
         raise Refused(
-            "fill: dem of solids cannot take what rests on the stones into account; leave it out", ("structure", "fill")
+            "fill: `dem` of solids does not consider weights that rest on the blocks; remove the fill",
+            ("structure", "fill"),
         )
 
 

@@ -22,12 +22,11 @@ from extrados.results.model import Result
 from extrados.views.building import Building
 
 WEDGED = (
-    "limit analysis does not find that it must fall: friction may hold a stone that is wedged in, by forces that elements "
-    "begin without"
+    "limit analysis does not prove collapse: friction may hold a wedged block by forces that elements do not start with"
 )
 JAMMED = (
-    "it stands on rigid contacts by forces that its weight does not call up, as friction holds a stone that is wedged in; "
-    "on springs, which begin without such forces,"
+    "on rigid contacts it is in equilibrium by forces that self-weight does not cause, as friction holds a wedged block; "
+    "on springs, which start without such forces,"
 )
 #: Steps of springs in which cases/solid/dem-cross-vault comes to rest, 14 times over
 SETTLING = 20_000
@@ -83,7 +82,7 @@ def left_out(model: Model | SolidModel) -> str:
         count, most, what = model.count, MOST_SOLIDS, "solids"
     if count <= most:
         return ""
-    return f"whether it stands was asked of no other method: it has {count} {what}, and they are asked of up to {most}"
+    return f"no other method checked whether it stands: it has {count} {what}, and the check covers up to {most}"
 
 
 def jammed(model: Model | SolidModel, threads: int) -> tuple[str, str]:
@@ -108,10 +107,10 @@ def jammed(model: Model | SolidModel, threads: int) -> tuple[str, str]:
     except Restless:
         return (
             "",
-            f"on springs it does not come to rest in {SETTLING} steps: whether it stands by jamming alone is not known",
+            f"on springs it does not come to rest in {SETTLING} steps: equilibrium by jamming alone is not excluded",
         )
     except Falls:
-        answer = "That it stands as it begins may be by jamming alone: settled on springs it falls."
+        answer = "Its initial equilibrium may be by jamming alone: settled on springs it collapses."
         return answer, f"{JAMMED} {model.body_names[found.blamed[0]]} falls"
     return "", ""
 
@@ -134,7 +133,7 @@ def proof_of_solids(building: Building) -> CannotStand | None:
         return None
     name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
     return CannotStand(
-        f"{name} cannot be in equilibrium; proof: a collapse motion, fastest at {name}, that no contact hinders and in which the "
+        f"{name} cannot be in equilibrium; certificate: a collapse motion, fastest at {name}, that no contact hinders and in which the "
         "weights do work"
     )
 

@@ -64,11 +64,11 @@ class DemTable(BuildingAnalysis):
     )
     fraction: float = key(0.3, "time step over the critical one", gt=0, le=0.9)
     time_step: Time | None = key(
-        None, "instead of the fraction of the critical step, or nonsmooth of a 500th of the time in which the smallest block "
-        "falls by its own size", gt=0,
+        None, "instead of the fraction of the critical step, or nonsmooth of a 500th of the time of a free fall by the size "
+        "of the smallest block", gt=0,
     )  # fmt: skip
     floor: Length | None = key(
-        None, "height of a level floor that catches what falls and on which blocks slide on; default none, but a footing a "
+        None, "height of a level floor on which detached blocks land and slide; default none, but a footing a "
         "quarter wider on both sides under each joint to the ground",
     )  # fmt: skip
 
@@ -103,8 +103,8 @@ class SpatialDem(DemTable):
 
     solid: ClassVar = True
     direction: Angle | None = key(
-        None, "direction in plan of the horizontal motion or push, from +x to +y; with it, and where there is no plane section, the "
-        "blocks are looked at as solids", ge=-360, le=360,
+        None, "direction in plan of the horizontal motion or load, from +x to +y; with it, and for structures without a plane "
+        "section, the blocks are solids", ge=-360, le=360,
     )  # fmt: skip
 
     @property
@@ -120,18 +120,15 @@ class Dem(SpatialDem, Animated):
     starter_motion: ClassVar = "step-pulse"
     kind: Literal["dem"]
     quasi_static: bool = key(
-        False, "nonsmooth: without inertia, so that supports that move are followed through large displacements until "
-        "what stands on them falls",
+        False, "nonsmooth: without inertia, so that moving supports are followed through large displacements until collapse",
     )  # fmt: skip
-    test: Literal["motion", "tilt"] = key(
-        "motion", "follow the motion, or find the constant acceleration that brings it down"
-    )
+    test: Literal["motion", "tilt"] = key("motion", "follow the motion, or find the constant acceleration of collapse")
     end_time: Time | None = key(None, "when to stop; default the end of the motion and some time after", gt=0)
     output_step: Time = key(0.01, "spacing of the history", ge=1e-6)
     base: Literal["body-force", "moving"] = key("body-force", "how the ground moves: both give the same")
     collapse_displacement: Length | None = key(
-        None, "displacement of a block that counts as collapse, where the block also turns or loses height; in a tilt test, where it "
-        "slides, too; default a fifth of the structure's size, in a tilt test a twentieth", gt=0,
+        None, "displacement of a block that counts as collapse, if the block also rotates or loses height; in a tilt test, also if it "
+        "slides; default a fifth of the structure's size, in a tilt test a twentieth", gt=0,
     )  # fmt: skip
     domain: float = key(10.0, "blocks may go this many sizes of the structure away from it", gt=1, le=1000)
     stop_at_collapse: bool = key(True, "end the run once a block has moved that far")
@@ -139,7 +136,9 @@ class Dem(SpatialDem, Animated):
         True, "also follow the motion times 1 + 1e-6, to find whether the response is chaotic; takes as long as the run itself",
     )  # fmt: skip
     track: list[str] = key([], "names of blocks whose rotation is followed; default all, at most 24", max_length=200)
-    snapshot_times: list[Time] = key([], "draw the structure at these times; default six telling ones", max_length=24)
+    snapshot_times: list[Time] = key(
+        [], "draw the structure at these times; default six characteristic ones", max_length=24
+    )
     vtk: bool = key(False, "write VTU files and a PVD collection")
     vary_damping: list[Positive] = key([], "also run with beta times these factors", max_length=50)
     vary_stiffness: list[Positive] = key([], "also run with joint stiffnesses times these factors", max_length=50)
@@ -166,11 +165,11 @@ class DemDomain(SpatialDem):
     accuracy: Time = key(0.005, "of the failing durations", ge=1e-6)
     settle: Time | None = key(None, "time after the pulse in which it must come to rest or down", gt=0)
     collapse_displacement: Length | None = key(
-        None, "displacement of a block that counts as collapse, where the block also turns or loses height; default a fifth of the "
+        None, "displacement of a block that counts as collapse, if the block also rotates or loses height; default a fifth of the "
         "structure's size", gt=0,
     )  # fmt: skip
     mode_II: bool = key(
-        False, "also the shortest pulses that bring it down in its first swing, before any impact; with merge = "
+        False, "also the shortest pulses that cause collapse in the first swing, before any impact; with merge = "
         '"three-bars" beside the four-hinge curve of that name', source="thesis Fig. 7-11",
     )  # fmt: skip
     cross_check: bool = key(

@@ -139,7 +139,7 @@ def capacities(
     for sense, run in zip(SENSES, last, strict=True):
         if run is None:
             raise Refused(
-                f"stands at {options.tilt_limit / GRAVITY:g} g to {'+x' if sense > 0 else '-x'}: raise tilt_limit",
+                f"is stable at {options.tilt_limit / GRAVITY:g} g to {'+x' if sense > 0 else '-x'}: raise tilt_limit",
                 ("analysis", "tilt_limit"),
             )
     while True:

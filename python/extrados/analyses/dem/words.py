@@ -45,7 +45,7 @@ def motion_answer(r: DemRun, idle: bool) -> str:
     turn = max(r.peak_rotation_rad.items(), key=lambda item: abs(item[1]), default=("", 0.0))
     first, audit = _fate(r, "joint"), _audit(r)
     return (
-        f"{first}; {turn[0]} turns by {1e3 * abs(turn[1]):.3g} mrad at most, slip {1e3 * r.peak_slip_m:.3g} mm, "
+        f"{first}; {turn[0]} rotates by {1e3 * abs(turn[1]):.3g} mrad at most, slip {1e3 * r.peak_slip_m:.3g} mm, "
         f"{r.bounces} bounces; {audit}."
     )
 
@@ -56,7 +56,7 @@ def tilt_answer(r: DemTilt) -> str:
     where = ", ".join(f"{h.name} ({h.side})" for h in r.hinges[:6]) or "none"
     least, sense = min((collapse, "+x"), (back, "-x"))
     return (
-        f"A constant horizontal acceleration brings it down at {collapse:.4f} g pushed to +x (a tilt of "
+        f"Collapse under a constant horizontal acceleration of {collapse:.4f} g pushed to +x (a tilt of "
         f"{r.tilt_angle_deg:.2f} deg) and at {back:.4f} g pushed to -x; the least is {least:.4f} g, to {sense}. "
         f"Hinges as it goes to +x: {where}."
         + (f" {ONE_PATH}" if r.interval else "")
@@ -73,10 +73,10 @@ def solid_answer(r: SolidDemRun, idle: bool) -> str:
     if r.outcome == "rocked":
         first += f", {1e3 * r.final_displacement_m:.3g} mm of it left at the end"
     if r.dowels:
-        gave = f"gave way by up to {1e3 * r.dowel_slip_m:.2g} mm" if r.dowel_slip_m > 0.0 else "held"
+        gave = f"moved by up to {1e3 * r.dowel_slip_m:.2g} mm" if r.dowel_slip_m > 0.0 else "held"
         first += f"; dowels {gave}" + (f", {r.dowels_out} of {r.dowels} came out" if r.dowels_out else "")
     return (
-        f"{first}; {turn[0]} turns by {1e3 * turn[1]:.3g} mrad at most, slip {1e3 * r.peak_slip_m:.3g} mm, {r.bounces} bounces; "
+        f"{first}; {turn[0]} rotates by {1e3 * turn[1]:.3g} mrad at most, slip {1e3 * r.peak_slip_m:.3g} mm, {r.bounces} bounces; "
         f"{r.blocks} stones, {r.contacts} contacts; {audit}."
     )
 
@@ -86,7 +86,7 @@ def solid_tilt_answer(r: SolidDemTilt) -> str:
     where = ", ".join(r.opening_contacts[:6]) or "none"
     least = min(r.collapse_acceleration_g, r.collapse_acceleration_opposite_g)
     return (
-        f"A constant horizontal acceleration brings it down at {r.collapse_acceleration_g:.4f} g pushed along {r.load_direction_deg:g} "
+        f"Collapse under a constant horizontal acceleration of {r.collapse_acceleration_g:.4f} g pushed along {r.load_direction_deg:g} "
         f"degrees in plan (a tilt of {r.tilt_angle_deg:.2f} deg) and at {r.collapse_acceleration_opposite_g:.4f} g the opposite way; "
         f"the least is {least:.4f} g. Contacts that gape or slide as it goes: {where}."
         + (f" {ONE_PATH}" if r.interval else "")

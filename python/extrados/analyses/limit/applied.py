@@ -34,7 +34,7 @@ def block_under(assembly: Assembly, x: float) -> tuple[int, float]:
         low = min(float(o[:, 0].min()) for o in assembly.outlines)
         high = max(float(o[:, 0].max()) for o in assembly.outlines)
         raise Refused(
-            f"a load at x = {x:.4g} m stands beside the structure, which reaches from {low:.4g} to {high:.4g} m",
+            f"a load at x = {x:.4g} m lies beside the structure, which extends from {low:.4g} to {high:.4g} m",
             WHOLE,
         )
     return best, height

@@ -294,7 +294,7 @@ def run(context: Context, options: MovingLoad) -> Result:
         **zone_arrays(assembly, state, job.strength),
         "place": Array(places, ("place",), "m", "x of the first axle"),
         "way": Array(ways, ("place",), "", "1 where the train heads to +x, -1 to -x"),
-        "capacity": Array(finite, ("place",), "N", "collapse load; NaN where no load causes collapse"),
+        "capacity": Array(finite, ("place",), "N", "collapse load; NaN if no load causes collapse"),
         "axle": Array(job.at(k), ("axle",), "m", "axles at the worst place"),
         "even_load": Array(_standing(job, k, worst), ("stretch", "end"), "m", "even loads at the worst place"),
         "collapse_point": Array(state.points(assembly), ("joint", "axis"), "m", "thrust line at collapse, worst place"),

@@ -49,7 +49,7 @@ def run(context: Context, options: Tilt) -> Result:
         low, high = sorted((there.gamma, -back.gamma))
         raise CannotStand(
             f"the structure stands only under a horizontal load along {first:g} degrees by {low:.4f} to "
-            f"{high:.4f} g; proof: the mechanism of the lesser push, in which the weights do work"
+            f"{high:.4f} g; certificate: the mechanism of the smaller load, in which the weights do work"
         )
     rose = [found_at[round(d, 9)] for d in angles.tolist()]
     capacity = np.array([np.inf if one is None else _stands(one, assembly).gamma for one in rose])
@@ -195,7 +195,7 @@ def _stands(found: Programme | Falls | None, assembly: SolidAssembly) -> Program
     if isinstance(found, Falls):
         name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
         raise CannotStand(
-            f"proof: a motion, fastest at {name}, that no contact hinders and by which the weights do work"
+            f"certificate: a motion, fastest at {name}, that no contact hinders and by which the weights do work"
         )
     return found
 

@@ -204,7 +204,7 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
     if slid:
         result.warnings.append(
             "dilatant friction: joints that slide open by their friction times the slip too, and states in which less is "
-            'carried without dilatancy are not sought; `friction = "no-sliding"` shows what only opens'
+            'carried without dilatancy are not sought; `friction = "no-sliding"` considers joints that only open'
         )
     most_moved = 1e3 * float(np.hypot(*movement[:, :2].T).max())
     given = f" by up to {most_moved:.3g} mm" if most_moved > 0.0 else ""

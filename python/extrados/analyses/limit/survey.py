@@ -111,7 +111,7 @@ def run(context: Context, options: Survey) -> Result:
             gamma,
             ("section",),
             "g",
-            "collapse acceleration to +x; 0 where a section cannot stand, NaN without an answer",
+            "collapse acceleration to +x; 0 for a section that cannot stand, NaN without a result",
         ),
         "section_name": Array(np.array(names, dtype=object), ("section",), "", "names of the sections"),
     }
@@ -125,8 +125,8 @@ def run(context: Context, options: Survey) -> Result:
             f"; the weakest is {r.weakest} with {r.weakest_collapse_acceleration_g:.4f} g, "
             f"the median of those that stand {r.median_collapse_acceleration_g:.4f} g"
         )
-    text += f". {len(without)} have no answer." if without else "."
+    text += f". {len(without)} have no result." if without else "."
     if r.upper_bounds:
         text += f" In {r.upper_bounds} of them joints slide: {out.DILATANT}."
-    result.answer = text + (" The reasons stand in survey.csv." if fallen or without else "")
+    result.answer = text + (" survey.csv gives the reasons." if fallen or without else "")
     return result

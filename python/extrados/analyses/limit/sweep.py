@@ -153,7 +153,10 @@ def run(context: Context, options: Sweep) -> Result:
     result.arrays = {
         "value": Array(values, ("value",), "", f"values of {options.vary}"),
         "gamma": Array(
-            gamma, ("value",), "g", "collapse acceleration to +x; 0 where it cannot stand, NaN without an answer"
+            gamma,
+            ("value",),
+            "g",
+            "collapse acceleration to +x; 0 for a structure that cannot stand, NaN without a result",
         ),
         "mechanism": Array(number, ("value",), "", "number of the mechanism; 0: none"),
         "change": Array(
@@ -326,7 +329,7 @@ def _words(options: Sweep, r: out.Sweep) -> str:
         if g is not None and abs(g - most) <= LEVEL * abs(most)
     ]
     if r.locked_limits:
-        where = f"greatest where it is nearly locked, at {best}"
+        where = f"greatest near locking, at {best}"
     elif len(level) == len(r.values):
         where = "the same throughout"
     elif len(level) > 1:
@@ -349,7 +352,7 @@ def _words(options: Sweep, r: out.Sweep) -> str:
     if counts["cannot-stand"]:
         text += f" At {counts['cannot-stand']} of {len(r.values)} values the structure cannot stand (capacity 0)."
     if counts["no-answer"]:
-        text += f" At {counts['no-answer']} of {len(r.values)} values there is no answer."
+        text += f" At {counts['no-answer']} of {len(r.values)} values have no result."
     if r.upper_bound_values:
         text += f" At {len(r.upper_bound_values)} of {len(r.values)} values joints slide: {out.DILATANT}."
     return text

@@ -57,8 +57,8 @@ class Tilt(LimitAnalysisTable, Animated):
     solid: ClassVar = True
     fracture: bool = key(False, "also consider a crack in the leeward buttress: monolithic and fractured side by side")
     direction: Angle | None = key(
-        None, "direction in plan of the push, from +x to +y, which is across a section; with it, and where there is no plane section, "
-        "the blocks are analysed as solids", ge=-360, le=360,
+        None, "direction in plan of the horizontal load, from +x to +y, which is across a section; with it, and for structures "
+        "without a plane section, the blocks are analysed as solids", ge=-360, le=360,
     )  # fmt: skip
     rose: int | None = key(
         None, "of solids: directions all around at which the capacity is sought; default 16 up to 300 blocks, beyond the direction alone",
@@ -194,12 +194,12 @@ class MovingLoad(LimitAnalysisTable):
     uniform: list[UniformLoad] = key(
         [], "even loads along the train; they need axle_loads, or axles = []", max_length=50
     )
-    adverse: bool = key(True, "even loads stand only where they press the mechanism on; false: on all of their length")
+    adverse: bool = key(
+        True, "distributed loads act only over lengths that drive the mechanism; false: over all of their length"
+    )
     alpha: float = key(1.0, "adjustment or classification factor of the train", gt=0, le=10)
     lanes: int | None = key(None, "notional lanes that LM1 loads; default all that the width holds", ge=1, le=20)
-    width: Length | None = key(
-        None, "width across that carries the load, less than the depth where it does not spread to all of it", gt=0
-    )
+    width: Length | None = key(None, "transverse width that carries the load, at most the depth", gt=0)
     contact_length: Length = key(0.3, "length of an axle's contact along a bridge with fill", gt=0)
     factors: PartialFactors = key(PartialFactors(), "partial factors")
     both_ways: bool = key(False, "the train also crosses to the left, its first axle ahead")
@@ -216,13 +216,11 @@ class MovingLoad(LimitAnalysisTable):
         if self.axle_loads is not None and (len(self.axle_loads) != len(self.axles) or min(self.axle_loads) <= 0.0):
             raise ValueError("axle_loads: expected one load above 0 for each of axles")
         if self.train is not None and given & {"axles", "shares", "force", "axle_loads", "uniform"}:
-            raise ValueError(
-                "train stands in place of axles, shares, force, axle_loads and uniform: give the one or the others"
-            )
+            raise ValueError("train replaces axles, shares, force, axle_loads and uniform: give the one or the others")
         if self.axle_loads is not None and (self.shares is not None or self.force is not None):
-            raise ValueError("axle_loads stands in place of shares and force")
+            raise ValueError("axle_loads replaces shares and force")
         if self.uniform and self.axle_loads is None and self.axles:
-            raise ValueError("uniform needs axle_loads, or axles = [] where there are none")
+            raise ValueError("uniform needs axle_loads, or axles = [] without axles")
         if not self.axles and not self.uniform:
             raise ValueError("axles: expected one at least, or uniform loads")
         if self.lanes is not None and self.train != "LM1":

@@ -367,7 +367,7 @@ def _compare_with_intensity(
     if not 0.5 <= ratio <= 2.0:
         result.warnings.append(
             f'the set\'s PGA is {ratio:.2f} times the median of intensity {model.mmi:g}: scaling = "{model.scaling}" with '
-            f"factor {model.factor:g} does not stand for that intensity (see the documentation of Eq. 6.6)"
+            f"factor {model.factor:g} does not represent that intensity (see the documentation of Eq. 6.6)"
         )
     return further
 

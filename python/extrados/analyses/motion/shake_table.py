@@ -108,7 +108,7 @@ def _play(context: Context, options: ShakeTable, table: Table, result: Result) -
         "drive_acceleration": Array(played.acceleration, ("drive_time",), "m/s^2"),
         "motion_time": Array(time * chosen.time_scale, ("motion_time",), "s"),
         "motion_acceleration": Array(
-            acceleration * chosen.amplitude, ("motion_time",), "m/s^2", "what was asked for, scaled alike"
+            acceleration * chosen.amplitude, ("motion_time",), "m/s^2", "requested motion, scaled alike"
         ),
     }
     result.tables["drive"] = TableData(

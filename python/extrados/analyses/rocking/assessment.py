@@ -29,7 +29,7 @@ def run(context: Context, options: Assessment) -> Result:
     rocker = rocker_of(context, options)
     arch = rocker.model.arch if isinstance(rocker.model, ArchModel) else None
     if context.motion.ground.channels > 1:
-        context.warnings.append("the criterion knows the horizontal motion only: the vertical component is left out")
+        context.warnings.append("The criterion covers the horizontal motion only: the vertical component is neglected.")
     gamma, scale = rocker.uplift, rocker.scale
     time, acceleration = context.motion.series()
     impulses = primary_impulses(time, acceleration, options.impulses, options.min_period, options.max_period)
@@ -83,24 +83,24 @@ def run(context: Context, options: Assessment) -> Result:
     if beyond:
         result.warnings.append(
             f"the criterion follows the failure curve up to {CAP:g} times the acceleration that starts rocking ({CAP * gamma:.3g} g): "
-            f"an impulse of {abs(beyond[0].amplitude_g):.3g} g over {beyond[0].period_s:.3g} s lies above, where one swing may bring "
-            "it down; see `failure-domain`"
+            f"an impulse of {abs(beyond[0].amplitude_g):.3g} g over {beyond[0].period_s:.3g} s lies above: one swing may cause "
+            "collapse; see `failure-domain`"
         )
     if run_outcome is not None and (r.verdict == "fails") != (run_outcome == "collapse"):
         why = (
             "impulses this strong lie beyond the criterion"
             if beyond
-            else "the criterion knows single impulses without what comes before and after them"
+            else "the criterion holds for single impulses without the motion before and after them"
         )
         result.warnings.append(
-            f"the criterion says that it {r.verdict}, but rocked through the whole motion it "
-            f"{'comes down' if run_outcome == 'collapse' else 'stays up'}: {why}; the run (analysis `rocking`) is the better witness"
+            f"the criterion predicts that it {r.verdict}, but under the whole motion it "
+            f"{'collapses' if run_outcome == 'collapse' else 'recovers'}: {why}; the run (analysis `rocking`) is more reliable"
         )
     if rows and (not isinstance(context.deck.motion, SinePulse) or context.deck.motion.floor is not None):
         first = rows[0]
         result.warnings.append(
             f"the criterion was made for single sines: the strongest impulse of this motion is replaced by a sine of "
-            f"{abs(first.amplitude_g):.3g} g over {first.period_s:.3g} s, which takes away {100 * first.goodness_of_fit:.0f} % "
+            f"{abs(first.amplitude_g):.3g} g over {first.period_s:.3g} s, which removes {100 * first.goodness_of_fit:.0f} % "
             "of the squared acceleration over its span"
         )
     columns = ("rank", "amplitude_g", "period_s", "start_s", "explained", "goodness_of_fit", "failing_amplitude_g",
@@ -198,7 +198,7 @@ def _coefficients(fit: Fit) -> out.Coefficients:
 
 def _answer(r: out.Assessment, worst: out.AssessedImpulse | None, what: str) -> str:
     if worst is None:
-        return "The motion holds no impulse in the range of periods asked for: it is too short for it, or zero."
+        return "The motion holds no impulse in the given range of periods: it is too short, or zero."
     first = r.primary_impulse
     text = (
         f"The primary impulse of the motion is {abs(first.amplitude_g):.3f} g over {first.period_s:.3f} s, "

@@ -22,7 +22,7 @@ def refuse_movements(context: Context) -> None:
     """Refused where supports move."""
     if context.building.initial.movements:
         raise Refused(
-            "supports that move while it rocks are followed by `rocking` and `dem`: leave out [[initial.movements]]",
+            "supports that move during rocking are followed by `rocking` and `dem` only: remove [[initial.movements]]",
             ("initial", "movements"),
         )
 
@@ -42,7 +42,7 @@ def shifts_of(building: Building) -> list[Shift]:
     for k, one in enumerate(movements):
         if one.turn:
             raise Refused(
-                f"the support at '{one.joint}' turns; what rocks meanwhile is followed by `dem`",
+                f"the support at '{one.joint}' rotates; rocking during such a movement is followed by `dem`",
                 ("initial", "movements", k, "turn"),
             )
     shifts = {Shift(one.dx, one.dy, one.start, one.duration) for one in movements}
@@ -51,7 +51,7 @@ def shifts_of(building: Building) -> list[Shift]:
         if moved != grounded:
             raise Refused(
                 f"the supports at {', '.join(sorted(grounded - moved)[:4])} do not move with the others; "
-                "what rocks while its supports part is followed by `dem`",
+                "rocking on supports that part is followed by `dem`",
                 ("initial", "movements"),
             )
     return sorted(shifts, key=lambda s: (s.start, s.duration, s.dx, s.dy))

@@ -53,8 +53,8 @@ def beat(context: Context, response: Response) -> float:
 def too_fast(limit: float) -> str:
     """Why motion that repeats itself above a frequency [Hz] is worse than fixed hinges say."""
     return (
-        f"above {limit:.2g} Hz impacts in a row, of hinges that do not move, lose too much in an arch of this size, and discrete "
-        "elements fell at a third of the strength"
+        f"above {limit:.2g} Hz impacts in a row, of hinges that do not move, lose too much energy in an arch of this "
+        "size: discrete elements collapsed at a third of the amplitude"
     )
 
 
@@ -65,7 +65,7 @@ def _keeping_more(context: Context, rocker: Rocker, response: Response) -> list[
         return []
     found = []
     if (kept := model.kept_by_elements) is not None:
-        found.append((kept, "discrete elements may keep more than the blow at all joints"))
+        found.append((kept, "discrete elements may keep more velocity than the impact at all joints"))
     frequency, limit = beat(context, response), model.fastest_beat
     if limit is not None and frequency > limit:
         found.append((1.0, f"the motion repeats itself at {frequency:.2g} Hz: {too_fast(limit)}"))
@@ -128,7 +128,7 @@ def doubts(context: Context, options: Rocking, rocker: Rocker, response: Respons
     for (c_v, why), one in zip(more, outcome[len(rivals) :], strict=True):
         if one:
             rules.append(RuleOutcome(rule=f"{c_v:.3f}", restitution=c_v, outcome=one))
-            warnings.append(f"{why}: with {c_v:.3f} the outcome is {one}; ask `dem`")
+            warnings.append(f"{why}: with {c_v:.3f} the outcome is {one}; use `dem`")
             if one != response.outcome:
                 violated.append(f"The restitution decides the outcome: with {c_v:.3f} {one}. Use dem.")
     return Doubts(rules, grown, chaotic, warnings, violated)

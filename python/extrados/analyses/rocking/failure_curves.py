@@ -88,14 +88,14 @@ def run(context: Context, options: FailureCurves) -> Result:
     )  # fmt: skip
     if r.agreement is not None and r.agreement < 1.0:
         result.warnings.append(
-            f"{pairs.count(False)} of {len(pairs)} verdicts by the curves are not what the whole motion does: a curve knows "
-            "single impulses without what comes before and after them; the runs are the better witness"
+            f"{pairs.count(False)} of {len(pairs)} verdicts by the curves differ from the runs of the whole motion: a curve holds for "
+            "single impulses without the motion before and after them; use the outcomes of the runs"
         )
     longest = max(len(d) for d, _, _ in curves)
     padded = [np.array([np.append(c[k], np.full(longest - len(c[k]), np.nan)) for c in curves]) for k in (0, 1)]
     result.arrays = {
         "duration": Array(padded[0], ("curve", "point"), "s", "t_p of step and rectangular pulses, else the period T_p"),
-        "amplitude": Array(padded[1], ("curve", "point"), "g", "lowest amplitude that brings it down"),
+        "amplitude": Array(padded[1], ("curve", "point"), "g", "lowest amplitude of collapse"),
         "natural_time": Array(np.array([v.rocker.time_unit if _slender(v) else v.natural for v in variants]), ("curve",), "s"),
         "slender": Array(np.array([_slender(v) for v in variants]), ("curve",), "", "true of a block"),
     }  # fmt: skip
@@ -211,14 +211,14 @@ def _motions(context: Context, options: FailureCurves) -> list[Shaken]:
     found = []
     for name, ground in zip(names, grounds, strict=False):
         if isinstance(ground, str):
-            context.warnings.append(f"{name} is left out: {ground}")
+            context.warnings.append(f"{name} is not considered: {ground}")
             continue
         motion = Motion(name, ground)
         impulses = primary_impulses(*motion.series(), 1, None, options.max_period)
         if impulses:
             found.append(Shaken(name, motion, impulses[0]))
         else:
-            context.warnings.append(f"{name} is left out: it holds no impulse")
+            context.warnings.append(f"{name} is not considered: it holds no impulse")
     return found
 
 
@@ -280,7 +280,7 @@ def _answer(r: out.FailureCurves) -> str:
     parts = []
     for c in r.curves:
         failing = [a for a in c.amplitudes_g if a is not None]
-        low = f"comes down from {min(failing):.3f} g on" if failing else "is not brought down below the cap"
+        low = f"collapses from {min(failing):.3f} g on" if failing else "does not collapse below the cap"
         parts.append(f"{c.label}: rocks from {c.uplift_acceleration_g:.3f} g, {low}")
     text = f"Failure curves of {r.pulse} pulses. {'; '.join(parts)}."
     if r.scaling_misfit is not None:
@@ -294,5 +294,5 @@ def _answer(r: out.FailureCurves) -> str:
             told.append(
                 f"{c.label}: {static} by a static check, {above} by the curve, {falls} run through"
             )  # fmt: skip
-        text += f" Of {len(r.impulses)} motions these bring it down: {'; '.join(told)}."
+        text += f" Of {len(r.impulses)} motions these cause collapse: {'; '.join(told)}."
     return text

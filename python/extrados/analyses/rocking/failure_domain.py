@@ -365,7 +365,7 @@ def run(context: Context, options: FailureDomain) -> Result:
         "outcome": Array(curves.codes, ("duration", "amplitude"), "", "0 no hinging, 1 recovery, 2 Mode I, 3 Mode II"),
         "mode_I": Array(curves.mode_i / GRAVITY, ("duration",), "g", "lowest amplitude of collapse, of either mode"),
         "pocket": Array(
-            curves.pocket / GRAVITY, ("duration",), "g", "where the first safe pocket above the curve begins"
+            curves.pocket / GRAVITY, ("duration",), "g", "lowest amplitude of the first safe region above the curve"
         ),
         "mode_II": Array(
             curves.mode_ii / GRAVITY, ("duration",), "g", "lowest amplitude of collapse in the first half cycle"
@@ -525,8 +525,8 @@ def _answer(model: Rocker, options: FailureDomain, durations: np.ndarray, curves
         else "None of them collapses after an impact at a lower amplitude than without (Mode II)"
     )
     return (
-        f"Under {shape} the {model.word} starts to {start} at {model.uplift:.3f} g. It comes down from {shortest:.3f} s on "
+        f"Under {shape} the {model.word} starts to {start} at {model.uplift:.3f} g. It collapses from {shortest:.3f} s on "
         f"(at up to {options.max_amplitude / GRAVITY:g} g); over the durations tried the lowest failing amplitude is {governing:.3f} g. "
         f"{modes}; "
-        f"{pockets} of {len(durations)} durations have safe pockets above the curve, not to be relied on."
+        f"{pockets} of {len(durations)} durations have safe regions above the curve; they are not to be relied on."
     )

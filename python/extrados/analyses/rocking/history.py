@@ -205,7 +205,7 @@ def rocking_result(
             response.ledger,
             ("time",),
             "J",
-            "work of the ground less the energy lost at impacts and taken up by what holds it",
+            "work of the ground less the energy lost at impacts and taken by restraints",
         ),
         "impact_time": Array(np.array([t for t, _ in impacts]), ("impact",), "s"),
         "required_friction": Array(friction, ("time", "joint"), "", "coefficient of friction needed"),
@@ -257,7 +257,7 @@ def snapshot_index(response: Response, options: Rocking, warnings: list[str]) ->
     end = float(response.time[-1])
     asked = [t for t in options.thrust_line_times if 0.0 <= t <= end + options.output_step]
     if len(asked) < len(options.thrust_line_times):
-        warnings.append(f"some thrust_line_times lie outside the run of {end:g} s and are left out")
+        warnings.append(f"some thrust_line_times lie outside the run of {end:g} s and are not drawn")
     if not asked:
         peaks = [t for kind, t, _ in response.events if kind in ("peak", "collapse")]
         size = np.abs(np.interp(peaks, response.time, response.rotation)) if peaks else np.zeros(0)
@@ -319,11 +319,11 @@ def answer(context: Context, response: Response, who: str, falls: str, uplift: f
             after = f"after {count(response.impacts, 'impact')}, the last at {times[-1]:.3f} s"
         return (
             f"{who} {falls} to {way} in the {ordinal(response.half_cycles)} half cycle {after} (at "
-            f"{response.stop_time:.2f} s it has turned past recall; {about})."
+            f"{response.stop_time:.2f} s its rotation is past recovery; {about})."
         )
     greatest = (
         f"greatest rotation {1e3 * abs(response.peak):.3g} mrad to {way}, {100 * response.peak_ratio:.0f} % of the rotation "
-        f"at which gravity would take it down"
+        f"from which gravity causes collapse"
     )
     rocked = f"{count(response.half_cycles, 'half cycle')}, {count(response.impacts, 'impact')}, {greatest} ({about})."
     if not response.settled:

@@ -52,7 +52,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
             "x, y, rotation of the stones",
         ),
     }  # fmt: skip
-    result.answer = answer_of(context, ran, f"The {rocker.word}", "comes down", rocker.uplift)
+    result.answer = answer_of(context, ran, f"The {rocker.word}", "collapses", rocker.uplift)
     return result
 
 

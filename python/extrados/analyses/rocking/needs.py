@@ -68,8 +68,8 @@ def _refuse_stack(building: Building, options: tables.Rocking) -> None:
         raise Refused("two stacked blocks are not held by ties, dampers, hinges or a wall here: leave them out", key)
     if building.supports.stiffness is not None:
         raise Refused(
-            "two stacked blocks rock on rigid ground here; leave it out, or ask `dem`, which follows a base that gives way "
-            "under any stones",
+            "two stacked blocks rock on rigid ground here: remove it, or use `dem`, which follows a compliant base under any "
+            "blocks",
             ("supports", "stiffness"),
         )
     if options.form == "linear":
@@ -77,6 +77,6 @@ def _refuse_stack(building: Building, options: tables.Rocking) -> None:
     if building.joints.energy_ratio is not None or not isinstance(building.joints.restitution, str):
         name = "restitution" if building.joints.energy_ratio is None else "energy_ratio"
         raise Refused(
-            "two stacked blocks take impacts without rebound at all edges: leave out restitution and energy_ratio",
+            "two stacked blocks take plastic impacts at all edges: remove restitution and energy_ratio",
             ("joints", name),
         )

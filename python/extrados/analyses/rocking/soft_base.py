@@ -132,7 +132,7 @@ def _result(
     result.warnings += violated
     if not settled and not r.interrupted:
         result.warnings.append(
-            f"it still moves enough to fall at the end time of {r.stop_time:g} s: the outcome is open, give a longer end_time"
+            f"it still moves enough to overturn at the end time of {r.stop_time:g} s: the outcome is open, give a longer end_time"
         )
     if rigid is not None and rigid[0] != r.outcome:
         result.warnings.append(f"on a rigid base, with Housner's impact, the outcome is another one: {rigid[0]}")
@@ -162,12 +162,12 @@ def _result(
         "time": Array(r.time, ("time",), "s", "output times"),
         "rotation": Array(r.rotation, ("time",), "rad", "rotation of the block, positive to +x"),
         "rate": Array(r.rate, ("time",), "rad/s"),
-        "sinking": Array(r.sinking, ("time",), "m", "sinking at the foot of its centre"),
+        "sinking": Array(r.sinking, ("time",), "m", "settlement at the foot of its centre"),
         "ground": Array(r.ground, ("time",), "m/s^2", "horizontal ground acceleration"),
         "vertical": Array(r.vertical, ("time",), "m/s^2", "vertical ground acceleration"),
         "kinetic": Array(r.kinetic, ("time",), "J"),
         "potential": Array(potential, ("time",), "J", "with that of the springs, above that at rest"),
-        "ledger": Array(r.ledger, ("time",), "J", "work of the ground less what the base took up"),
+        "ledger": Array(r.ledger, ("time",), "J", "work of the ground less the energy taken by the base"),
         "impact_time": Array(np.array(impacts), ("impact",), "s", "an edge lands"),
         "pressed": Array(pressed, ("time", "end"), "m", "range of the base that pushes, from the foot of the centre"),
         "required_friction": Array(friction[:, None], ("time", "joint"), "", "coefficient of friction needed"),
@@ -191,11 +191,11 @@ def _answer(
     way = "+x" if r.peak[0] > 0 else "-x"
     greatest = (
         f"greatest rotation {1e3 * abs(r.peak[0]):.3g} mrad to {way}, {100 * found.peak_rotation_ratio:.0f} % of the "
-        "rotation at which gravity would take it down"
+        "rotation from which gravity causes collapse"
     )
     said = {
-        "collapse": f"overturns to {way}: at {r.stop_time:.2f} s it has turned past recall",
-        "recovery": f"rocks and stays up: {greatest}",
+        "collapse": f"overturns to {way}: at {r.stop_time:.2f} s its rotation is past recovery",
+        "recovery": f"rocks and recovers: {greatest}",
         "no-hinging": f"keeps its whole base on the ground: {greatest}",
     }[r.outcome]
     lifts = sum(kind == "uplift" for kind, _, _ in r.events)
@@ -206,12 +206,12 @@ def _answer(
     if rigid is not None:
         rigidly = {
             "collapse": " On a rigid base, with Housner's impact, it would overturn.",
-            "recovery": f" On a rigid base, with Housner's impact, it would rock by {1e3 * abs(rigid[1]):.3g} mrad and stay up.",
+            "recovery": f" On a rigid base, with Housner's impact, it would rock by {1e3 * abs(rigid[1]):.3g} mrad and recover.",
             "no-hinging": " On a rigid base it would not rock.",
         }[rigid[0]]
     word = context.building.structure.word if context.building.structure is not None else "block"
     return (
-        f"On its base that gives way the {word} {said}; {count(lifts, 'time')} an edge lifts (peak ground "
+        f"On its compliant base the {word} {said}; {count(lifts, 'time')} an edge lifts (peak ground "
         f"acceleration {context.motion.peak / GRAVITY:.3f} g; held on, {found.uplift_acceleration_g:.3f} g lift an edge and "
         f"{found.soft_base.capacity_g:.3f} g overturn it).{rigidly}"
     )

@@ -139,7 +139,7 @@ def _result(
     if options.animation != "none" and len(r.time):
         shown = pictures(r.time)
         result.arrays |= film(r.time[shown], model.pose(r.rotation[shown], r.state[shown]))
-    how = {"collapse": "comes down", "recovery": "rocks and stays up", "no-hinging": "does not rock"}[r.outcome]
+    how = {"collapse": "collapses", "recovery": "rocks and recovers", "no-hinging": "does not rock"}[r.outcome]
     shares = (
         sorted(((float((found[moving] == k).mean()), name) for k, name in enumerate(MODES) if k), reverse=True)
         if moving.any()

@@ -112,7 +112,7 @@ class FailureCurves(RockingTable):
     soft_base: ClassVar = True
     variants: list[dict[str, int | float | str]] = key(
         [],
-        "changes of [structure], a curve each, such as `{ radius = 5.0 }`; none: the structure as it is",
+        "changes of [structure], a curve each, such as `{ radius = 5.0 }`; none: the structure of the deck",
         max_length=24,
     )
     pulse: Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"] = key(
@@ -124,7 +124,7 @@ class FailureCurves(RockingTable):
     durations: list[Annotated[Time, Field(gt=0)]] | None = key(
         None, "t_p or T_p; default `count` values scaled to each structure", min_length=2, max_length=2000
     )
-    count: int = key(40, "durations of each curve where they are not given", ge=2, le=2000)
+    count: int = key(40, "number of durations of each curve, unless `durations` lists them", ge=2, le=2000)
     amplitudes: int = key(60, "amplitudes tried up to the cap before the lowest failing one is refined", ge=2, le=2000)
     max_amplitude: Acceleration = key(1.5 * GRAVITY, "cap of the search", gt=0)
     accuracy: float = key(1e-4, "accuracy of the curves, in g", ge=1e-9, le=0.1)

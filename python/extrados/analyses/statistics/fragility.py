@@ -267,13 +267,13 @@ def _describe(
         counts += np.histogram(np.minimum(rows["peak_ratio"][upright], 1.0), edges)[0]
     result.arrays |= {
         "bin_edge": Array(edges, ("bin_edge",), "", "peak rotation over the critical one"),
-        "bin_count": Array(counts, ("bin",), "", "members that stay up"),
+        "bin_count": Array(counts, ("bin",), "", "members that do not collapse"),
     }
     p, (low, high) = r["collapse_probability"], r["confidence_interval"]
     many = context.deck.motion is None or is_set(context.deck.motion)
     counted = (
         f"Of {r['count']} motions {r['collapsed']} bring the {base.word} down" if many
-        else f"Of {r['count']} buildings of uncertain values {r['collapsed']} come down"
+        else f"Of {r['count']} buildings of uncertain values {r['collapsed']} collapse"
     )  # fmt: skip
     result.answer = (
         f"{counted}: probability of collapse {100 * p:.1f} % "

@@ -72,10 +72,10 @@ def run(context: Context, options: HarmonicMap) -> Result:
     if np.isfinite(lowest).any():
         k = int(np.nanargmin(lowest))
         result.answer = (
-            f"Under {options.cycles} cycles the {model.word} rocks from {model.uplift:.3f} g on; the lowest amplitude that brings "
-            f"it down is {lowest[k]:.3f} g, at {frequency[k]:.3f} Hz (omega/p = {2 * np.pi * frequency[k] / p:.2f}); "
+            f"Under {options.cycles} cycles the {model.word} rocks from {model.uplift:.3f} g on; the lowest amplitude of "
+            f"collapse is {lowest[k]:.3f} g, at {frequency[k]:.3f} Hz (omega/p = {2 * np.pi * frequency[k] / p:.2f}); "
             f"{pockets} cells of the map lie above a failing amplitude and are safe."
         )
     else:
-        result.answer = f"No harmonic motion of the map, up to {cap / GRAVITY:.3g} g, brings the {model.word} down in {options.cycles} cycles."
+        result.answer = f"No harmonic motion of the map, up to {cap / GRAVITY:.3g} g, causes collapse of the {model.word} in {options.cycles} cycles."
     return result

@@ -124,8 +124,8 @@ def fit(seen: Capacities) -> Lognormal:
         raise NoFit("it happened in every run at every intensity")
     if low.max() <= high.min():
         raise NoFit(
-            f"a step between {low.max():.4g} and {high.min():.4g} explains all runs: the dispersion cannot be told"
-            if low.max() < high.min() else f"a step at {low.max():.4g} explains all runs: the dispersion cannot be told"
+            f"a step between {low.max():.4g} and {high.min():.4g} explains all runs: the dispersion cannot be estimated"
+            if low.max() < high.min() else f"a step at {low.max():.4g} explains all runs: the dispersion cannot be estimated"
         )  # fmt: skip
     a, b = _greatest(low, high, weight[None, :])
     if not b[0] > 1e-9:

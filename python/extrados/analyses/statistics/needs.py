@@ -46,7 +46,7 @@ def _refuse_of_spectra(building: Building) -> None:
         )
     if building.supports.stiffness is not None:
         raise Refused(
-            "spectra are those of structures on rigid ground; leave it out, or ask `rocking` of a block",
+            "spectra are those of structures on rigid ground: remove it, or use `rocking` of a block",
             ("supports", "stiffness"),
         )
 

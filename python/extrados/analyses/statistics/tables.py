@@ -39,7 +39,7 @@ class Hazard(Table):
         max_length=1000,
     )  # fmt: skip
     file: str | None = key(None, "CSV with both as columns, instead of the lists; lines that begin with # are skipped")
-    years: float = key(50.0, "time for which the probability of collapse is told", gt=0, le=1e5)
+    years: float = key(50.0, "time for which the probability of collapse is given", gt=0, le=1e5)
     acceptable_rate: Rate | None = key(None, "annual rate of collapse that is accepted: the demand of the verdict")
 
     @model_validator(mode="after")
@@ -99,7 +99,7 @@ class Fragility(RockingTable):
     uncertain: dict[str, float] = key(
         {}, "coefficients of variation of width, height, thickness, restitution, of the thickness lost at worn `corners`, of "
         "the `density` from stone to stone; `imperfection`: how far corners and joints of stones stray, over the shortest "
-        "joint; `stiffness` and `damping_ratio` of a base that gives way; sampled by a Sobol sequence"
+        "joint; `stiffness` and `damping_ratio` of a compliant base; sampled by a Sobol sequence"
     )  # fmt: skip
     sensitivity: int | None = key(
         None, "samples, a power of 2, for Sobol indices of `uncertain` and of the motion: samples times (values + 2) runs",

@@ -129,7 +129,7 @@ def _thrust(wanted: Any) -> float:
 def push(desk: Desk, _: Message) -> Iterator[Reply]:
     """Limit analysis of what no hand moves: blocks in space, along the deck's directions or all around."""
     if desk.picture is not None:
-        raise BadMessage("a section follows the hand as it is")
+        raise BadMessage("a section follows the hand unchanged")
     options, building, _name = desk.analysis(Tilt, lambda: Tilt(kind="tilt"))
     result = run_one(desk.there().context(), options, building)
     if result.status != "ok":

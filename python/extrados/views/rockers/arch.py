@@ -109,7 +109,7 @@ class ArchModel:
             state, mechanism = self.limit.collapse(1)
         except Immovable:
             raise NoView(
-                "no horizontal load makes a mechanism of this arch: its joints hold it from all sides", WHOLE
+                "no horizontal load makes a mechanism of this arch: its joints restrain it on all sides", WHOLE
             ) from None
         except NoEquilibrium:
             state = None
@@ -193,8 +193,8 @@ class ArchModel:
         impacts = self.impacts
         if (kept := self.kept_by_elements) is not None:
             return [
-                f"the blow at all joints of an arch this stocky leaves {self.restitution:.3f} of the rate, discrete elements up "
-                f"to {kept:.3f}: they fall earlier"
+                f"the impact at all joints of an arch this stocky leaves {self.restitution:.3f} of the rate, discrete elements up "
+                f"to {kept:.3f}: they collapse earlier"
             ]
         if self.rule == "thesis" and impacts.thesis > 1.0:
             return [

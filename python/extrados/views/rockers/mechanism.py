@@ -218,13 +218,13 @@ class MechanismModel:
         )
         if self.rule == "energy-safe" and max(self.projections) <= 0.0:
             found.append(
-                f"the blow of one mechanism does not open the other (c_v = {self.projections[0]:.3f} to +x, "
+                f"the impact of one mechanism does not open the other (c_v = {self.projections[0]:.3f} to +x, "
                 f"{self.projections[1]:.3f} to -x): the structure comes to rest at every impact"
             )
         if self.energy_kept is not None and max(self.energy_kept) > max(kept) + LOST:
             found.append(
                 f"an impact keeps {100 * max(kept):.0f} % of the kinetic energy in the mechanism of the other side, but "
-                f"would leave {100 * max(self.energy_kept):.0f} % if hinges could open anywhere: the blow moves the "
+                f"would leave {100 * max(self.energy_kept):.0f} % if hinges could open anywhere: the impact moves the "
                 'section otherwise, and peaks after an impact are underestimated (restitution = "inelastic" keeps all of it)'
             )
         for side, one, table, (_, mechanism) in zip(SIDES, self.linkages, self.tables, self.collapse, strict=True):

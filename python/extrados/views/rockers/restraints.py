@@ -64,7 +64,7 @@ class Restraints:
             try:
                 found.append(paths(one, sort, self._parts(one), points, reach))
             except CoreError as error:
-                raise NoView(f"what holds it cannot be carried through its motion: {error}", WHOLE) from None
+                raise NoView(f"restraints cannot be followed through the motion: {error}", WHOLE) from None
         return found[0], found[1]
 
     def _parts(self, one: Linkage) -> np.ndarray:
@@ -230,7 +230,7 @@ def _law(one: Tie | Damper, key: Key) -> Law:
         assert one.slip_force is not None and one.stiffness is not None
         return Law(one.stiffness, 0.0, one.slip_force, -one.slip_force)
     if one.stiffness is None:
-        raise NoView(f"{one.name} is rigid until it yields; what rocks needs its stiffness, EA/L", key)
+        raise NoView(f"{one.name} is rigid until it yields; rocking requires its stiffness, EA/L", key)
     slack = {"tension": 1, "compression": -1, "both": 0}[one.works_in]
     return Law(one.stiffness, one.prestress, min(one.most, FREE), max(one.least, -FREE), slack)
 

@@ -24,7 +24,7 @@ from extrados.views.rockers.soft_base import UNDAMPED, SoftBaseModel, soft_base_
 from extrados.views.rockers.watch import Watch, sliding_capacity
 from extrados.views.rockers.words import refuse_words, rocks_as_block
 
-OTHER_RULE = 'the impact rule "thesis" is of circular arches that nothing but their weight holds: "energy-safe" stands in its place'
+OTHER_RULE = 'the impact rule "thesis" is of circular arches without restraints: "energy-safe" replaces it'
 
 
 @dataclass(frozen=True)
@@ -242,8 +242,8 @@ def _restrained(free: Rocker, building: Masonry) -> Rocker | None:
     if wall is not None and building.supports.rebound is None:
         told += (
             f"the wall throws it back with {rebound[0 if sides[0] else 1]:.3f} times the rate, by three impacts, which is an upper "
-            "bound: discrete elements leave less, nothing where they are well damped (docs/rocking.md); give [supports] rebound where "
-            "it matters",
+            "bound: discrete elements leave less, and nothing if well damped (docs/rocking.md); give [supports] rebound if it "
+            "matters",
         )
     return replace(
         free, body=body, restraints=held, warnings=told, critical=critical, start_rotation=ratio * critical[0 if ratio >= 0.0 else 1],

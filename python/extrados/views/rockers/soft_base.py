@@ -16,7 +16,7 @@ from extrados.views.rockers.words import refuse_soft_base
 
 #: Rotations tried up to the one taken as collapse, in the search for equilibria
 LOOKS = 400
-UNDAMPED = "the base has no damping: it gives all energy back, and bounces go on; give [supports] damping_ratio"
+UNDAMPED = "the base has no damping: it gives all energy back, and bounces continue; give [supports] damping_ratio"
 
 
 @dataclass(frozen=True)
@@ -202,7 +202,7 @@ def soft_base_model(building: Masonry, linear: bool = False, stones: Assembly | 
     block = rigid.block
     if block.slope:
         raise NoView(
-            "a base that gives way must be level: leave out base_slope, or [supports] stiffness",
+            "a compliant base must be level: remove base_slope, or [supports] stiffness",
             ("structure", "base_slope"),
         )
     mass, width = float(block.mass[0]), block.toe_left + block.toe_right

@@ -21,9 +21,9 @@ def refuse_words(building: Masonry, linear: bool = False) -> None:
         )
     if building.supports.stiffness is not None:
         raise NoView(
-            "on a base that gives way a building moves in more than one coordinate, which `rocking`, `fragility`, "
-            "`failure-domain`, `failure-curves` and `harmonic-map` (of one block, column or wall) and `dem` follow; leave it "
-            "out, or give it to these analyses alone ([analysis.supports] below them)",
+            "on a compliant base a building moves in more than one coordinate, which `rocking`, `fragility`, "
+            "`failure-domain`, `failure-curves` and `harmonic-map` (of one block, column or wall) and `dem` follow; remove "
+            "it, or give it to these analyses alone ([analysis.supports] below them)",
             ("supports", "stiffness"),
         )
     block = rocks_as_block(building)
@@ -36,11 +36,11 @@ def refuse_words(building: Masonry, linear: bool = False) -> None:
         raise NoView('form = "linear" is known of blocks and columns only', ("analysis", "form"))
     if wall is not None and not block and building.supports.rebound is None:
         raise NoView(
-            "what throws it back from a wall is known of blocks only: give [supports] rebound",
+            "the rebound from a wall has a rule for blocks only: give [supports] rebound",
             ("supports", "abutting_wall"),
         )
     if wall is not None and ratio and wall == ("right" if ratio > 0.0 else "left"):
-        raise NoView(f"it cannot start turned to the {wall}, where the wall stands", ("initial", "rotation_ratio"))
+        raise NoView(f"it cannot start rotated to the {wall}, where the wall stands", ("initial", "rotation_ratio"))
 
 
 def refuse_soft_base(building: Masonry) -> None:
@@ -48,19 +48,19 @@ def refuse_soft_base(building: Masonry) -> None:
     key = ("supports", "stiffness")
     if not rocks_as_block(building):
         raise NoView(
-            "rocking follows a base that gives way under one block, column or wall; leave it out, or give it to the analysis "
-            "`dem` alone ([analysis.supports] below it), which follows it under any stones",
+            "rocking follows a compliant base under one block, column or wall; remove it, or give it to the analysis "
+            "`dem` alone ([analysis.supports] below it), which follows it under any blocks",
             key,
         )
     if building.restraints or building.supports.abutting_wall is not None:
         raise NoView(
-            "on a base that gives way nothing but the base holds a block: leave out ties, dampers, hinges and the wall",
+            "on a compliant base nothing but the base supports a block: remove ties, dampers, hinges and the wall",
             key,
         )
     if building.joints.energy_ratio is not None or "restitution" in building.joints.model_fields_set:
         name = "restitution" if building.joints.energy_ratio is None else "energy_ratio"
         raise NoView(
-            "on a base that gives way impacts follow from its springs and dashpots: leave out restitution and energy_ratio, "
+            "on a compliant base impacts follow from its springs and dashpots: remove restitution and energy_ratio, "
             "give [supports] damping_ratio",
             ("joints", name),
         )

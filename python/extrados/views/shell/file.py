@@ -105,7 +105,7 @@ def read_shell(structure: MeshFile, building: Description, options: ShellOptions
             held |= {(int(n), d) for n in nodes for d in HOLDS[group.support]}
             feet.append(_foot(group.name, nodes, xyz, middle))
     if not held:
-        raise BadGeometry(f"{file}: nothing holds it: give a group `support`; there are {there}")
+        raise BadGeometry(f"{file}: it has no support: give a group `support`; there are {there}")
     parts: list[ShellPart] = []
     warnings: list[str] = []
     for b, connect in shells.items():
@@ -198,7 +198,7 @@ def _check_corners(xyz: np.ndarray, connect: np.ndarray, file: str) -> None:
         (flat, "has no area"),
         (
             inward,
-            "folds over itself, or turns by 180 degrees or more at a corner; expected its corners in order, all convex",
+            "folds over itself, or has an angle of 180 degrees or more at a corner; expected its corners in order, all convex",
         ),
     ):
         if wrong.any():

@@ -103,7 +103,7 @@ def shell_of_plan(building: Description, options: ShellOptions) -> ShellMesh:
     ]
     if joints and building.joints.coefficient is not None and not all(j.strength["cohesion"] > 0.0 for j in joints):
         warnings.append(
-            "joints have no cohesion: they slide only where they have been torn; any cohesion, with its shear_energy, lets them "
+            "joints have no cohesion: they slide only after opening; any cohesion, with its shear_energy, lets them "
             "slide under pressure"
         )
     xyz = np.concatenate([xyz, xyz[sources]])
@@ -188,7 +188,7 @@ def _apart(
     if len(alone) < 2:
         return []
     return [
-        f"nothing joins {' with '.join(', '.join(names) for names in alone)}: no corner, floor or rod; each stands by itself"
+        f"nothing joins {' with '.join(', '.join(names) for names in alone)}: no corner, floor or rod; each is free"
     ]
 
 
@@ -202,7 +202,7 @@ def _lines(breaks: Iterable[float], length: float, size: float, what: str, warni
     thin = min((b - a for a, b in itertools.pairwise(kept)), default=length)
     if thin < SLIVER * size:
         warnings.append(
-            f"{what}: two of its lines are only {1e3 * thin:.3g} mm apart, elements of {size:.3g} m were asked for"
+            f"{what}: two of its lines are only {1e3 * thin:.3g} mm apart, elements of {size:.3g} m were requested"
         )
     parts = [np.zeros(1)]
     for a, b in itertools.pairwise(kept):
@@ -329,7 +329,7 @@ def _joints(
         row = int(np.abs(grids[0].z - plan.bed_height(bed)).argmin())
         on = {w: _cells_above(grids[w], row, number) for w in range(len(grids))}
         if not any(len(on[w]) for w in walls):
-            raise BadGeometry(f"no wall stands at {plan.bed_height(bed):g} m", ("structure", "beds", k))
+            raise BadGeometry(f"there is no wall at {plan.bed_height(bed):g} m", ("structure", "beds", k))
         stay = {
             n for w in on if w not in walls for n in on[w].ravel().tolist()
         }  # there a wall passes through the joint
@@ -538,7 +538,7 @@ def _add_floor(
             half = np.diff(s[on]) / 2.0
             np.add.at(shares, own[on], np.append(half, 0.0) + np.append(0.0, half))
         if not shares.sum() > 0.0:
-            raise BadGeometry(f"{name}: none of the walls that bear its load lies beside it")
+            raise BadGeometry(f"{name}: none of the walls that carry its load lies beside it")
         mass = mass + floor.load * area / GRAVITY * shares / shares.sum()
     if floor.kind in ("flexible", "rigid"):
         thickness = floor.thickness if floor.kind == "flexible" else RIGID_THICKNESS
@@ -645,7 +645,7 @@ def _supports(
             bends[part.connect] = True
     ground = np.flatnonzero((xyz[:, 2] <= MEETS) & used & ~above)
     if not len(ground):
-        raise BadGeometry("no wall stands on the ground: give a wall storeys from 1")
+        raise BadGeometry("no wall rests on the ground: give a wall storeys from 1")
     rigid = plan.foundation_stiffness is None
     held += [(int(n), d) for n in ground for d in range(6) if rigid or d != 2]
     if not rigid:

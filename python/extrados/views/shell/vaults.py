@@ -243,7 +243,7 @@ def shell_of_arch(building: Description, options: ShellOptions) -> ShellMesh:
     arch = building.structure
     assert isinstance(arch, Arch)
     if arch.skew:
-        raise NoView("a skew arch is no shell yet; `tilt` looks at its solids", ("structure", "skew"))
+        raise NoView("a skew arch is no shell yet; `tilt` analyses its solids", ("structure", "skew"))
     return mesh_barrel(building, options, arch.radius, arch.thickness * arch.thickness_factor, arch.embrace, arch.depth)
 
 

@@ -27,7 +27,7 @@ def solids_of_blocks(building: Masonry) -> SolidAssembly:
     name = file.path.name
     if drawing.layers is not None or drawing.layer or drawing.ground is not None or drawing.origin is not None:
         raise BadGeometry(
-            f"{name}: layers, ground and origin belong to plane drawings; solids stand on foundation_levels"
+            f"{name}: layers, ground and origin belong to plane drawings; solids rest on foundation_levels"
         )
     meshes = read_meshes(file) if sort in (".obj", ".stl") else read_solids(value, name)
     tolerance = drawing.contact_tolerance
