@@ -438,7 +438,7 @@ def peaks_are_those_of_histories(deck: Deck, motion: Deck, within: float) -> Non
     near("peak ground acceleration", r.peak_ground_acceleration_g, float(motion["amplitude"].split()[0]), 1e-2)
     words = answer.result.answer
     must(
-        any(w in words for w in ("collapse", "comes down", "overturn")) == (r.outcome == "collapse"),
+        any(w in words for w in ("collapse", "overturn")) == (r.outcome == "collapse"),
         f"{r.outcome}: {words}",
     )
     must(

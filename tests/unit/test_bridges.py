@@ -432,7 +432,7 @@ def test_a_train_of_the_deck_is_the_one_of_the_code() -> None:
 @pytest.mark.parametrize(
     ("keys", "words"),
     [
-        ({"train": "LM1", "force": 1e5}, "train stands in place"),
+        ({"train": "LM1", "force": 1e5}, "train replaces"),
         ({"axles": [0.0, 1.0], "axle_loads": [1e5]}, "one load above 0 for each"),
         ({"uniform": [{"load": 1e4}]}, "needs axle_loads"),
         ({"axles": []}, "expected one at least"),

@@ -236,7 +236,7 @@ def test_assessment_is_held_against_the_run() -> None:
     assert r.run_outcome in ("recovery", "collapse", "no-hinging")
     assert any("replaced by a sine" in text for text in run.results[0].warnings)
     disagree = (r.verdict == "fails") != (r.run_outcome == "collapse")
-    assert disagree == any("better witness" in text for text in run.results[0].warnings)
+    assert disagree == any("more reliable" in text for text in run.results[0].warnings)
 
 
 @pytest.mark.parametrize(("amplitude", "outcome"), [("0.6 g", "collapse"), ("0.1 g", "recovery")])
@@ -260,7 +260,7 @@ def test_another_rule_in_place_of_the_thesis_is_told() -> None:
     round_arch = {"kind": "arch", "radius": 5.0, "thickness": 0.8, "embrace": 157.5, "voussoirs": 9}
     told = [
         any(
-            '"energy-safe" stands in its place' in text
+            '"energy-safe" replaces it' in text
             for text in extrados.run({"structure": s, **tables}).analyses[0]["warnings"]
         )
         for s in (pointed, round_arch)

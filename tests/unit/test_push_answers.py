@@ -231,4 +231,4 @@ def test_curves_of_several_runs_stand_in_one_picture(run, tmp_path) -> None:
     )
     extrados.run(arch).write(tmp_path / "arch", figures=False)
     refused = call(tmp_path / "arch", "--together", tmp_path / "none.png")
-    assert refused.exit_code == 3 and "no analysis of it has a load curve" in refused.output
+    assert refused.exit_code == 3 and "no analysis of it has a capacity curve" in refused.output

@@ -221,7 +221,7 @@ def test_a_membrane_is_a_floor(tmp_path):
     "groups, words",
     [
         ([{"name": "back", "support": "fixed"}], "'back': there is none in the file; there are front, ground, side"),
-        ([{"name": "front", "thickness": 0.2}], "nothing holds it: give a group `support`"),
+        ([{"name": "front", "thickness": 0.2}], "it has no support: give a group `support`"),
         ([{"name": "ground", "thickness": 0.2}], "group 'ground': thickness is of elements"),
         ([{"name": "ground"}], "nothing is said of it"),
         ([{"name": "front", "material": "steel"}, {"name": "ground", "support": "fixed"}], r"no \[materials.steel\]"),
