@@ -70,6 +70,7 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
         r"cap_ratio",
         r"pocket_begins",
         r"scaling_misfit",
+        r"greatest_misfit",
     ),
     "probability": (r"fragility\S*\.(?!mean_peak)", r"(?:median|probability)$", r"share_of_starts"),
     "weight and other data": (r"weight_N", r"flanges", r"survey\.sections"),

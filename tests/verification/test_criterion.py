@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
+import extrados
 from extrados.analyses.rocking import criterion
 from extrados.model.structures.arch import make_arch
 from extrados.motions.impulse import primary_impulses
@@ -60,6 +61,32 @@ def test_fits_of_the_test_arches(embrace, n, printed, allowed) -> None:
     periods = np.array([0.08, 0.09, 0.1, 0.12, 0.15, 0.2, 0.3, 0.4])
     ours = criterion.mode_i_curve(model.body, model.collapse[0].gamma, model.arch.radius, periods, cap=5.0, threads=2)
     assert np.abs(ours / criterion.Fit(*printed).amplitude(periods) - 1).max() < allowed
+
+
+def test_fits_beside_the_curves() -> None:
+    """A curve that Eq. 5.8 draws is that of its coefficients; a block has no fit, a flat arch no criterion."""
+    deck = {
+        "structure": {"kind": "arch", "radius": 4.0, "thickness": 0.6, "embrace": 150.0, "voussoirs": 15},
+        "joints": {"restitution": "thesis"},
+        "analysis": [{"kind": "failure-curves", "fits": True, "durations": [0.7, 0.8, 0.9, 1.1, 1.4]}],
+    }
+    found = extrados.run(deck).results[0]
+    curve, at = found.results.curves[0], np.array([0.7, 0.8, 0.9, 1.1, 1.4])
+    for name, radius in (("fit", 1.0), ("criterion", 4.0)):
+        f = getattr(curve, name)
+        want = f.c1 * (at / np.sqrt(radius) - f.t_min_s) ** f.c2 + f.gamma_g
+        np.testing.assert_allclose(found.arrays[name].data[0], want)
+        over = np.array(curve.amplitudes_g) / f.gamma_g
+        near = (over > criterion.FLOOR) & (over < criterion.CAP)
+        assert near.sum() >= 4
+        assert np.abs(want / curve.amplitudes_g - 1.0)[near].max() == pytest.approx(f.greatest_misfit)
+    assert curve.criterion.c1 == pytest.approx(criterion.table()[0.15, 150.0].c1)
+    block = {**deck, "structure": {"kind": "block", "width": 0.5, "height": 2.0}, "joints": {}}
+    refused = extrados.run(block).results[0]
+    assert refused.status == "refused" and "fits are of arches; this is a block" in refused.reason
+    flat = {**deck, "structure": {**deck["structure"], "embrace": 136.0}}
+    beyond = extrados.run(flat).results[0]
+    assert beyond.results.curves[0].criterion is None and any("Table 5.3 covers" in text for text in beyond.warnings)
 
 
 @pytest.mark.parametrize("exponent", [-0.9, -0.03])

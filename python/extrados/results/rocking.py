@@ -331,6 +331,18 @@ class MotionImpulse(ResultModel):
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
 
 
+class CurveFit(ResultModel):
+    """A failure curve as A_p/g = C1 (T_p/sqrt(R) - T_min)^C2 + gamma (thesis Eqs 5.5 and 5.8)."""
+
+    c1: float = fact("coefficient C1 (A_p in g, T_p in s, R in m)")
+    c2: float = fact("exponent C2")
+    t_min_s: float = fact("period T_min below which no sine causes collapse", "s")
+    gamma_g: float = fact("asymptote: acceleration at which rocking starts", "g")
+    greatest_misfit: float | None = fact(
+        "greatest relative difference of the amplitude from the computed curve, between 1.03 and 2.3 times gamma; null: no point there"
+    )
+
+
 class FailureCurve(ResultModel):
     """The failure curve of one structure, and what the motions do to it."""
 
@@ -363,6 +375,10 @@ class FailureCurve(ResultModel):
     rule_ratio: float | None = maybe(
         "greatest ratio of the failing amplitudes of two impact rules at one duration; null: no duration at which two fail"
     )
+    fit: CurveFit = maybe(
+        "Eq. 5.5 fitted to this curve (radius not scaled); omitted with fewer than four points to fit"
+    )
+    criterion: CurveFit = maybe("Eq. 5.8 with the coefficients of Table 5.3, interpolated; omitted outside the table")
 
 
 class FailureCurves(KindResults):

@@ -1,4 +1,4 @@
-"""Figures of failure curves beside each other (Figs 5-4, 5-5 and 5-15)."""
+"""Figures of failure curves beside each other (Figs 5-4, 5-5, 5-14 and 5-15)."""
 
 from pathlib import Path
 
@@ -10,6 +10,8 @@ from extrados.show import style
 LINES = ("-", "--", "-.", ":")
 #: Places of a legend outside of which curves would be hidden
 MOST_IN_AXES = 8
+#: Arrays of fitted curves, their names and lines
+FITS = (("fit", "Eq. 5.5 fitted", "-"), ("criterion", "Eq. 5.8, Table 5.3", ":"))
 
 
 def draw_failure_curves(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -24,11 +26,17 @@ def draw_failure_curves(run: Stored, name: str, folder: Path) -> list[tuple[str,
     )
     # beyond 0.6 of the map a line has less than three times the contrast to paper
     shades = matplotlib.colormaps["cividis"](np.linspace(0.0, 0.6, len(r.curves)))
+    fits = [(text, run.array(name, key), line) for key, text, line in FITS if key in run.arrays[name]]
     top = 1.1 * max([np.nanmax(amplitude, initial=0.0), *(abs(i.amplitude_g) for i in r.impulses)])
     with style.figure(9.0, 4.6, columns=2, width_ratios=[1.25, 1]) as (fig, (plain, scaled)):
         for k, curve in enumerate(r.curves):
             look = {"color": shades[k], "linestyle": LINES[k % len(LINES)]}
-            plain.plot(duration[k], amplitude[k], label=curve.label, **look)
+            if fits:
+                plain.plot(duration[k], amplitude[k], "o", markersize=4, color=shades[k], label=curve.label)
+                for text, values, line in fits:
+                    plain.plot(duration[k], values[k], line, color=shades[k], label=f"{curve.label}: {text}")
+            else:
+                plain.plot(duration[k], amplitude[k], label=curve.label, **look)
             plain.axhline(curve.uplift_acceleration_g, color=shades[k], linewidth=0.6, linestyle=":")
             ratio = amplitude[k] / curve.uplift_acceleration_g
             scaled.plot(2.0 * np.pi * natural[k] / duration[k] if slender else duration[k] / natural[k], ratio, **look)

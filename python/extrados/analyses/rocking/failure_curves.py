@@ -1,7 +1,9 @@
 """failure-curves: several structures, or trains of sines, and the primary impulses of motions (thesis Figs 5-4, 5-5, 5-15)."""
 
 import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -9,6 +11,7 @@ import numpy as np
 from extrados.analyses.batches import computed
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.motion_source import source_of
+from extrados.analyses.rocking import criterion
 from extrados.analyses.rocking.conditions import Counted, astray_of, of_many
 from extrados.analyses.rocking.doubts import DIFFER, OFTEN, too_fast
 from extrados.analyses.rocking.failure_domain import LowestAmplitudes, curves_by_rule, natural_durations, warned
@@ -65,6 +68,9 @@ def run(context: Context, options: FailureCurves) -> Result:
     curves = [_curve(context, options, variant) for variant in variants]
     # The curves are those of single pulses: only single sines stand for the impulses of motions.
     shaken = _motions(context, options) if context.deck.motion is not None and options.pulse == "sine" else []
+    fits = [_fits(context, v, d, a) for v, (d, a, _) in zip(variants, curves, strict=True)] if options.fits else []
+    for (*_, holds), fit in zip(curves, fits, strict=False):
+        holds |= {name: found for name, (found, _) in fit.items()}
     rows = [_row(variant, *curve, shaken) for variant, curve in zip(variants, curves, strict=True)]
     pairs = [
         (by_curve == "fails") == (by_run == "collapse")
@@ -99,6 +105,12 @@ def run(context: Context, options: FailureCurves) -> Result:
         "natural_time": Array(np.array([v.rocker.time_unit if _slender(v) else v.natural for v in variants]), ("curve",), "s"),
         "slender": Array(np.array([_slender(v) for v in variants]), ("curve",), "", "true of a block"),
     }  # fmt: skip
+    for name, about in (("fit", "Eq. 5.5 fitted to each curve"), ("criterion", "Eq. 5.8 with Table 5.3")):
+        if any(name in fit for fit in fits):
+            lines = [
+                fit[name][1](padded[0][k]) if name in fit else np.full(longest, np.nan) for k, fit in enumerate(fits)
+            ]
+            result.arrays[name] = Array(np.array(lines), ("curve", "point"), "g", about)
     result.tables["failure_curves"] = TableData(
         {
             "curve": np.repeat([v.label for v in variants], [len(d) for d, _, _ in curves]),
@@ -126,6 +138,46 @@ def run(context: Context, options: FailureCurves) -> Result:
         told = f"{row.label}: " if len(rows) > 1 else ""
         result.warnings += [told + text for text in warned(row)]
     return result
+
+
+def _fits(
+    context: Context, variant: Variant, durations: np.ndarray, amplitudes: np.ndarray
+) -> dict[str, tuple[out.CurveFit, Callable[[np.ndarray], np.ndarray]]]:  # fmt: skip
+    """Eq. 5.5 fitted to the curve of an arch ("fit") and Eq. 5.8 by Table 5.3 ("criterion"), each with its amplitudes [g] over
+    periods [s]; a warning states the one that is not possible."""
+    model = variant.rocker.model
+    if not isinstance(model, ArchModel):
+        raise Refused(f"fits are of arches; this is a {variant.rocker.word}: remove fits", ("analysis", "fits"))
+    gamma, arch = model.collapse[0].gamma, model.arch
+    ratio, embrace = arch.thickness / arch.radius, float(np.degrees(arch.embrace))
+    found: dict[str, tuple[criterion.Fit, float]] = {}
+    try:
+        found["fit"] = criterion.fit(durations, amplitudes, gamma), 1.0
+    except ValueError as error:
+        context.warnings.append(f"{variant.label}: Eq. 5.5 is not fitted: {error}")
+    table = criterion.interpolated(ratio, embrace, gamma)
+    if table is None:
+        context.warnings.append(
+            f"{variant.label}: Table 5.3 covers t/R 0.12 to 0.21 and 140 to 180 deg, not t/R {ratio:.3f} and {embrace:g} deg"
+        )
+    else:
+        found["criterion"] = table, arch.radius
+    near = (amplitudes > criterion.FLOOR * gamma) & (amplitudes < criterion.CAP * gamma)
+    made = {}
+    for name, (f, radius) in found.items():
+        amplitude = partial(f.amplitude, radius=radius)
+        misfit = np.abs(amplitude(durations[near]) / amplitudes[near] - 1.0)
+        made[name] = (
+            out.CurveFit(
+                c1=f.c1,
+                c2=f.c2,
+                t_min_s=f.t_min,
+                gamma_g=f.gamma,
+                greatest_misfit=float(misfit.max()) if near.any() else None,
+            ),
+            amplitude,
+        )
+    return made
 
 
 def _slender(variant: Variant) -> bool:

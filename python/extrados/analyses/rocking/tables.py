@@ -130,11 +130,18 @@ class FailureCurves(RockingTable):
     accuracy: float = key(1e-4, "accuracy of the curves, in g", ge=1e-9, le=0.1)
     motions: int = key(12, "of a suite or a generated set at most so many are put into the picture", ge=1, le=200)
     max_period: Time = key(4.0, "longest primary impulse sought", gt=0)
+    fits: bool = key(
+        False,
+        "of arches: also Eq. 5.5 fitted to each curve, and the criterion of Eq. 5.8 with Table 5.3",
+        source="thesis Fig. 5-14",
+    )
 
     @model_validator(mode="after")
     def _trains(self) -> "FailureCurves":
         if self.pulse != "sine" and self.cycles != [1]:
             raise ValueError(f"cycles make trains of sines; a pulse of shape '{self.pulse}' comes once")
+        if self.fits and (self.pulse != "sine" or self.cycles != [1]):
+            raise ValueError('fits are of curves of single sines: expected pulse = "sine" and cycles = [1]')
         if len(set(self.cycles)) < len(self.cycles):
             raise ValueError("cycles holds a number twice")
         if max(1, len(self.variants)) * len(self.cycles) > 24:
