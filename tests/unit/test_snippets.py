@@ -21,7 +21,7 @@ from extrados.cli import app
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 #: Pages whose every block is run, in order
-WHOLE = ["start", "tutorial-bridge", "tutorial-fragility", "tutorial-lesson", "scripting", "guide"]
+WHOLE = ["start", "tutorial-bridge", "tutorial-fragility", "tutorial-lesson", "tutorial-typology", "scripting", "guide"]
 FENCE = re.compile(r"^```(\w*)[^\n]*\n(.*?)^```", re.S | re.M)
 ARCH = """title = "An arch"
 [structure]
