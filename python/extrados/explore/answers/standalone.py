@@ -26,7 +26,7 @@ from extrados.results.store import StoreError
 
 STATIC = Path(__file__).parents[1] / "static"
 #: Modules of the page in the file, each after those that it imports
-MODULES = ("dom.js", "stage.js", "transport.js", "standalone.js")
+MODULES = ("words.js", "dom.js", "stage.js", "transport.js", "standalone.js")
 #: Values of the size and of the tilt; share of the present size and of the capacity that they reach
 SIZES, TILTS, REACH_SIZE, REACH_TILT = 15, 21, 0.5, 1.15
 #: Tilt that the file reaches at least [g]
@@ -48,10 +48,18 @@ class Grid:
     frames: list[list[bytes]]
 
 
-def standalone(desk: Desk, _: Message) -> Iterator[Reply]:
-    """The page without a server of what a desk has open; the share of the work that is done, until then."""
+def standalone(desk: Desk, message: Message) -> Iterator[Reply]:
+    """The page without a server of what a desk has open, in the language of the message; the share of the work that is done, until
+    then."""
+    words = read_words(str(message.get("language", "en")))
     for share, grid in compute_grid(desk):
-        yield Reply({"share": share} if grid is None else {"share": 1.0, "page": make_page(grid)})
+        yield Reply({"share": share} if grid is None else {"share": 1.0, "page": make_page(grid, words)})
+
+
+def read_words(language: str) -> dict[str, str]:
+    """The catalogue of a language of the page by its two letters; empty, which is English, where there is none."""
+    catalogues = {path.stem: path for path in (STATIC / "words").glob("*.json")}
+    return json.loads(catalogues[language].read_text("utf-8")) if language in catalogues else {}
 
 
 def write_page(folder: Path, deck: str | None, target: Path) -> None:
@@ -118,11 +126,11 @@ def _frame(reply: Reply) -> bytes:
     return Reply({"scene": reply.words["scene"]}, arrays).pack()
 
 
-def make_page(grid: Grid) -> str:
-    """The file; Refused if it is too large."""
+def make_page(grid: Grid, words: dict[str, str] | None = None) -> str:
+    """The file, with a catalogue of words; Refused if it is too large."""
     frames = [frame for row in grid.frames for frame in row]
     packed = zlib.compress(b"".join(struct.pack("<I", len(frame)) + bytes(4) + frame for frame in frames), 9)
-    given = {"title": grid.title, "label": grid.label, "sizes": grid.sizes, "tilts": grid.tilts}
+    given = {"title": grid.title, "label": grid.label, "sizes": grid.sizes, "tilts": grid.tilts, "words": words or {}}
     told = json.dumps({**given, "frames": base64.b64encode(packed).decode()}).replace("<", "\\u003c")
     sources = json.dumps([(name, (STATIC / name).read_text("utf-8")) for name in MODULES]).replace("<", "\\u003c")
     style = (STATIC / "style.css").read_text("utf-8")
@@ -154,8 +162,10 @@ for (const [name, source] of read("modules")) {
   const text = source.replace(/from "\\.\\/(\\w+\\.js)"/g, (_, other) => `from "${places[other]}"`);
   places[name] = URL.createObjectURL(new Blob([text], { type: "text/javascript" }));
 }
+const data = read("data"), { use } = await import(places["words.js"]);
+use(data.words);
 const { start } = await import(places["standalone.js"]);
-await start(document.getElementById("extrados"), read("data"));
+await start(document.getElementById("extrados"), data);
 </script>
 </body>
 </html>

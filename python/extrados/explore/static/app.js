@@ -8,14 +8,15 @@ import { solidPanel } from "./solid.js";
 import { outMenu } from "./out.js";
 import { classPanel } from "./class.js";
 import { fallPanel } from "./fall.js";
-import { deckOf } from "./share.js";
+import { deckOf, fragmentOf } from "./share.js";
 import { sidebar } from "./sidebar.js";
+import { choose, language, LANGUAGES, tr } from "./words.js";
 
 const REST = 130; // ms without a change, after which the hand rests
 const BESIDE = 100; // ms between two looks of what stands beside the drawing while a hand moves
 const KEPT = "extrados-kept";
 const CHANGE = new Set(["hello", "open", "drop", "blocks", "analysis", "drag", "set", "show", "rocking"]); // messages that change what is seen
-const TABS = [["structure", "Structure"], ["motion", "Motion"], ["results", "Results"]];
+const TABS = [["structure", tr`Structure`], ["motion", tr`Motion`], ["results", tr`Results`]];
 
 export function mount(root, transport, film, { embedded = false } = {}) {
   const app = {
@@ -40,24 +41,24 @@ export function mount(root, transport, film, { embedded = false } = {}) {
 
   const status = h("div", { class: "status", role: "status", "aria-live": "polite" });
   const banner = h("div", { class: "banner", role: "alert", hidden: true });
-  const undoButton = h("button", { class: "icon", title: "Undo (Ctrl+Z)", "aria-label": "Undo", onclick: () => app.undo() }, "↶");
-  const redoButton = h("button", { class: "icon", title: "Redo (Ctrl+Shift+Z)", "aria-label": "Redo", onclick: () => app.redo() }, "↷");
+  const undoButton = h("button", { class: "icon", title: "Undo (Ctrl+Z)", "aria-label": tr`Undo`, onclick: () => app.undo() }, "↶");
+  const redoButton = h("button", { class: "icon", title: "Redo (Ctrl+Shift+Z)", "aria-label": tr`Redo`, onclick: () => app.redo() }, "↷");
   const title = h("h1", { class: "title" });
-  const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": "Views" }, TABS.map(([name, label], k) =>
+  const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": tr`Views` }, TABS.map(([name, label], k) =>
     h("button", { role: "tab", id: `tab-${name}`, "data-tab": name, onclick: () => setTab(name), onkeydown: (e) => {
       const step = { ArrowRight: 1, ArrowLeft: -1 }[e.key];
       if (step) { const next = TABS[(k + step + TABS.length) % TABS.length][0]; setTab(next); root.querySelector(`[data-tab=${next}]`).focus(); }
     } }, label)));
-  const themeButton = h("button", { class: "icon", title: "Dark or light", "aria-label": "Dark or light", onclick: theme }, "◐");
+  const themeButton = h("button", { class: "icon", title: tr`Dark or light`, "aria-label": tr`Dark or light`, onclick: theme }, "◐");
   const top = h("header", { class: "top" },
     h("span", { class: "brand" }, "extrados"),
-    h("button", { class: "open", onclick: () => chooser() }, "Open…"), undoButton, redoButton, title, tabs);
+    h("button", { class: "open", onclick: () => chooser() }, tr`Open…`), undoButton, redoButton, title, tabs);
   const stageBox = h("div", { class: "stage-box" });
-  const layersBar = h("div", { class: "layers", role: "group", "aria-label": "What is drawn" });
-  const stageFrame = h("section", { class: "stage-frame", "aria-label": "Drawing" }, layersBar, stageBox);
-  const lower = h("section", { class: "lower", "aria-label": "Details" });
-  const wide = h("section", { class: "wide", hidden: true }), classBox = h("section", { class: "wide", hidden: true, "aria-label": "Class" });
-  const side = h("aside", { class: "side", "aria-label": "Numbers, sizes and deck" });
+  const layersBar = h("div", { class: "layers", role: "group", "aria-label": tr`What is drawn` });
+  const stageFrame = h("section", { class: "stage-frame", "aria-label": tr`Drawing` }, layersBar, stageBox);
+  const lower = h("section", { class: "lower", "aria-label": tr`Details` });
+  const wide = h("section", { class: "wide", hidden: true }), classBox = h("section", { class: "wide", hidden: true, "aria-label": tr`Class` });
+  const side = h("aside", { class: "side", "aria-label": tr`Numbers, sizes and deck` });
   const mainBox = h("main", { class: "main" }, stageFrame, lower, wide, classBox);
   root.replaceChildren(top, banner, h("div", { class: "body" }, mainBox, side), status);
 
@@ -97,12 +98,12 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       const text = field.value.replaceAll("−", "-");
       if (name === "tilt") {
         const found = text.match(/^\s*([-+]?[\d.]+)\s*(g|deg|°|)\s*$/);
-        if (!found) { say("expected a tilt such as 0.1 g or 5 deg", true); return; }
+        if (!found) { say(tr`expected a tilt such as 0.1 g or 5 deg`, true); return; }
         show({ gamma: found[2] === "deg" || found[2] === "°" ? Math.tan((Number(found[1]) * Math.PI) / 180) : Number(found[1]) });
       } else if (name === "through") { const t = app.scene.through; if (t) show({ through: { joint: t.joint, share: Number(text.split(" ")[0]) } }); }
       else ask({ do: "drag", handle: name, text });
       e.target.closest("dialog").close();
-    } }, h("p", {}, name === "tilt" ? "In g, or in degrees with deg." : Array.isArray(data.value) ? "x; y in metres, or with units." : "A number, or a number with its unit, such as 75 cm."), field, h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, "Set"))));
+    } }, h("p", {}, name === "tilt" ? tr`In g, or in degrees with deg.` : Array.isArray(data.value) ? tr`x; y in metres, or with units.` : tr`A number, or a number with its unit, such as 75 cm.`), field, h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, tr`Set`))));
     field.select();
   }
 
@@ -152,10 +153,10 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       const kept = wasOpen && app.text ? { text: app.text, name: app.name, ...app.source, drops: app.drops } : null;
       ask({ do: "hello", kept });
       if (kept && (app.view.gamma || app.view.through || app.view.thrust !== null)) ask({ do: "show", gamma: app.view.gamma, lines: app.view.lines, thrust: app.view.thrust, through: app.scene?.through ? { joint: app.scene.through.joint, share: app.scene.through.wanted } : null });
-      if (wasOpen) say("The server is back; this page has its state again.");
+      if (wasOpen) say(tr`The server is back; this page has its state again.`);
     } else {
       banner.hidden = false;
-      banner.textContent = reason ? `The server has ended the connection: ${reason}` : `The server does not answer. Your deck is kept in this page; trying again … (${tries})`;
+      banner.textContent = reason ? tr`The server has ended the connection: ${reason}` : tr`The server does not answer. Your deck is kept in this page; trying again … (${tries})`;
     }
     root.dataset.connected = connected;
   };
@@ -307,7 +308,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   /** A dialog with what it holds; it is gone when closed. */
   function dialog(label, ...content) {
     const box = h("dialog", { "aria-label": label, onclose: () => box.remove(), onclick: (e) => { if (e.target === box) box.close(); } },
-      h("div", { class: "dialog-head" }, h("h2", {}, label), h("button", { class: "icon", "aria-label": "Close", onclick: () => box.close() }, "×")), ...content);
+      h("div", { class: "dialog-head" }, h("h2", {}, label), h("button", { class: "icon", "aria-label": tr`Close`, onclick: () => box.close() }, "×")), ...content);
     root.append(box);
     box.showModal();
     return box;
@@ -315,10 +316,10 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   function chooser() {
     const w = app.welcome;
     if (!w) return;
-    const field = h("input", { type: "search", placeholder: "Find a deck, or paste a link …", "aria-label": "Find a deck, or paste a link", oninput: async () => { if (await openLink(field.value)) shown.close(); else list(); } });
+    const field = h("input", { type: "search", placeholder: tr`Find a deck, or paste a link …`, "aria-label": tr`Find a deck, or paste a link`, oninput: async () => { if (await openLink(field.value)) shown.close(); else list(); } });
     const box = h("div", { class: "choices" });
-    const file = h("input", { type: "file", accept: ".toml,.dxf,.json,.csv,.txt,.at2", "aria-label": "A file of this machine", onchange: () => { dropped(file.files[0]); shown.close(); } });
-    const shown = dialog("Open a deck", h("div", { class: "row" }, field, h("label", { class: "button" }, "From this machine…", file)), box);
+    const file = h("input", { type: "file", accept: ".toml,.dxf,.json,.csv,.txt,.at2", "aria-label": tr`A file of this machine`, onchange: () => { dropped(file.files[0]); shown.close(); } });
+    const shown = dialog(tr`Open a deck`, h("div", { class: "row" }, field, h("label", { class: "button" }, tr`From this machine…`, file)), box);
     const item = (label, about, source) => h("button", { class: "choice", onclick: () => { open(source); shown.close(); setTab(app.tab === "results" ? "structure" : app.tab); } }, h("b", {}, label), h("span", {}, about));
     function list() {
       const words = field.value.toLowerCase().split(/\s+/);
@@ -326,10 +327,10 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       const groups = [];
       let kept = null;
       try { kept = JSON.parse(localStorage.getItem(KEPT)); } catch { /* none */ }
-      if (kept?.text && app.root.dataset.role !== "pupil" && fits("last", kept.name)) groups.push(["Where you left off", [item(kept.name, "the deck of your last page", { text: kept.text, name: kept.name, ...kept.source })]]);
-      if (w.folder) groups.push([`Decks in ${w.folder}`, w.decks.filter((d) => fits(d)).map((d) => item(d, "", { path: d }))]);
-      groups.push(["New", w.kinds.structure.filter((k) => fits("new", k)).map((k) => item(`new ${k}`, "a starter deck", { starter: k }))]);
-      groups.push(["Decks with known answers", w.presets.filter((p) => fits(p.name, p.title, p.kind)).map((p) => item(p.title || p.name, `${p.name}${p.kind ? ` · ${p.kind}` : ""}`, { preset: p.name }))]);
+      if (kept?.text && app.root.dataset.role !== "pupil" && fits("last", kept.name)) groups.push([tr`Where you left off`, [item(kept.name, tr`the deck of your last page`, { text: kept.text, name: kept.name, ...kept.source })]]);
+      if (w.folder) groups.push([tr`Decks in ${w.folder}`, w.decks.filter((d) => fits(d)).map((d) => item(d, "", { path: d }))]);
+      groups.push([tr`New`, w.kinds.structure.filter((k) => fits("new", k)).map((k) => item(tr`new ${k}`, tr`a starter deck`, { starter: k }))]);
+      groups.push([tr`Decks with known answers`, w.presets.filter((p) => fits(p.name, p.title, p.kind)).map((p) => item(p.title || p.name, `${p.name}${p.kind ? ` · ${p.kind}` : ""}`, { preset: p.name }))]);
       box.replaceChildren(...groups.filter(([, items]) => items.length).flatMap(([name, items]) => [h("h3", {}, name), h("div", { class: "choice-grid" }, items)]));
     }
     list();
@@ -342,7 +343,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       const text = await deckOf(link);
       if (text !== null) open({ text, name: "shared.toml" });
       return text !== null;
-    } catch (error) { say(`The link holds no deck that can be read: ${error.message}`, true); return false; }
+    } catch (error) { say(tr`The link holds no deck that can be read: ${error.message}`, true); return false; }
   }
   app.openLink = openLink;
 
@@ -350,8 +351,8 @@ export function mount(root, transport, film, { embedded = false } = {}) {
 
   function dropped(fileGiven) {
     if (!fileGiven) return;
-    if (root.dataset.role === "pupil") { say("A class has no files.", true); return; }
-    if (fileGiven.size > 8e6) { say(`${fileGiven.name} is larger than 8 MB`, true); return; }
+    if (root.dataset.role === "pupil") { say(tr`A class has no files.`, true); return; }
+    if (fileGiven.size > 8e6) { say(tr`${fileGiven.name} is larger than 8 MB`, true); return; }
     const reader = new FileReader();
     reader.onload = () => {
       const data = reader.result.slice(reader.result.indexOf(",") + 1), name = fileGiven.name;
@@ -365,7 +366,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     reader.readAsDataURL(fileGiven);
   }
   function askUnit(name, data) {
-    const box = dialog("The unit of the drawing", h("p", {}, `${name} does not say its unit. It is in`), h("div", { class: "row" }, ["m", "cm", "mm", "in", "ft"].map((unit) => h("button", { onclick: () => { ask({ do: "drop", name, data, unit }); box.close(); } }, unit))));
+    const box = dialog(tr`The unit of the drawing`, h("p", {}, tr`${name} does not say its unit. It is in`), h("div", { class: "row" }, ["m", "cm", "mm", "in", "ft"].map((unit) => h("button", { onclick: () => { ask({ do: "drop", name, data, unit }); box.close(); } }, unit))));
   }
   root.addEventListener("dragover", (e) => { e.preventDefault(); root.classList.add("dropping"); });
   root.addEventListener("dragleave", (e) => { if (!root.contains(e.relatedTarget)) root.classList.remove("dropping"); });
@@ -382,34 +383,40 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     if (by !== undefined && !writing && !e.ctrlKey && !e.metaKey && app.tab !== "results") drawing.zoom(by);
   });
   function help() {
-    dialog("How to use this page", h("ul", { class: "help" },
-      h("li", {}, "Drag a handle of the drawing: sizes of the building, the vertex of a free block, a load, the thrust line, the tilt of the ground."),
-      h("li", {}, "Tab goes from handle to handle; arrow keys move one, with Shift ten times as far; Enter or a double click lets you type its value, with a unit if you like."),
-      h("li", {}, "Click into the stones, or drag there: the thrust line that passes there is drawn. Or drag the thrust itself, below the drawing, from the least to the greatest (keys Home and End)."),
-      h("li", {}, "Two fingers, the wheel, or the keys + and − enlarge the drawing; 0 fits it into its frame."),
-      h("li", {}, "Ctrl+Z undoes, Ctrl+Shift+Z does again, Ctrl+S saves the deck, Space plays a motion."),
-      h("li", {}, "Drop a deck (TOML), a drawing (DXF, JSON) or a record (CSV, AT2) on the page."),
-      h("li", {}, "The page is served by this machine to this machine; nothing leaves it.")));
+    dialog(tr`How to use this page`, h("ul", { class: "help" },
+      h("li", {}, tr`Drag a handle of the drawing: sizes of the building, the vertex of a free block, a load, the thrust line, the tilt of the ground.`),
+      h("li", {}, tr`Tab goes from handle to handle; arrow keys move one, with Shift ten times as far; Enter or a double click lets you type its value, with a unit if you like.`),
+      h("li", {}, tr`Click into the stones, or drag there: the thrust line that passes there is drawn. Or drag the thrust itself, below the drawing, from the least to the greatest (keys Home and End).`),
+      h("li", {}, tr`Two fingers, the wheel, or the keys + and − enlarge the drawing; 0 fits it into its frame.`),
+      h("li", {}, tr`Ctrl+Z undoes, Ctrl+Shift+Z does again, Ctrl+S saves the deck, Space plays a motion.`),
+      h("li", {}, tr`Drop a deck (TOML), a drawing (DXF, JSON) or a record (CSV, AT2) on the page.`),
+      h("li", {}, tr`The page is served by this machine to this machine; nothing leaves it.`)),
+      embedded ? null : h("label", { class: "field" }, tr`Language`, " ", h("select", { onchange: (e) => translate(e.target.value) }, Object.entries(LANGUAGES).map(([key, name]) => h("option", { value: key, lang: key, selected: key === language() }, name)))));
+  }
+  /** The page anew in another language, with its deck. */
+  async function translate(name) {
+    history.replaceState(null, "", location.pathname + await fragmentOf(app.text));
+    choose(name);
   }
 
   // Layers over the drawing
 
-  const LAYERS = [["least", "Least thrust"], ["most", "Greatest"], ["through", "Chosen line"], ["plus", "Collapse +x"], ["minus", "Collapse −x"], ["central", "Central"], ["reactions", "Reactions"], ["joints", "Joints"]];
-  const playButton = h("button", { class: "layer", "aria-pressed": "false", title: "Let the mechanism move", onclick: () => mechanism() }, "▶ Mechanism");
+  const LAYERS = [["least", tr`Least thrust`], ["most", tr`Greatest`], ["through", tr`Chosen line`], ["plus", tr`Collapse +x`], ["minus", tr`Collapse −x`], ["central", tr`Central`], ["reactions", tr`Reactions`], ["joints", tr`Joints`]];
+  const playButton = h("button", { class: "layer", "aria-pressed": "false", title: tr`Let the mechanism move`, onclick: () => mechanism() }, tr`▶ Mechanism`);
   layersBar.append(...LAYERS.map(([name, label]) => h("button", { class: `layer ${name}`, "aria-pressed": String(Boolean(app.layers[name])), "data-layer": name, onclick: (e) => {
     app.layers[name] = !app.layers[name];
     e.currentTarget.setAttribute("aria-pressed", String(app.layers[name]));
     show({ lines: Object.keys(app.layers).filter((key) => app.layers[key]) });
     tell("layers");
   } }, h("i", { class: "swatch" }), label)), playButton, h("span", { class: "spring" }),
-    ...[["−", "Smaller", 1 / 1.3], ["+", "Larger", 1.3], ["Fit", "Fit the drawing", null]].map(([text, label, by]) => h("button", { class: "layer", "aria-label": label, title: label, onclick: () => drawing.zoom(by) }, text)));
+    ...[["−", tr`Smaller`, 1 / 1.3], ["+", tr`Larger`, 1.3], [tr`Fit`, tr`Fit the drawing`, null]].map(([text, label, by]) => h("button", { class: "layer", "aria-label": label, title: label, onclick: () => drawing.zoom(by) }, text)));
   let swing = null;
   const wayShown = () => (app.view.gamma < 0 || (app.layers.minus && !app.layers.plus) ? "minus" : "plus");
   function mechanism() {
     if (swing) { app.stopMechanism(); return; }
     app.fall.stop();
     const way = wayShown();
-    if (!app.arrays[`${way}_velocity`]) { say("There is no mechanism to show.", true); return; }
+    if (!app.arrays[`${way}_velocity`]) { say(tr`There is no mechanism to show.`, true); return; }
     playButton.setAttribute("aria-pressed", "true");
     const begin = performance.now();
     const step = (now) => {
@@ -452,7 +459,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   const turned = () => drawing.setTheta(app.tab === "motion" ? 0 : Math.atan(app.scene?.gamma ?? 0));
   app.turned = turned;
 
-  top.append(outMenu(app), themeButton, h("button", { class: "icon", "aria-label": "Help", title: "Help (?)", onclick: help }, "?"));
+  top.append(outMenu(app), themeButton, h("button", { class: "icon", "aria-label": tr`Help`, title: "Help (?)", onclick: help }, "?"));
   sidebar(app, side);
   structurePanel(app, lower);
   fallPanel(app, stageFrame);

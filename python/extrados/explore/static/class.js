@@ -1,21 +1,22 @@
 // A class: the teacher sees the drawings of all pupils small, sends a deck to all, freezes, shows one; a pupil has no files.
 import { h, number, s, set } from "./dom.js";
+import { tr } from "./words.js";
 
 const EVERY = 1000; // ms between two looks at the class
 
 export function classPanel(app, tabs, box) {
   const grid = h("div", { class: "pupils" }), count = h("span", { role: "status" });
-  const freeze = h("button", { "aria-pressed": "false", onclick: () => app.ask({ do: "pause", frozen: freeze.getAttribute("aria-pressed") !== "true" }, { reply: frozen }) }, "Freeze");
-  const send = h("button", { class: "first", onclick: () => app.ask({ do: "send" }, { reply: (words) => app.say(`The deck is open on ${words.sent} pages.`) }) }, "Send my deck to all");
+  const freeze = h("button", { "aria-pressed": "false", onclick: () => app.ask({ do: "pause", frozen: freeze.getAttribute("aria-pressed") !== "true" }, { reply: frozen }) }, tr`Freeze`);
+  const send = h("button", { class: "first", onclick: () => app.ask({ do: "send" }, { reply: (words) => app.say(tr`The deck is open on ${words.sent} pages.`) }) }, tr`Send my deck to all`);
   box.append(h("div", { class: "row wrap" }, send, freeze, count), grid);
   const cards = new Map();
   let timer = null, since = -1;
-  const frozen = (words) => { freeze.setAttribute("aria-pressed", String(words.frozen)); freeze.textContent = words.frozen ? "Let them go on" : "Freeze"; };
+  const frozen = (words) => { freeze.setAttribute("aria-pressed", String(words.frozen)); freeze.textContent = words.frozen ? tr`Let them go on` : tr`Freeze`; };
 
   app.on("welcome", (words) => {
     if (words.pupil) pupil(words);
     if (!words.class || root("class")) return;
-    tabs.append(h("button", { role: "tab", id: "tab-class", "data-tab": "class", onclick: () => app.setTab("class") }, "Class"));
+    tabs.append(h("button", { role: "tab", id: "tab-class", "data-tab": "class", onclick: () => app.setTab("class") }, tr`Class`));
     app.setTab(app.tab);
   });
   const root = (name) => tabs.querySelector(`[data-tab=${name}]`);
@@ -26,12 +27,12 @@ export function classPanel(app, tabs, box) {
     if (!room) return;
     since = room.change;
     frozen(room);
-    count.textContent = `${room.pupils.length} of at most ${room.most} pupils`;
+    count.textContent = tr`${room.pupils.length} of at most ${room.most} pupils`;
     for (const [n, card] of cards) if (!room.pupils.some((p) => p.number === n)) { card.remove(); cards.delete(n); }
     for (const p of room.pupils) {
       let card = cards.get(p.number);
       if (!card) {
-        card = h("button", { class: "pupil", onclick: () => peek(p.number) }, s("svg", {}, s("path", { class: "stones" })), h("b", {}, `Pupil ${p.number}`), h("span", {}));
+        card = h("button", { class: "pupil", onclick: () => peek(p.number) }, s("svg", {}, s("path", { class: "stones" })), h("b", {}, tr`Pupil ${p.number}`), h("span", {}));
         cards.set(p.number, card);
         grid.append(card);
       }
@@ -41,7 +42,7 @@ export function classPanel(app, tabs, box) {
       if (p.box) set(svg, { viewBox: `-60 -60 ${p.box[0] + 120} ${p.box[1] + 120}` });
       set(svg.firstChild, { transform: p.box && p.gamma ? `rotate(${(Math.atan(p.gamma) * 180) / Math.PI} ${p.box[0] / 2} ${p.box[1]})` : null });
       card.classList.toggle("bad", Boolean(p.falls));
-      about.textContent = p.falls ? (p.falls === "weight" ? "cannot stand" : "collapses") : p.capacity ? `capacity ${number(Math.min(p.capacity.plus_g, p.capacity.minus_g), 3)} g` : p.title;
+      about.textContent = p.falls ? (p.falls === "weight" ? tr`cannot stand` : "collapses") : p.capacity ? tr`capacity ${number(Math.min(p.capacity.plus_g, p.capacity.minus_g), 3)} g` : p.title;
     }
   }
   /** Open the deck of a pupil on the teacher's own page. */
@@ -51,7 +52,7 @@ export function classPanel(app, tabs, box) {
   /** The page of a pupil: no files, no runs, a number. */
   function pupil(words) {
     app.root.dataset.role = "pupil";
-    app.root.querySelector(".brand").textContent = `pupil ${words.pupil}`;
+    app.root.querySelector(".brand").textContent = tr`pupil ${words.pupil}`;
     pause(words.frozen);
   }
   const pause = (on) => { for (const part of app.root.querySelectorAll(".stage-frame, .side, .lower, .top")) part.inert = on; app.root.classList.toggle("frozen", on); };

@@ -1,5 +1,6 @@
 // The collapse: what cannot stand, or is tilted beyond its capacity, falls in real time; then the fall is shown again, slower.
 import { capital, h } from "./dom.js";
+import { tr } from "./words.js";
 
 const LAST = 1.0; // s for which the last picture stays before the replay
 const SLOW = 0.5;
@@ -19,7 +20,7 @@ export function fallPanel(app, frame) {
   app.fall = it;
   const why = h("p", { class: "why" });
   const button = (label, act) => h("button", { onclick: act }, label);
-  const again = button("▶ Replay", () => play(1)), slow = button("Half speed", () => play(SLOW)), back = button("Show the structure", stop);
+  const again = button(tr`▶ Replay`, () => play(1)), slow = button(tr`Half speed`, () => play(SLOW)), back = button(tr`Show the structure`, stop);
   const box = h("div", { class: "fall", role: "status", hidden: true }, why, h("div", { class: "row" }, again, slow, back));
   frame.querySelector(".stage-box").before(box);
   const still = matchMedia("(prefers-reduced-motion: reduce)");
@@ -45,7 +46,7 @@ export function fallPanel(app, frame) {
       it.time = [...it.time, ...time];
     }
     it.done = words.done;
-    it.failed = words.stopped ? `The computation ended at ${(it.time.at(-1) ?? 0).toFixed(1)} s: ${words.stopped}.` : "";
+    it.failed = words.stopped ? tr`The computation ended at ${(it.time.at(-1) ?? 0).toFixed(1)} s: ${words.stopped}.` : "";
     tell();
     if (words.first && !still.matches) play(1, true);
   });
@@ -54,7 +55,7 @@ export function fallPanel(app, frame) {
     const { scene } = app;
     const told = scene.why ?? app.detail?.why ?? "";
     why.title = told;
-    why.replaceChildren(h("b", {}, scene.falls === "weight" ? "Cannot stand. " : `Collapses towards ${scene.falls === "plus" ? "+x" : "−x"}. `), it.failed || capital(told.split("; proof")[0]));
+    why.replaceChildren(h("b", {}, scene.falls === "weight" ? tr`Cannot stand. ` : tr`Collapses towards ${scene.falls === "plus" ? "+x" : "−x"}. `), it.failed || capital(told.split("; certificate")[0]));
     again.disabled = slow.disabled = !it.time.length;
     back.hidden = !app.drawing.moving();
   }

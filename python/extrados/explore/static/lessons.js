@@ -1,5 +1,6 @@
 // Ten lessons: a deck to begin with, a prediction, a question, a check of what the hand has found, and a word of history.
 import { number, quantity } from "./dom.js";
+import { tr } from "./words.js";
 
 const arch = (more, analysis = 'kind = "tilt"') => `title = "${more.title}"\n\n[structure]\n${more.structure}\n${more.motion ? `\n[motion]\n${more.motion}\n` : ""}\n[[analysis]]\n${analysis}\n`;
 const ring = (radius, thickness, embrace, voussoirs) => `kind = "arch"\nradius = ${radius}\nthickness = ${thickness}\nembrace = ${embrace}\nvoussoirs = ${voussoirs}`;
@@ -8,78 +9,78 @@ const near = (x, y, share) => Math.abs(x - y) <= share * Math.abs(y);
 
 export const LESSONS = [
   {
-    title: "The least thickness", tab: "structure",
-    task: "Make this semicircular arch as thin as it can be and still stand under its own weight. Drag the handle at the crown, or press the arrow keys on it.",
-    question: "Which ratio of thickness to radius of the centre line does it need at least, and where are its hinges then?",
-    choices: ["about a fifth of the radius", "about a tenth of the radius", "about a thirtieth of the radius"], right: 1,
-    history: "Couplet (1730) assumed hinges halfway up the haunches and found 0.101. Milankovitch (1907) let the hinges find their places and found 0.1075. Neither number depends on the size of the arch.",
-    deck: arch({ title: "The least thickness", structure: ring(5.0, 0.9, 180.0, 60) }),
+    title: tr`The least thickness`, tab: "structure",
+    task: tr`Make this semicircular arch as thin as it can be and still stand under its own weight. Drag the handle at the crown, or press the arrow keys on it.`,
+    question: tr`Which ratio of thickness to radius of the centre line does it need at least, and where are its hinges then?`,
+    choices: [tr`about a fifth of the radius`, tr`about a tenth of the radius`, tr`about a thirtieth of the radius`], right: 1,
+    history: tr`Couplet (1730) assumed hinges halfway up the haunches and found 0.101. Milankovitch (1907) let the hinges find their places and found 0.1075. Neither number depends on the size of the arch.`,
+    deck: arch({ title: tr`The least thickness`, structure: ring(5.0, 0.9, 180.0, 60) }),
     check(app) {
       const ratio = value(app, "structure.thickness") / value(app, "structure.radius");
-      if (!near(value(app, "structure.embrace"), 180, 1e-3)) return [false, "Let it be a semicircle: embrace 180°."];
-      if (!app.scene.stands) return [false, `At ${number(ratio, 4)} no thrust line stays within the blocks: the arch is too thin.`];
-      if (ratio > 0.112) return [false, `The arch stands at ${number(ratio, 4)} and can be thinner. Watch the lines of least and greatest thrust come together.`];
-      return [true, `Right: about ${number(ratio, 3)}. Milankovitch (1907) found 0.1075 for radial joints. Least and greatest thrust are one and the same line there: it touches the extrados at crown and springings and the intrados at the haunches, where the hinges open.`];
+      if (!near(value(app, "structure.embrace"), 180, 1e-3)) return [false, tr`Let it be a semicircle: embrace 180°.`];
+      if (!app.scene.stands) return [false, tr`At ${number(ratio, 4)} no thrust line stays within the blocks: the arch is too thin.`];
+      if (ratio > 0.112) return [false, tr`The arch stands at ${number(ratio, 4)} and can be thinner. Watch the lines of least and greatest thrust come together.`];
+      return [true, tr`Right: about ${number(ratio, 3)}. Milankovitch (1907) found 0.1075 for radial joints. Least and greatest thrust are one and the same line there: it touches the extrados at crown and springings and the intrados at the haunches, where the hinges open.`];
     },
   },
   {
     title: "Oppenheim's arch", tab: "structure",
-    task: "Tilt the ground by the handle at its right end until this arch of seven voussoirs collapses. Then set it upright, and let the mechanism move.",
-    question: "At which acceleration to the side does the arch collapse, and how many hinges does it need? Leave it tilted just so.",
-    choices: ["three hinges", "four hinges", "seven hinges"], right: 1,
-    history: "Oppenheim (1992) studied this arch as a linkage of three bars with four hinges, and asked which ground motions it survives.",
+    task: tr`Tilt the ground by the handle at its right end until this arch of seven voussoirs collapses. Then set it upright, and let the mechanism move.`,
+    question: tr`At which acceleration to the side does the arch collapse, and how many hinges does it need? Leave it tilted just so.`,
+    choices: [tr`three hinges`, tr`four hinges`, tr`seven hinges`], right: 1,
+    history: tr`Oppenheim (1992) studied this arch as a linkage of three bars with four hinges, and asked which ground motions it survives.`,
     deck: arch({ title: "Oppenheim's arch", structure: ring(10.0, 1.5, 157.5, 7) }),
     check(app) {
       const { plus_g: plus } = app.scene.capacity ?? {};
-      if (!near(value(app, "structure.thickness"), 1.5, 1e-3) || !near(value(app, "structure.embrace"), 157.5, 1e-3)) return [false, "The sizes have changed: begin again."];
-      if (!near(Math.abs(app.scene.gamma), plus, 0.03)) return [false, `The ground is tilted by ${number(app.scene.gamma, 3)} g; find the tilt at which the arch just collapses, within 3 %.`];
-      return [true, `Right: ${number(plus, 3)} g, a tilt of ${number((Math.atan(plus) * 180) / Math.PI, 4)}°. Four hinges make a chain of three links: one more than a statically determinate arch has.`];
+      if (!near(value(app, "structure.thickness"), 1.5, 1e-3) || !near(value(app, "structure.embrace"), 157.5, 1e-3)) return [false, tr`The sizes have changed: begin again.`];
+      if (!near(Math.abs(app.scene.gamma), plus, 0.03)) return [false, tr`The ground is tilted by ${number(app.scene.gamma, 3)} g; find the tilt at which the arch just collapses, within 3 %.`];
+      return [true, tr`Right: ${number(plus, 3)} g, a tilt of ${number((Math.atan(plus) * 180) / Math.PI, 4)}°. Four hinges make a chain of three links: one more than a statically determinate arch has.`];
     },
   },
   {
     title: "A buttress", tab: "structure",
-    task: "This vault stands on buttresses. Change their width, and see the capacity of the vault to the side.",
-    question: "How wide must the buttresses be for a capacity of 0.10 g, to within 2 %?",
-    choices: ["The capacity is proportional to the width.", "The capacity is proportional to the weight of the vault.", "Width has no influence."], right: 0,
-    history: "Builders sized buttresses by rules of proportion for centuries. La Hire (1712) weighed the overturning of a pier against the thrust of the vault.",
+    task: tr`This vault stands on buttresses. Change their width, and see the capacity of the vault to the side.`,
+    question: tr`How wide must the buttresses be for a capacity of 0.10 g, to within 2 %?`,
+    choices: [tr`The capacity is proportional to the width.`, tr`The capacity is proportional to the weight of the vault.`, tr`Width has no influence.`], right: 0,
+    history: tr`Builders sized buttresses by rules of proportion for centuries. La Hire (1712) weighed the overturning of a pier against the thrust of the vault.`,
     deck: arch({ title: "A buttress", structure: 'kind = "vault"\nradius = 5.0\nthickness = 0.6\nembrace = 120.0\nface = 4.2\nbuttress_width = 1.6\nheight = 9.0' }),
     check(app) {
       const c = app.scene.capacity ? Math.min(app.scene.capacity.plus_g, app.scene.capacity.minus_g) : -1, width = value(app, "structure.buttress_width");
-      if (!near(value(app, "structure.height"), 9, 1e-3)) return [false, "Leave the height as it was: 9 m."];
-      if (c < 0.098) return [false, `With ${number(width, 3)} m the capacity is ${number(c, 3)} g: too little.`];
-      if (c > 0.102) return [false, `With ${number(width, 3)} m the capacity is ${number(c, 3)} g: more than required.`];
-      return [true, `Right: about ${number(width, 3)} m. The capacity grows nearly as the width over the height, since the leeward buttress turns about its outer toe; a wide one would rather crack, which a deck considers by the key "fracture".`];
+      if (!near(value(app, "structure.height"), 9, 1e-3)) return [false, tr`Leave the height as it was: 9 m.`];
+      if (c < 0.098) return [false, tr`With ${number(width, 3)} m the capacity is ${number(c, 3)} g: too little.`];
+      if (c > 0.102) return [false, tr`With ${number(width, 3)} m the capacity is ${number(c, 3)} g: more than required.`];
+      return [true, tr`Right: about ${number(width, 3)} m. The capacity grows nearly as the width over the height, since the leeward buttress turns about its outer toe; a wide one would rather crack, which a deck considers by the key "fracture".`];
     },
   },
   {
-    title: "Two pulses", tab: "motion",
-    task: "Both pulses, one of 1.0 g for 0.20 s and one of 0.6 g for 0.45 s, rock Oppenheim's arch. Set the first, press Keep, then set the second.",
-    question: "The static capacity is 0.37 g. Which of the two pulses causes collapse? Leave that one set.",
-    choices: ["the stronger and shorter one", "the weaker and longer one", "both"], right: 1,
-    history: "Impulse and static load are different questions: a structure may survive an acceleration far above its static capacity, if it is short.",
-    deck: arch({ title: "Two pulses", structure: ring(10.0, 1.5, 157.5, 7), motion: 'kind = "step-pulse"\namplitude = "0.5 g"\nduration = 0.10' }, 'kind = "rocking"'),
+    title: tr`Two pulses`, tab: "motion",
+    task: tr`Both pulses, one of 1.0 g for 0.20 s and one of 0.6 g for 0.45 s, rock Oppenheim's arch. Set the first, press Keep, then set the second.`,
+    question: tr`The static capacity is 0.37 g. Which of the two pulses causes collapse? Leave that one set.`,
+    choices: [tr`the stronger and shorter one`, tr`the weaker and longer one`, tr`both`], right: 1,
+    history: tr`Impulse and static load are different questions: a structure may survive an acceleration far above its static capacity, if it is short.`,
+    deck: arch({ title: tr`Two pulses`, structure: ring(10.0, 1.5, 157.5, 7), motion: 'kind = "step-pulse"\namplitude = "0.5 g"\nduration = 0.10' }, 'kind = "rocking"'),
     check(app) {
       const pulse = app.deck.motion?.pulse;
-      if (!pulse) return [false, "Set a step pulse."];
+      if (!pulse) return [false, tr`Set a step pulse.`];
       const first = near(pulse.amplitude_g, 1.0, 0.02) && near(pulse.duration_s, 0.2, 0.03), second = near(pulse.amplitude_g, 0.6, 0.02) && near(pulse.duration_s, 0.45, 0.03);
-      if (!first && !second) return [false, "Set one of the two pulses: 1.0 g for 0.20 s, or 0.6 g for 0.45 s."];
+      if (!first && !second) return [false, tr`Set one of the two pulses: 1.0 g for 0.20 s, or 0.6 g for 0.45 s.`];
       const falls = app.motion.words?.outcome === "collapse";
-      if (!falls) return [false, `This one (${number(pulse.amplitude_g, 3)} g for ${number(pulse.duration_s, 3)} s) rocks the arch, which recovers. Look at the map: where does the other lie?`];
-      return [true, "Right: the arch collapses. An acceleration above the static capacity only starts rocking; collapse depends on the duration as well: on the map, amplitude and duration together."];
+      if (!falls) return [false, tr`This one (${number(pulse.amplitude_g, 3)} g for ${number(pulse.duration_s, 3)} s) rocks the arch, which recovers. Look at the map: where does the other lie?`];
+      return [true, tr`Right: the arch collapses. An acceleration above the static capacity only starts rocking; collapse depends on the duration as well: on the map, amplitude and duration together.`];
     },
   },
   {
-    title: "The overturning block", tab: "motion",
-    task: "A block 1 m wide and 4 m high stands on the ground under one sine. Make the block larger at the same proportions, 2 m and 8 m, and look again. Then find its own limit.",
-    question: "Which amplitude of a sine of 1 s just overturns the block of 2 m and 8 m? Leave an amplitude set that overturns it, at most 5 % above the least that does.",
-    choices: ["the same amplitude", "a larger amplitude", "a smaller amplitude"], right: 1,
-    history: "After the earthquakes of Chile in 1960, Housner (1963) saw tall water tanks that had survived beside lower ones that had not, and explained them as rocking blocks.",
-    deck: arch({ title: "The overturning block", structure: 'kind = "block"\nwidth = 1.0\nheight = 4.0', motion: 'kind = "sine-pulse"\namplitude = "0.45 g"\nperiod = 1.0' }, 'kind = "rocking"'),
+    title: tr`The overturning block`, tab: "motion",
+    task: tr`A block 1 m wide and 4 m high stands on the ground under one sine. Make the block larger at the same proportions, 2 m and 8 m, and look again. Then find its own limit.`,
+    question: tr`Which amplitude of a sine of 1 s just overturns the block of 2 m and 8 m? Leave an amplitude set that overturns it, at most 5 % above the least that does.`,
+    choices: [tr`the same amplitude`, tr`a larger amplitude`, tr`a smaller amplitude`], right: 1,
+    history: tr`After the earthquakes of Chile in 1960, Housner (1963) saw tall water tanks that had survived beside lower ones that had not, and explained them as rocking blocks.`,
+    deck: arch({ title: tr`The overturning block`, structure: 'kind = "block"\nwidth = 1.0\nheight = 4.0', motion: 'kind = "sine-pulse"\namplitude = "0.45 g"\nperiod = 1.0' }, 'kind = "rocking"'),
     check(app) {
       const pulse = app.deck.motion?.pulse, map = app.motion.map;
-      if (!near(value(app, "structure.width"), 2, 0.01) || !near(value(app, "structure.height"), 8, 0.01)) return [false, "The block is to be 2 m wide and 8 m high."];
-      if (!pulse || !near(pulse.duration_s, 1, 0.02)) return [false, "The sine is to have a period of 1 s."];
-      if (app.motion.words?.outcome !== "collapse") return [false, `${number(pulse.amplitude_g, 3)} g does not overturn it.`];
+      if (!near(value(app, "structure.width"), 2, 0.01) || !near(value(app, "structure.height"), 8, 0.01)) return [false, tr`The block is to be 2 m wide and 8 m high.`];
+      if (!pulse || !near(pulse.duration_s, 1, 0.02)) return [false, tr`The sine is to have a period of 1 s.`];
+      if (app.motion.words?.outcome !== "collapse") return [false, tr`${number(pulse.amplitude_g, 3)} g does not overturn it.`];
       return ["ask", pulse.amplitude_g, map];
     },
     verify(app, amplitude, told) {
@@ -89,84 +90,84 @@ export const LESSONS = [
       app.ask({ do: "rocking", still: true }, { reply: (words) => {
         const falls = words.rocking?.outcome === "collapse";
         app.ask({ do: "set", changes: { "motion.amplitude": now } });
-        if (falls) told(false, `It overturns at ${less} as well: look lower.`);
-        else told(true, `Right: about ${number(amplitude, 3)} g. Twice the size needs more: of two blocks of the same proportions the larger is the safer, which the static limit of ${number(app.motion.words.uplift_g, 3)} g, equal for both, does not show (Housner 1963).`);
+        if (falls) told(false, tr`It overturns at ${less} as well: look lower.`);
+        else told(true, tr`Right: about ${number(amplitude, 3)} g. Twice the size needs more: of two blocks of the same proportions the larger is the safer, which the static limit of ${number(app.motion.words.uplift_g, 3)} g, equal for both, does not show (Housner 1963).`);
       } });
     },
   },
   {
     title: "Hooke's chain", tab: "structure",
-    task: "A hanging chain carries its weight by tension alone. Turned upside down, it is a line of thrust. This arch holds many of them: click into the blocks, and the line through that point is drawn.",
-    question: "Draw the line of thrust that passes the middle of the joint at the crown.",
-    choices: ["exactly one line of thrust fits into this arch", "many lines of thrust fit", "none fits"], right: 1,
-    history: "Hooke (1675) hid his answer in an anagram: as hangs the flexible line, so but inverted will stand the rigid arch. Poleni (1748) hung a loaded chain to judge the cracked dome of St Peter's.",
+    task: tr`A hanging chain carries its weight by tension alone. Turned upside down, it is a line of thrust. This arch holds many of them: click into the blocks, and the line through that point is drawn.`,
+    question: tr`Draw the line of thrust that passes the middle of the joint at the crown.`,
+    choices: [tr`exactly one line of thrust fits into this arch`, tr`many lines of thrust fit`, tr`none fits`], right: 1,
+    history: tr`Hooke (1675) hid his answer in an anagram: as hangs the flexible line, so but inverted will stand the rigid arch. Poleni (1748) hung a loaded chain to judge the cracked dome of St Peter's.`,
     deck: arch({ title: "Hooke's chain", structure: ring(5.0, 0.8, 150.0, 40) }),
     check(app) {
       const t = app.scene.through;
-      if (!t) return [false, "Click into the blocks at the crown."];
-      if (Math.abs(t.at[0]) > 0.25) return [false, `The line passes ${number(Math.abs(t.at[0]), 3)} m beside the crown: click nearer to the top.`];
-      if (t.reached < 0.42 || t.reached > 0.58) return [false, `The line passes the crown at ${number(t.reached, 2)} of the joint: aim at the middle, 0.5.`];
-      return [true, `Right: this line has a thrust of ${quantity(t.thrust_N, "N", 3)}. Every line inside the blocks is a possible state of the same arch; which one is real depends on movements too small to see.`];
+      if (!t) return [false, tr`Click into the blocks at the crown.`];
+      if (Math.abs(t.at[0]) > 0.25) return [false, tr`The line passes ${number(Math.abs(t.at[0]), 3)} m beside the crown: click nearer to the top.`];
+      if (t.reached < 0.42 || t.reached > 0.58) return [false, tr`The line passes the crown at ${number(t.reached, 2)} of the joint: aim at the middle, 0.5.`];
+      return [true, tr`Right: this line has a thrust of ${quantity(t.thrust_N, "N", 3)}. Every line inside the blocks is a possible state of the same arch; which one is real depends on movements too small to see.`];
     },
   },
   {
-    title: "A factor of safety", tab: "structure",
-    task: "The geometric factor of safety is the thickness of the arch over the least thickness that still holds a line of thrust. The panel Answer shows it as Geometric safety.",
-    question: "Change the thickness until the geometric safety is 2, to within 2 %.",
-    choices: ["0.27 m, as the strength is doubled", "0.54 m, twice the least thickness", "1.0 m, a fifth of the radius"], right: 1,
-    history: "Heyman (1966) brought plastic theory to masonry: stresses are low, so safety is a question of geometry. He advised a factor of 2 for arches.",
-    deck: arch({ title: "A factor of safety", structure: ring(5.0, 0.4, 150.0, 40) }),
+    title: tr`A factor of safety`, tab: "structure",
+    task: tr`The geometric factor of safety is the thickness of the arch over the least thickness that still holds a line of thrust. The panel Answer shows it as Geometric safety.`,
+    question: tr`Change the thickness until the geometric safety is 2, to within 2 %.`,
+    choices: [tr`0.27 m, as the strength is doubled`, tr`0.54 m, twice the least thickness`, tr`1.0 m, a fifth of the radius`], right: 1,
+    history: tr`Heyman (1966) brought plastic theory to masonry: stresses are low, so safety is a question of geometry. He advised a factor of 2 for arches.`,
+    deck: arch({ title: tr`A factor of safety`, structure: ring(5.0, 0.4, 150.0, 40) }),
     check(app) {
       const safety = app.detail?.safety;
-      if (!near(value(app, "structure.radius"), 5, 1e-3) || !near(value(app, "structure.embrace"), 150, 1e-3)) return [false, "Leave radius and embrace as they were: 5 m and 150°."];
-      if (!safety) return [false, "No line of thrust fits: the arch is too thin."];
-      if (!near(safety, 2, 0.02)) return [false, `The geometric safety is ${number(safety, 3)}.`];
-      return [true, `Right: ${number(value(app, "structure.thickness"), 3)} m. The middle half of the arch then holds a line of thrust.`];
+      if (!near(value(app, "structure.radius"), 5, 1e-3) || !near(value(app, "structure.embrace"), 150, 1e-3)) return [false, tr`Leave radius and embrace as they were: 5 m and 150°.`];
+      if (!safety) return [false, tr`No line of thrust fits: the arch is too thin.`];
+      if (!near(safety, 2, 0.02)) return [false, tr`The geometric safety is ${number(safety, 3)}.`];
+      return [true, tr`Right: ${number(value(app, "structure.thickness"), 3)} m. The middle half of the arch then holds a line of thrust.`];
     },
   },
   {
-    title: "Flat arches push", tab: "structure",
-    task: "This arch has a span of 8.66 m and a rise of 2.5 m. Lower its rise by the handle under the crown; the span stays.",
-    question: "At which rise is the least thrust 1.5 times that of the first arch, 52.9 kN, to within 2 %?",
-    choices: ["half of the rise gives half of the thrust", "half of the rise gives the same thrust", "half of the rise gives more thrust"], right: 2,
-    history: "A flat arch pushes harder on its abutments. Perronet built the arches of Neuilly so flat, on piers so thin, that each pier needed its neighbours: the centrings of all arches were removed together (1772).",
-    deck: arch({ title: "Flat arches push", structure: ring(5.0, 0.6, 120.0, 40) }),
+    title: tr`Flat arches push`, tab: "structure",
+    task: tr`This arch has a span of 8.66 m and a rise of 2.5 m. Lower its rise by the handle under the crown; the span stays.`,
+    question: tr`At which rise is the least thrust 1.5 times that of the first arch, 52.9 kN, to within 2 %?`,
+    choices: [tr`half of the rise gives half of the thrust`, tr`half of the rise gives the same thrust`, tr`half of the rise gives more thrust`], right: 2,
+    history: tr`A flat arch pushes harder on its abutments. Perronet built the arches of Neuilly so flat, on piers so thin, that each pier needed its neighbours: the centrings of all arches were removed together (1772).`,
+    deck: arch({ title: tr`Flat arches push`, structure: ring(5.0, 0.6, 120.0, 40) }),
     check(app) {
       const r = value(app, "structure.radius"), half = (value(app, "structure.embrace") * Math.PI) / 360, span = 2 * r * Math.sin(half), rise = r * (1 - Math.cos(half));
-      if (!near(span, 8.66, 5e-3)) return [false, `The span is ${number(span, 4)} m: leave it at 8.66 m.`];
-      if (!near(app.scene.least_N ?? 0, 52890, 0.02)) return [false, `At a rise of ${number(rise, 3)} m the least thrust is ${quantity(app.scene.least_N, "N", 3)}.`];
-      return [true, `Right: ${number(rise, 3)} m. The thrust is nearly inversely proportional to the rise, less the thickness that the line can use.`];
+      if (!near(span, 8.66, 5e-3)) return [false, tr`The span is ${number(span, 4)} m: leave it at 8.66 m.`];
+      if (!near(app.scene.least_N ?? 0, 52890, 0.02)) return [false, tr`At a rise of ${number(rise, 3)} m the least thrust is ${quantity(app.scene.least_N, "N", 3)}.`];
+      return [true, tr`Right: ${number(rise, 3)} m. The thrust is nearly inversely proportional to the rise, less the thickness that the line can use.`];
     },
   },
   {
-    title: "A cart on the bridge", tab: "structure",
-    task: "Add a load by the button in the panel Answer, drag it to a quarter of the span, 2.4 m from the crown, and make it heavier by the handle of its arrow.",
-    question: "Bring the arch close to collapse: it must stand, with less than 0.05 g left to the weaker side.",
-    choices: ["a load at the crown is the most dangerous", "a load at the quarter of the span is the most dangerous", "the place has no influence"], right: 1,
-    history: "Barlow (1846) built model arches whose joints were slips of wood and could be removed one by one: several lines of thrust were real at once. Bridges are still assessed for the axle at the quarter point.",
-    deck: arch({ title: "A cart on the bridge", structure: ring(5.0, 0.6, 150.0, 40) }),
+    title: tr`A cart on the bridge`, tab: "structure",
+    task: tr`Add a load by the button in the panel Answer, drag it to a quarter of the span, 2.4 m from the crown, and make it heavier by the handle of its arrow.`,
+    question: tr`Bring the arch close to collapse: it must stand, with less than 0.05 g left to the weaker side.`,
+    choices: [tr`a load at the crown is the most dangerous`, tr`a load at the quarter of the span is the most dangerous`, tr`the place has no influence`], right: 1,
+    history: tr`Barlow (1846) built model arches whose joints were slips of wood and could be removed one by one: several lines of thrust were real at once. Bridges are still assessed for the axle at the quarter point.`,
+    deck: arch({ title: tr`A cart on the bridge`, structure: ring(5.0, 0.6, 150.0, 40) }),
     check(app) {
       const [load] = app.scene.loads ?? [], c = app.scene.capacity;
-      if (!load) return [false, "Add a load first."];
-      if (Math.abs(Math.abs(load.at[0]) - 2.4) > 0.35) return [false, `The load is ${number(Math.abs(load.at[0]), 3)} m from the crown: drag it to 2.4 m.`];
-      if (!app.scene.stands) return [false, `${quantity(load.force_N, "N", 3)} is too much: no line of thrust fits.`];
+      if (!load) return [false, tr`Add a load first.`];
+      if (Math.abs(Math.abs(load.at[0]) - 2.4) > 0.35) return [false, tr`The load is ${number(Math.abs(load.at[0]), 3)} m from the crown: drag it to 2.4 m.`];
+      if (!app.scene.stands) return [false, tr`${quantity(load.force_N, "N", 3)} is too much: no line of thrust fits.`];
       const left = Math.min(c.plus_g, c.minus_g);
-      if (left > 0.05) return [false, `The arch has ${number(left, 3)} g left: the load can be heavier.`];
-      return [true, `Right: about ${quantity(load.force_N, "N", 3)} of ${quantity(app.scene.weight_N, "N", 3)} of own weight. The line of thrust touches both faces of the arch: four hinges are near.`];
+      if (left > 0.05) return [false, tr`The arch has ${number(left, 3)} g left: the load can be heavier.`];
+      return [true, tr`Right: about ${quantity(load.force_N, "N", 3)} of ${quantity(app.scene.weight_N, "N", 3)} of own weight. The line of thrust touches both faces of the arch: four hinges are near.`];
     },
   },
   {
-    title: "The gravestone", tab: "structure",
-    task: "A gravestone is 1 m wide and 4 m high. The ground accelerates to the side at a constant rate.",
-    question: "Leave the height at 4 m. Which width gives a capacity of 0.35 g, to within 1 %?",
-    choices: ["A block of twice the size has twice the capacity.", "A block of twice the size has the same capacity.", "A block of twice the size has half the capacity."], right: 1,
-    history: "Milne (1885) judged shaking in Japan from overturned columns, by a formula of West: width over height is the least acceleration in g that overturns one. For short motions the formula is too severe, as the lesson on the overturning block shows.",
-    deck: arch({ title: "The gravestone", structure: 'kind = "block"\nwidth = 1.0\nheight = 4.0' }),
+    title: tr`The gravestone`, tab: "structure",
+    task: tr`A gravestone is 1 m wide and 4 m high. The ground accelerates to the side at a constant rate.`,
+    question: tr`Leave the height at 4 m. Which width gives a capacity of 0.35 g, to within 1 %?`,
+    choices: [tr`A block of twice the size has twice the capacity.`, tr`A block of twice the size has the same capacity.`, tr`A block of twice the size has half the capacity.`], right: 1,
+    history: tr`Milne (1885) judged shaking in Japan from overturned columns, by a formula of West: width over height is the least acceleration in g that overturns one. For short motions the formula is too severe, as the lesson on the overturning block shows.`,
+    deck: arch({ title: tr`The gravestone`, structure: 'kind = "block"\nwidth = 1.0\nheight = 4.0' }),
     check(app) {
       const c = app.scene.capacity?.plus_g ?? 0;
-      if (!near(value(app, "structure.height"), 4, 1e-3)) return [false, "Leave the height at 4 m."];
-      if (!near(c, 0.35, 0.01)) return [false, `With a width of ${number(value(app, "structure.width"), 3)} m the capacity is ${number(c, 3)} g.`];
-      return [true, `Right: ${number(value(app, "structure.width"), 3)} m, 0.35 of the height. Neither weight nor size has an influence.`];
+      if (!near(value(app, "structure.height"), 4, 1e-3)) return [false, tr`Leave the height at 4 m.`];
+      if (!near(c, 0.35, 0.01)) return [false, tr`With a width of ${number(value(app, "structure.width"), 3)} m the capacity is ${number(c, 3)} g.`];
+      return [true, tr`Right: ${number(value(app, "structure.width"), 3)} m, 0.35 of the height. Neither weight nor size has an influence.`];
     },
   },
 ];

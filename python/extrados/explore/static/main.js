@@ -1,6 +1,9 @@
 // The page on its own: a socket to the server that served it.
-import { mount } from "./app.js";
 import { socketTransport } from "./transport.js";
+import { load } from "./words.js";
+
+await load(); // before the modules whose words it gives
+const { mount } = await import("./app.js");
 
 const address = new URL("live", location.href);
 address.protocol = "ws:";

@@ -1,34 +1,35 @@
 // Motion: the pulse or record, the rocking response over earlier ones, the map of pulses, energy, friction, and play.
 import { chart } from "./chart.js";
 import { h, number, quantity, s, set } from "./dom.js";
+import { tr } from "./words.js";
 
-const SPEEDS = [[1, "real time"], [0.5, "half"], [0.2, "a fifth"], [0.05, "a twentieth"]];
+const SPEEDS = [[1, tr`real time`], [0.5, tr`half`], [0.2, tr`a fifth`], [0.05, tr`a twentieth`]];
 
 export function motionPanel(app, lower, frame) {
   const it = { arrays: null, words: null, earlier: [], time: 0, playing: null, speed: 0.2, stop: false, map: null, mark: "" };
   app.motion = it;
   const box = (name) => h("div", { class: "fill", "data-chart": name });
   const boxes = { pulse: box("pulse"), history: box("history"), map: box("map"), energy: box("energy"), friction: box("friction") };
-  const mapLegend = h("div", { class: "map-legend", "aria-label": "Outcomes on the map" });
+  const mapLegend = h("div", { class: "map-legend", "aria-label": tr`Outcomes on the map` });
   const thirds = { map: h("div", { class: "fill beside" }, boxes.map, mapLegend), energy: boxes.energy, friction: boxes.friction };
   const words = h("p", { class: "outcome", role: "status" });
   const impulse = h("p", { class: "impulse" });
-  const keep = h("button", { title: "Keep this response in the picture", onclick: () => { if (it.arrays) { it.earlier.push({ time: it.arrays.time, rotation: it.arrays.rotation }); if (it.earlier.length > 5) it.earlier.shift(); draw(); } } }, "Keep");
-  const drop = h("button", { onclick: () => { it.earlier = []; draw(); } }, "Clear");
-  const kinds = h("select", { "aria-label": "Kind of motion", onchange: (e) => begin(e.target.value) }, h("option", { value: "" }, "choose a motion"), h("option", { value: "step-pulse" }, "step pulse"), h("option", { value: "sine-pulse" }, "sine pulse"), h("option", { value: "harmonic" }, "harmonic"), h("option", { value: "record" }, "El Centro 1940"));
-  const lowerTabs = h("div", { class: "tabs small", role: "tablist", "aria-label": "Charts" }, [["map", "Map of pulses"], ["energy", "Energy"], ["friction", "Friction"]].map(([name, label]) => h("button", { role: "tab", "data-third": name, onclick: () => third(name) }, label)));
+  const keep = h("button", { title: tr`Keep this response in the picture`, onclick: () => { if (it.arrays) { it.earlier.push({ time: it.arrays.time, rotation: it.arrays.rotation }); if (it.earlier.length > 5) it.earlier.shift(); draw(); } } }, tr`Keep`);
+  const drop = h("button", { onclick: () => { it.earlier = []; draw(); } }, tr`Clear`);
+  const kinds = h("select", { "aria-label": tr`Kind of motion`, onchange: (e) => begin(e.target.value) }, h("option", { value: "" }, tr`choose a motion`), h("option", { value: "step-pulse" }, tr`step pulse`), h("option", { value: "sine-pulse" }, tr`sine pulse`), h("option", { value: "harmonic" }, tr`harmonic`), h("option", { value: "record" }, tr`El Centro 1940`));
+  const lowerTabs = h("div", { class: "tabs small", role: "tablist", "aria-label": tr`Charts` }, [["map", tr`Map of pulses`], ["energy", tr`Energy`], ["friction", tr`Friction`]].map(([name, label]) => h("button", { role: "tab", "data-third": name, onclick: () => third(name) }, label)));
   const panel = h("div", { class: "cards motion", "data-for": "motion" },
-    h("div", { class: "card" }, h("div", { class: "card-head" }, h("h2", {}, "Motion"), kinds), boxes.pulse),
-    h("div", { class: "card" }, h("div", { class: "card-head" }, h("h2", {}, "Rocking"), keep, drop), boxes.history),
+    h("div", { class: "card" }, h("div", { class: "card-head" }, h("h2", {}, tr`Motion`), kinds), boxes.pulse),
+    h("div", { class: "card" }, h("div", { class: "card-head" }, h("h2", {}, tr`Rocking`), keep, drop), boxes.history),
     h("div", { class: "card" }, h("div", { class: "card-head" }, lowerTabs), ...Object.values(thirds)));
   lower.append(panel);
-  const slider = h("input", { type: "range", min: 0, max: 1, step: "any", value: 0, "aria-label": "Time", oninput: () => seek(Number(slider.value)) });
+  const slider = h("input", { type: "range", min: 0, max: 1, step: "any", value: 0, "aria-label": tr`Time`, oninput: () => seek(Number(slider.value)) });
   const clock = h("output", { class: "clock" });
-  const play = h("button", { class: "play", "aria-label": "Play", onclick: () => toggle() }, "▶");
+  const play = h("button", { class: "play", "aria-label": tr`Play`, onclick: () => toggle() }, "▶");
   const player = h("div", { class: "player", hidden: true }, play, slider, clock,
-    h("select", { "aria-label": "Speed", onchange: (e) => { it.speed = Number(e.target.value); } }, SPEEDS.map(([v, label]) => h("option", { value: v, selected: v === it.speed }, label))),
-    h("label", {}, h("input", { type: "checkbox", onchange: (e) => { it.stop = e.target.checked; } }), " stop at impacts"));
-  const answer = h("div", { class: "motion-words", hidden: true, role: "group", "aria-label": "Response in words", tabindex: "0" }, words, impulse);
+    h("select", { "aria-label": tr`Speed`, onchange: (e) => { it.speed = Number(e.target.value); } }, SPEEDS.map(([v, label]) => h("option", { value: v, selected: v === it.speed }, label))),
+    h("label", {}, h("input", { type: "checkbox", onchange: (e) => { it.stop = e.target.checked; } }), tr` stop at impacts`));
+  const answer = h("div", { class: "motion-words", hidden: true, role: "group", "aria-label": tr`Response in words`, tabindex: "0" }, words, impulse);
   frame.prepend(answer);
   frame.append(player);
 
@@ -64,7 +65,7 @@ export function motionPanel(app, lower, frame) {
     const text = (told.complaints ?? [told.bad]).join(" ");
     if (message?.do === "rocking") none(text, null);
     else if (message?.do === "domain") { it.map = { why: text }; drawMap(); }
-    else if (message?.do === "impulse") impulse.textContent = `No primary impulse: ${text}`;
+    else if (message?.do === "impulse") impulse.textContent = tr`No primary impulse: ${text}`;
   });
   /** Say why there is no response; the motion, where there is one, is drawn all the same. */
   function none(text, ground) {
@@ -80,7 +81,7 @@ export function motionPanel(app, lower, frame) {
   function refresh(when) {
     if (!app.scene) return;
     if (app.deck?.motion) app.ask({ do: "rocking", lane: "rocking" }, { when: when ?? performance.now() });
-    else { none("There is no motion yet: choose one below, or drop a record on the page.", null); }
+    else { none(tr`There is no motion yet: choose one below, or drop a record on the page.`, null); }
     clearTimeout(slow);
     slow = setTimeout(() => {
       if (app.deck?.structure) app.ask({ do: "domain", lane: "domain" });
@@ -98,7 +99,7 @@ export function motionPanel(app, lower, frame) {
     if (told.refused) { none(told.refused, arrays); return; }
     it.words = told; it.arrays = it.ground = arrays;
     const open = told.violated.length > 0;
-    const verdict = open ? "Open: an assumption does not hold. " : { "no-hinging": "No rocking. ", recovery: "Rocking, then recovery. ", collapse: "Collapse. " }[told.outcome] ?? "";
+    const verdict = open ? tr`Open: an assumption does not hold. ` : { "no-hinging": tr`No rocking. `, recovery: tr`Rocking, then recovery. `, collapse: tr`Collapse. ` }[told.outcome] ?? "";
     words.replaceChildren(h("b", { class: open ? "" : told.outcome === "collapse" ? "bad" : "good" }, verdict), told.answer, ...told.warnings.slice(0, 2).map((w) => h("span", { class: "warning" }, ` ${w}`)));
     it.end = told.active_s || 1;
     const end = it.end;
@@ -108,32 +109,32 @@ export function motionPanel(app, lower, frame) {
     draw(false);
     seek(it.time, false);
   });
-  app.on("impulse", (told) => { impulse.textContent = told.refused ? `No primary impulse: ${told.refused}` : told.answer; it.impulse = told; draw(); });
+  app.on("impulse", (told) => { impulse.textContent = told.refused ? tr`No primary impulse: ${told.refused}` : told.answer; it.impulse = told; draw(); });
   app.on("domain", (told, arrays) => { it.map = { told, arrays }; drawMap(); });
 
   /** map: the map of pulses too, which a new response leaves as it is. */
   function draw(map = true) {
     if (app.tab !== "motion") return;
     const { arrays, words: told, ground } = it;
-    if (!ground?.motion) charts.pulse.draw(blank("Ground acceleration"), {});
+    if (!ground?.motion) charts.pulse.draw(blank(tr`Ground acceleration`), {});
     else {
       let [low, high] = [0, 0];
       for (const v of ground.motion) { low = Math.min(low, v); high = Math.max(high, v); }
-      charts.pulse.draw({ title: "Ground acceleration", x: { array: "motion_time", label: "time", unit: "s" }, y: { label: "acceleration", unit: "g" }, series: [{ array: "motion", label: "ground" }], least: Math.min(0, 1.1 * low), most: Math.max(0, 1.22 * high) }, ground);
+      charts.pulse.draw({ title: tr`Ground acceleration`, x: { array: "motion_time", label: "time", unit: "s" }, y: { label: "acceleration", unit: "g" }, series: [{ array: "motion", label: "ground" }], least: Math.min(0, 1.1 * low), most: Math.max(0, 1.22 * high) }, ground);
     }
-    if (!arrays) { for (const key of ["history", "energy", "friction"]) charts[key].draw({ ...blank({ history: "Rotation", energy: "Energy", friction: "Friction along the joints" }[key]), y: { label: "", unit: "" } }, {}); }
+    if (!arrays) { for (const key of ["history", "energy", "friction"]) charts[key].draw({ ...blank({ history: tr`Rotation`, energy: tr`Energy`, friction: tr`Friction along the joints` }[key]), y: { label: "", unit: "" } }, {}); }
     else {
       const critical = 1e3 * told.critical_rad[0], most = 1e3 * Math.abs(told.peak_rotation_rad);
       const flat = (v) => ({ x: Float32Array.of(0, arrays.time.at(-1) || 1), y: Float32Array.of(v, v) });
       const level = flat(critical), under = flat(-1e3 * told.critical_rad[1]);
       const showLimit = most > 0.25 * critical;
-      charts.history.draw({ title: "Rotation", x: { array: "time", label: "time", unit: "s" }, y: { label: "rotation", unit: "mrad" }, symmetric: true, span: [0, it.end], marks: Float64Array.from(told.impact_times_s),
-        series: [...it.earlier.map((e) => ({ array: e.rotation, x: e.time, label: "earlier", factor: 1e3, faint: true, unnamed: true, colour: 5 })), { array: "rotation", label: arrays.rotation_upper ? "lower block" : "now", factor: 1e3, unnamed: !arrays.rotation_upper, colour: 0 },
-          ...(arrays.rotation_upper ? [{ array: "rotation_upper", label: "upper block", factor: 1e3, colour: 2, dashed: true }] : []),
+      charts.history.draw({ title: tr`Rotation`, x: { array: "time", label: "time", unit: "s" }, y: { label: "rotation", unit: "mrad" }, symmetric: true, span: [0, it.end], marks: Float64Array.from(told.impact_times_s),
+        series: [...it.earlier.map((e) => ({ array: e.rotation, x: e.time, label: "earlier", factor: 1e3, faint: true, unnamed: true, colour: 5 })), { array: "rotation", label: arrays.rotation_upper ? tr`lower block` : "now", factor: 1e3, unnamed: !arrays.rotation_upper, colour: 0 },
+          ...(arrays.rotation_upper ? [{ array: "rotation_upper", label: tr`upper block`, factor: 1e3, colour: 2, dashed: true }] : []),
           ...(showLimit ? [{ array: level.y, x: level.x, label: "critical", dashed: true, colour: 1, unnamed: true }, { array: under.y, x: under.x, label: "critical", dashed: true, colour: 1, unnamed: true }] : [])] }, arrays);
       const axis = { array: "time", label: "time", unit: "s" }, span = [0, it.end];
       const big = Math.max(...[...arrays.potential, ...arrays.kinetic].map(Math.abs), 1e-12), kilo = big > 2000 ? [1e-3, "kJ"] : [1, "J"];
-      if (shownThird === "energy") charts.energy.draw({ title: "Energy", span, x: axis, y: { label: "energy", unit: kilo[1] }, series: [{ array: "kinetic", label: "kinetic", factor: kilo[0] }, { array: "potential", label: "potential", factor: kilo[0] }, { array: "ledger", label: "supplied less lost", dashed: true, factor: kilo[0] }] }, arrays);
+      if (shownThird === "energy") charts.energy.draw({ title: tr`Energy`, span, x: axis, y: { label: "energy", unit: kilo[1] }, series: [{ array: "kinetic", label: "kinetic", factor: kilo[0] }, { array: "potential", label: "potential", factor: kilo[0] }, { array: "ledger", label: tr`supplied less lost`, dashed: true, factor: kilo[0] }] }, arrays);
     }
     if (map || !it.map || it.map.why) drawMap(); else dot(charts.map);
     cursors();
@@ -142,9 +143,9 @@ export function motionPanel(app, lower, frame) {
     if (app.tab !== "motion" || shownThird !== "map") return;
     for (const old of boxes.map.querySelectorAll(".map-why, .remark")) old.remove();
     if (it.map?.why) boxes.map.append(h("p", { class: "map-why" }, `No map: ${it.map.why}.`));
-    if (!it.map || it.map.why) { mapLegend.replaceChildren(); charts.map.draw({ title: "Pulses that cause collapse", x: { label: "duration", unit: "s" }, y: { label: "amplitude", unit: "g" }, series: [], span: [0, 1] }, {}); return; }
+    if (!it.map || it.map.why) { mapLegend.replaceChildren(); charts.map.draw({ title: tr`Pulses that cause collapse`, x: { label: "duration", unit: "s" }, y: { label: "amplitude", unit: "g" }, series: [], span: [0, 1] }, {}); return; }
     const { told, arrays } = it.map;
-    charts.map.draw({ title: `Collapse by ${told.pulse} pulses`, x: { array: "duration", label: told.pulse === "step" ? "t_p" : "T_p", unit: "s" }, y: { label: "amplitude", unit: "g" }, series: [], heat: { codes: "codes", x: "duration", y: "amplitude", stride: told.stride }, least: 0 }, arrays);
+    charts.map.draw({ title: tr`Collapse by ${told.pulse} pulses`, x: { array: "duration", label: told.pulse === "step" ? "t_p" : "T_p", unit: "s" }, y: { label: "amplitude", unit: "g" }, series: [], heat: { codes: "codes", x: "duration", y: "amplitude", stride: told.stride }, least: 0 }, arrays);
     mapLegend.replaceChildren(...told.outcomes.map((o, k) => h("span", {}, h("i", { class: `m${k}` }), o)));
     boxes.map.append(...(told.conditions ?? []).map((text) => h("p", { class: "remark" }, text)));
   }
@@ -158,10 +159,10 @@ export function motionPanel(app, lower, frame) {
     const p = pulse();
     if (!p || !c.X || shownThird !== "map" || it.map?.why) { c.front.replaceChildren(); return; }
     const where = c.place(), x = Math.min(Math.max(c.X(p.duration_s), where.left), where.left + where.w), y = Math.min(Math.max(c.Y(p.amplitude_g), where.top), where.top + where.h);
-    const label = p.record ? "primary impulse" : "present pulse";
-    const text = `${label}: ${quantity(p.amplitude_g, "g", 3)} for ${quantity(p.duration_s, "s", 3)}`;
+    const label = p.record ? tr`primary impulse` : tr`present pulse`;
+    const text = tr`${label}: ${quantity(p.amplitude_g, "g", 3)} for ${quantity(p.duration_s, "s", 3)}`;
     if (c.dot?.isConnected) { set(c.dot, { transform: `translate(${x} ${y})`, "aria-valuetext": text }); return; }
-    c.dot = s("g", { class: "dot-now", transform: `translate(${x} ${y})`, role: "slider", tabindex: "0", "aria-label": "Pulse on the map", "aria-valuenow": p.amplitude_g, "aria-valuetext": text, onkeydown: keys }, s("circle", { r: 7 }), s("circle", { r: 2 }));
+    c.dot = s("g", { class: "dot-now", transform: `translate(${x} ${y})`, role: "slider", tabindex: "0", "aria-label": tr`Pulse on the map`, "aria-valuenow": p.amplitude_g, "aria-valuetext": text, onkeydown: keys }, s("circle", { r: 7 }), s("circle", { r: 2 }));
     c.front.replaceChildren(c.dot);
   }
   function keys(e) {
@@ -187,7 +188,7 @@ export function motionPanel(app, lower, frame) {
     const spots = { amplitude: [step ? 0.5 * p.duration_s : 0.25 * p.duration_s, sign * p.amplitude_g], duration: [p.duration_s, step ? 0 : 0] };
     for (const [name, [t, a]] of Object.entries(spots)) {
       c.knobs ??= {};
-      const label = name === "amplitude" ? "Amplitude of the pulse" : step ? "Duration of the first part" : "Period of the pulse";
+      const label = name === "amplitude" ? tr`Amplitude of the pulse` : step ? tr`Duration of the first part` : tr`Period of the pulse`;
       const text = name === "amplitude" ? quantity(sign * p.amplitude_g, "g", 3) : quantity(p.duration_s, "s", 3);
       let knob = c.knobs[name];
       if (!knob) {
@@ -215,7 +216,7 @@ export function motionPanel(app, lower, frame) {
   function write(name) {
     const motion = app.deck.motion, key = name === "amplitude" ? "amplitude" : motion.kind === "step-pulse" ? "duration" : "period";
     const field = h("input", { type: "text", value: name === "amplitude" ? `${number(motion.pulse.amplitude_g, 5)} g` : number(motion.pulse.duration_s, 5), "aria-label": key });
-    const box = app.dialog(key, h("form", { onsubmit: (e) => { e.preventDefault(); const text = field.value.trim().replaceAll("−", "-"); app.change({ [`motion.${key}`]: /^[-+\d.]+$/.test(text) ? (name === "amplitude" ? `${text} g` : Number(text)) : text }); box.close(); } }, field, h("button", { type: "submit", class: "first" }, "Set")));
+    const box = app.dialog(key, h("form", { onsubmit: (e) => { e.preventDefault(); const text = field.value.trim().replaceAll("−", "-"); app.change({ [`motion.${key}`]: /^[-+\d.]+$/.test(text) ? (name === "amplitude" ? `${text} g` : Number(text)) : text }); box.close(); } }, field, h("button", { type: "submit", class: "first" }, tr`Set`)));
   }
   function grab(event, knob, name, c) {
     event.preventDefault(); event.stopPropagation();
@@ -268,23 +269,23 @@ export function motionPanel(app, lower, frame) {
       const n = it.arrays.friction.shape[1], k = it.frame ?? 0;
       const now = it.arrays.friction.subarray(k * n, (k + 1) * n), joint = Float32Array.from({ length: n }, (_, j) => j), most = new Float32Array(n);
       for (let i = 0; i < it.arrays.friction.length; i += 1) { const v = it.arrays.friction[i]; if (Number.isFinite(v) && v > most[i % n]) most[i % n] = Math.min(v, 2); }
-      charts.friction.draw({ title: `Friction needed at ${it.time.toFixed(2)} s`, x: { array: "joint", label: "joint", unit: "" }, y: { label: "coefficient", unit: "" }, series: [{ array: "now", label: "now", sort: n > 60 ? "line" : "both" }, { array: "most", label: "greatest so far", dashed: true }], least: 0, most: 1 }, { joint, now: now.map((v) => Math.min(v, 2)), most });
+      charts.friction.draw({ title: tr`Friction needed at ${it.time.toFixed(2)} s`, x: { array: "joint", label: "joint", unit: "" }, y: { label: "coefficient", unit: "" }, series: [{ array: "now", label: "now", sort: n > 60 ? "line" : "both" }, { array: "most", label: tr`greatest so far`, dashed: true }], least: 0, most: 1 }, { joint, now: now.map((v) => Math.min(v, 2)), most });
     }
   }
   function toggle() { if (it.playing) pause(); else run(); }
-  function pause() { if (it.playing) cancelAnimationFrame(it.playing); it.playing = null; play.textContent = "▶"; play.setAttribute("aria-label", "Play"); }
+  function pause() { if (it.playing) cancelAnimationFrame(it.playing); it.playing = null; play.textContent = "▶"; play.setAttribute("aria-label", tr`Play`); }
   function run() {
     const a = it.arrays;
     if (!a?.pose) return;
     const end = it.end;
     if (it.time >= end - 1e-6) it.time = 0;
-    play.textContent = "❚❚"; play.setAttribute("aria-label", "Pause");
+    play.textContent = "❚❚"; play.setAttribute("aria-label", tr`Pause`);
     let last = performance.now();
     const step = (now) => {
       const before = it.time;
       let to = it.time + ((now - last) / 1000) * it.speed;
       last = now;
-      if (it.stop) { const hit = it.words.impact_times_s.find((t) => t > before + 1e-9 && t <= to); if (hit !== undefined) { seek(hit); pause(); app.say(`impact at ${hit.toFixed(3)} s`); return; } }
+      if (it.stop) { const hit = it.words.impact_times_s.find((t) => t > before + 1e-9 && t <= to); if (hit !== undefined) { seek(hit); pause(); app.say(tr`impact at ${hit.toFixed(3)} s`); return; } }
       seek(to);
       if (to >= end) { pause(); return; }
       it.playing = requestAnimationFrame(step);

@@ -1,6 +1,7 @@
 // What is seen, taken out: PNG, SVG, and films of what moves.
 import { download, h, number } from "./dom.js";
 import { fragmentOf } from "./share.js";
+import { language, tr } from "./words.js";
 
 const STYLED = ["fill", "stroke", "stroke-width", "stroke-dasharray", "stroke-linejoin", "stroke-linecap", "opacity", "fill-opacity", "stroke-opacity", "font-size", "font-family", "font-weight", "text-anchor", "vector-effect", "visibility", "display"];
 
@@ -59,27 +60,27 @@ export function outMenu(app) {
   /** Every picture of what moves, drawn in turn at 1280 x 720 and sent to be filmed. */
   async function film(kind, slow) {
     const moves = movement();
-    if (!moves) { app.say("Nothing moves here: a mechanism, a motion or a stored run that moves can be filmed.", true); return; }
+    if (!moves) { app.say(tr`Nothing moves here: a mechanism, a motion or a stored run that moves can be filmed.`, true); return; }
     const rate = kind === "gif" ? 15 : 30, length = Math.min(moves.real ? (moves.end - moves.start) / slow : 6, 40);
     const count = Math.max(2, Math.round(length * rate)), canvas = document.createElement("canvas"), parts = [new TextEncoder().encode(kind), Uint8Array.of(rate)];
-    if (count > 1200) { app.say("That film would be too long.", true); return; }
+    if (count > 1200) { app.say(tr`That film would be too long.`, true); return; }
     for (let k = 0; k < count; k += 1) {
       moves.seek(moves.start + ((moves.end - moves.start) * k) / (count - 1));
-      app.say(`drawing picture ${k + 1} of ${count}`);
+      app.say(tr`drawing picture ${k + 1} of ${count}`);
       await picture(alone(seen(), paper()), canvas, 1280, 720);
       const context = canvas.getContext("2d");
       context.fillStyle = getComputedStyle(app.root).getPropertyValue("--ink"); context.font = "22px sans-serif";
-      context.fillText(moves.real && slow !== 1 ? `${moves.label()}, ${number(slow, 2)} of real speed` : moves.label(), 24, 40);
+      context.fillText(moves.real && slow !== 1 ? tr`${moves.label()}, ${number(slow, 2)} of real speed` : moves.label(), 24, 40);
       const blob = await new Promise((done) => canvas.toBlob(done, "image/jpeg", 0.92));
       const length = new Uint8Array(4);
       new DataView(length.buffer).setUint32(0, blob.size);
       parts.push(length, new Uint8Array(await blob.arrayBuffer()));
     }
-    app.say("making the film …");
+    app.say(tr`making the film …`);
     const answer = await fetch(app.film, { method: "POST", body: new Blob(parts) });
     if (!answer.ok) { app.say(await answer.text(), true); return; }
     download(await answer.blob(), `${stem()}.${kind}`);
-    app.say("The film is done.");
+    app.say(tr`The film is done.`);
   }
   function movement() {
     if (app.tab === "motion" && app.motion.arrays?.pose) {
@@ -97,23 +98,23 @@ export function outMenu(app) {
   /** A link that holds the deck: of a class its address, else one that any page opens from Open…. */
   async function link() {
     const text = (app.root.dataset.role === "pupil" ? location.href.split("#")[0] : "extrados:") + await fragmentOf(app.text);
-    const field = h("textarea", { readonly: true, rows: 5, "aria-label": "Link that holds the deck" });
+    const field = h("textarea", { readonly: true, rows: 5, "aria-label": tr`Link that holds the deck` });
     field.value = text;
-    app.dialog("Share the deck", h("p", {}, "The link holds the whole deck. Paste it under Open… of any page of extrados, or append it, from the sign # on, to the address of a page."), field,
-      h("div", { class: "row" }, h("button", { class: "first", onclick: async () => { field.select(); try { await navigator.clipboard.writeText(text); } catch { document.execCommand("copy"); } app.say("The link is copied."); } }, "Copy")));
+    app.dialog(tr`Share the deck`, h("p", {}, tr`The link holds the whole deck. Paste it under Open… of any page of extrados, or append it, from the sign # on, to the address of a page.`), field,
+      h("div", { class: "row" }, h("button", { class: "first", onclick: async () => { field.select(); try { await navigator.clipboard.writeText(text); } catch { document.execCommand("copy"); } app.say(tr`The link is copied.`); } }, tr`Copy`)));
     field.select();
   }
   /** One file with the structure, computed over a size and the tilt. */
   function standalone() {
-    app.ask({ do: "standalone" }, { reply: (words) => {
-      if (words.share !== undefined && words.page === undefined) app.say(`computing the page: ${Math.round(100 * words.share)} %`);
-      if (words.page) { download(new Blob([words.page], { type: "text/html" }), `${stem()}.html`); app.say(`The page has ${(words.page.length / 1e6).toFixed(1)} MB.`); }
+    app.ask({ do: "standalone", language: language() }, { reply: (words) => {
+      if (words.share !== undefined && words.page === undefined) app.say(tr`computing the page: ${Math.round(100 * words.share)} %`);
+      if (words.page) { download(new Blob([words.page], { type: "text/html" }), `${stem()}.html`); app.say(tr`The page has ${(words.page.length / 1e6).toFixed(1)} MB.`); }
     } });
   }
   const menu = h("div", { class: "menu", hidden: true, role: "menu" });
   const entry = (label, act, keeps = false) => h("button", { role: "menuitem", class: keeps ? "keeps" : null, onclick: () => { menu.hidden = true; button.setAttribute("aria-expanded", "false"); Promise.resolve(act()).catch((error) => app.say(String(error), true)); } }, label);
-  menu.append(entry("Link that holds the deck", link), entry("Page without a server, HTML", standalone, true), entry("Picture, PNG", png), entry("Drawing, SVG", svg), entry("Charts, SVG", all), ...(app.embedded ? [] : [entry("Film, MP4, real time", () => film("mp4", 1), true), entry("Film, MP4, a fifth of the speed", () => film("mp4", 0.2), true), entry("Film, GIF, real time", () => film("gif", 1), true), entry("Film, GIF, a fifth of the speed", () => film("gif", 0.2), true)]));
-  const button = h("button", { class: "out", "aria-haspopup": "menu", "aria-expanded": "false", onclick: () => { menu.hidden = !menu.hidden; button.setAttribute("aria-expanded", String(!menu.hidden)); if (!menu.hidden) menu.querySelector("button").focus(); } }, "Export");
+  menu.append(entry(tr`Link that holds the deck`, link), entry(tr`Page without a server, HTML`, standalone, true), entry("Picture, PNG", png), entry("Drawing, SVG", svg), entry("Charts, SVG", all), ...(app.embedded ? [] : [entry(tr`Film, MP4, real time`, () => film("mp4", 1), true), entry(tr`Film, MP4, a fifth of the speed`, () => film("mp4", 0.2), true), entry(tr`Film, GIF, real time`, () => film("gif", 1), true), entry(tr`Film, GIF, a fifth of the speed`, () => film("gif", 0.2), true)]));
+  const button = h("button", { class: "out", "aria-haspopup": "menu", "aria-expanded": "false", onclick: () => { menu.hidden = !menu.hidden; button.setAttribute("aria-expanded", String(!menu.hidden)); if (!menu.hidden) menu.querySelector("button").focus(); } }, tr`Export`);
   const box = h("div", { class: "menu-box", onkeydown: (e) => { if (e.key === "Escape") { menu.hidden = true; button.focus(); } } }, button, menu);
   app.root.addEventListener("pointerdown", (e) => { if (!e.composedPath().includes(box)) menu.hidden = true; });
   app.film_of = film;

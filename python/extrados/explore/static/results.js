@@ -3,14 +3,15 @@ import { chart } from "./chart.js";
 import { h, number, s, set } from "./dom.js";
 import { carried, space } from "./space.js";
 import { piecesPath, stonesPath } from "./stage.js";
+import { tr } from "./words.js";
 
 export function resultsPanel(app, wide) {
   const columns = [column("A"), column("B")];
-  const second = h("button", { "aria-pressed": "false", onclick: () => both(columns[1].box.hidden) }, "Compare two runs");
-  const linked = h("label", { hidden: true }, h("input", { type: "checkbox", checked: true }), " move both together");
-  const compute = h("button", { class: "first", onclick: () => computing() }, "Run the deck…");
+  const second = h("button", { "aria-pressed": "false", onclick: () => both(columns[1].box.hidden) }, tr`Compare two runs`);
+  const linked = h("label", { hidden: true }, h("input", { type: "checkbox", checked: true }), tr` move both together`);
+  const compute = h("button", { class: "first", onclick: () => computing() }, tr`Run the deck…`);
   const log = h("pre", { class: "log", hidden: true, "aria-live": "polite" });
-  const bar = h("div", { class: "row wrap results-bar" }, compute, second, linked, h("button", { onclick: () => app.ask({ do: "list" }) }, "Look again"));
+  const bar = h("div", { class: "row wrap results-bar" }, compute, second, linked, h("button", { onclick: () => app.ask({ do: "list" }) }, tr`Look again`));
   const pair = h("div", { class: "columns" }, columns.map((c) => c.box));
   wide.append(bar, log, pair);
   columns[1].box.hidden = true;
@@ -23,15 +24,15 @@ export function resultsPanel(app, wide) {
 
   let stopping = null;
   function computing() {
-    const field = h("input", { type: "text", value: app.source.path ?? app.name, "aria-label": "Path of the deck within the folder" });
+    const field = h("input", { type: "text", value: app.source.path ?? app.name, "aria-label": tr`Path of the deck within the folder` });
     const replace = h("input", { type: "checkbox", checked: Boolean(app.source.path) });
-    const box = app.dialog("Run the whole deck", h("form", { onsubmit: (e) => {
+    const box = app.dialog(tr`Run the whole deck`, h("form", { onsubmit: (e) => {
       e.preventDefault();
       log.hidden = false; log.textContent = "";
       app.ask({ do: "compute", path: field.value, replace: replace.checked });
       stopping = true;
       box.close();
-    } }, h("p", {}, "The deck is saved and all its analyses are run, as the command `extrados run` does. It is saved as"), field, h("label", {}, replace, " replace what is there"), h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, "Run"))));
+    } }, h("p", {}, tr("The deck is saved and all its analyses are run, as the command `extrados run` does. It is saved as")), field, h("label", {}, replace, tr` replace what is there`), h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, tr`Run`))));
   }
   app.on("computing", (line, _, words) => {
     if (words.saved) app.source = { path: words.saved };
@@ -46,7 +47,7 @@ export function resultsPanel(app, wide) {
         if (words.runs[0]) columns[0].load(words.runs[0].path);
       }
     }
-    compute.textContent = stopping ? "Running…" : "Run the deck…";
+    compute.textContent = stopping ? tr`Running…` : tr`Run the deck…`;
     compute.disabled = Boolean(stopping);
   });
   app.on("welcome", () => columns.forEach((c) => c.list()));
@@ -57,19 +58,19 @@ export function resultsPanel(app, wide) {
 
   function column(side) {
     const it = { side, words: null, arrays: {}, time: 0, playing: null, path: "", charts: [], k: 0, load, list, take, redraw, pause, seek };
-    const runs = h("select", { "aria-label": `Run ${side}`, onchange: () => load(runs.value) });
-    const kinds = h("select", { "aria-label": `Analysis of run ${side}`, onchange: () => app.ask({ do: "run", path: it.path, analysis: kinds.value, side }) });
+    const runs = h("select", { "aria-label": tr`Run ${side}`, onchange: () => load(runs.value) });
+    const kinds = h("select", { "aria-label": tr`Analysis of run ${side}`, onchange: () => app.ask({ do: "run", path: it.path, analysis: kinds.value, side }) });
     const answer = h("p", { class: "answer-text" });
     const svg = s("svg", { class: "body-view", role: "img" });
     const figure = h("div", { class: "fill body-box" }, svg);
-    const slider = h("input", { type: "range", min: 0, max: 1, step: "any", value: 0, "aria-label": `Position in run ${side}`, oninput: () => seek(Number(slider.value)) });
+    const slider = h("input", { type: "range", min: 0, max: 1, step: "any", value: 0, "aria-label": tr`Position in run ${side}`, oninput: () => seek(Number(slider.value)) });
     const clock = h("output", { class: "clock" });
-    const play = h("button", { "aria-label": "Play", onclick: () => (it.playing ? pause() : run()) }, "▶");
-    const scale = h("select", { "aria-label": "Scale of displacements", onchange: () => picture() }, [1, 10, 100, 1000].map((v) => h("option", { value: v }, `× ${v}`)));
+    const play = h("button", { "aria-label": tr`Play`, onclick: () => (it.playing ? pause() : run()) }, "▶");
+    const scale = h("select", { "aria-label": tr`Scale of displacements`, onchange: () => picture() }, [1, 10, 100, 1000].map((v) => h("option", { value: v }, `× ${v}`)));
     const player = h("div", { class: "player" }, play, slider, clock, scale);
     const area = h("div", { class: "charts" });
-    const numbers = h("table", { class: "numbers" }), tables = h("div", { class: "tables" }), more = h("details", {}, h("summary", {}, "Numbers"), numbers);
-    it.box = h("section", { class: "column", "aria-label": `Run ${side}` }, h("div", { class: "row" }, runs, kinds), answer, figure, player, area, tables, more);
+    const numbers = h("table", { class: "numbers" }), tables = h("div", { class: "tables" }), more = h("details", {}, h("summary", {}, tr`Numbers`), numbers);
+    it.box = h("section", { class: "column", "aria-label": tr`Run ${side}` }, h("div", { class: "row" }, runs, kinds), answer, figure, player, area, tables, more);
     const view = space(figure);
     it.drawn = () => (it.words?.body?.sort === "space" ? view.svg : svg);
     figure.hidden = player.hidden = true;
@@ -77,7 +78,7 @@ export function resultsPanel(app, wide) {
 
     function list() {
       const there = app.welcome?.runs ?? [];
-      runs.replaceChildren(h("option", { value: "" }, there.length ? "choose a run" : "no stored runs in the folder"), ...there.map((r) => h("option", { value: r.path, selected: r.path === it.path }, `${r.path}  (${new Date(1000 * r.time).toLocaleString()})`)));
+      runs.replaceChildren(h("option", { value: "" }, there.length ? tr`choose a run` : tr`no stored runs in the folder`), ...there.map((r) => h("option", { value: r.path, selected: r.path === it.path }, `${r.path}  (${new Date(1000 * r.time).toLocaleString()})`)));
     }
     function load(path) {
       if (!path) return;
@@ -101,12 +102,12 @@ export function resultsPanel(app, wide) {
       const told = words.analyses.find((a) => a.name === words.analysis) ?? words.analyses[0];
       const outcome = told?.verdict?.outcome;
       const mark = { stands: "good", collapses: "bad", "cannot-stand": "bad" }[outcome] ?? "";
-      answer.replaceChildren(...(outcome ? [h("b", { class: mark }, `Verdict: ${outcome.replaceAll("-", " ")}. `), ...(told.verdict.violated ?? []).map((w) => h("span", { class: "warning" }, `${w} `))] : []), told ? told.answer || `${told.status}: ${told.reason}` : "");
+      answer.replaceChildren(...(outcome ? [h("b", { class: mark }, tr`Verdict: ${outcome.replaceAll("-", " ")}. `), ...(told.verdict.violated ?? []).map((w) => h("span", { class: "warning" }, `${w} `))] : []), told ? told.answer || `${told.status}: ${told.reason}` : "");
       if (words.charts === undefined) { clear(); return; }
       it.arrays = arrays;
       numbers.replaceChildren(h("tbody", {}, (words.numbers ?? []).map(([k, v]) => h("tr", {}, h("th", { scope: "row" }, k), h("td", {}, typeof v === "number" ? number(v, 6) : String(v))))));
       const cell = (v) => (Number.isInteger(v) && Math.abs(v) < 1e7 ? String(v).replace("-", "−") : typeof v === "number" ? number(v, 5) : v === null ? "" : String(v));
-      tables.replaceChildren(...(words.tables ?? []).map((t) => h("figure", {}, h("figcaption", {}, t.title), h("table", { class: "numbers rows" }, h("thead", {}, h("tr", {}, t.columns.map((c, k) => h("th", { scope: "col", class: typeof t.rows[0]?.[k] === "string" ? "text" : "" }, c.replaceAll("_", " "))))), h("tbody", {}, t.rows.map((row) => h("tr", {}, row.map((v) => h("td", { class: typeof v === "number" ? "" : "text" }, cell(v))))))), t.left_out ? h("p", {}, `and ${t.left_out} more, in the folder of the run`) : null)));
+      tables.replaceChildren(...(words.tables ?? []).map((t) => h("figure", {}, h("figcaption", {}, t.title), h("table", { class: "numbers rows" }, h("thead", {}, h("tr", {}, t.columns.map((c, k) => h("th", { scope: "col", class: typeof t.rows[0]?.[k] === "string" ? "text" : "" }, c.replaceAll("_", " "))))), h("tbody", {}, t.rows.map((row) => h("tr", {}, row.map((v) => h("td", { class: typeof v === "number" ? "" : "text" }, cell(v))))))), t.left_out ? h("p", {}, tr`and ${t.left_out} more, in the folder of the run`) : null)));
       more.open = !words.charts.length && !words.body;
       area.replaceChildren();
       it.charts = words.charts.map((spec) => {
@@ -148,7 +149,7 @@ export function resultsPanel(app, wide) {
         it.k = low;
         slider.value = it.time;
         const unit = it.words.body?.unit ?? "";
-        clock.textContent = it.words.body?.label === "event" ? `event ${Math.round(times[low])}` : `${number(it.time, 4)} ${unit}`;
+        clock.textContent = it.words.body?.label === "event" ? tr`event ${Math.round(times[low])}` : `${number(it.time, 4)} ${unit}`;
         slider.setAttribute("aria-valuetext", `${it.words.body?.label} ${clock.textContent}`);
       } else it.time = value;
       picture();

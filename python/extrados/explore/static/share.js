@@ -1,4 +1,5 @@
 // A deck as the fragment of a link: compressed, and opened by any page.
+import { tr } from "./words.js";
 
 const MARK = "#deck=", MOST = 1e6; // bytes of a deck
 
@@ -7,7 +8,7 @@ async function through(bytes, stream) {
   let size = 0;
   for (let part = await reader.read(); !part.done; part = await reader.read()) {
     size += part.value.length;
-    if (size > MOST) { await reader.cancel(); throw new Error("the deck of this link is too large"); }
+    if (size > MOST) { await reader.cancel(); throw new Error(tr`the deck of this link is too large`); }
     parts.push(part.value);
   }
   return new Uint8Array(await new Blob(parts).arrayBuffer());

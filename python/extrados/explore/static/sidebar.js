@@ -1,13 +1,14 @@
 // Beside the drawing: what the structure bears, its sizes, its deck.
 import { teachPanel } from "./teach.js";
 import { capital, degrees, download, h, number, quantity } from "./dom.js";
+import { tr } from "./words.js";
 
-const NAMES = { structure: "Structure", motion: "Motion", joints: "Joints", material: "Material", supports: "Supports", initial: "Start" };
+const NAMES = { structure: tr`Structure`, motion: tr`Motion`, joints: tr`Joints`, material: tr`Material`, supports: tr`Supports`, initial: tr`Start` };
 
 export function sidebar(app, box) {
   const pages = { answer: h("div", { class: "page answer" }), sizes: h("div", { class: "page sizes" }), deck: h("div", { class: "page deck" }), teach: h("div", { class: "page teach" }) };
-  const labels = { answer: "Answer", sizes: "Sizes", deck: "Deck", teach: "Lessons" };
-  const tabs = h("div", { class: "tabs small", role: "tablist", "aria-label": "Beside the drawing" }, Object.keys(pages).map((name) => h("button", { role: "tab", "data-side": name, onclick: () => { app.root.dataset.sheet = chosen === name && app.root.dataset.sheet === "open" ? "" : "open"; choose(name); } }, labels[name])));
+  const labels = { answer: tr`Answer`, sizes: tr`Sizes`, deck: tr`Deck`, teach: tr`Lessons` };
+  const tabs = h("div", { class: "tabs small", role: "tablist", "aria-label": tr`Beside the drawing` }, Object.keys(pages).map((name) => h("button", { role: "tab", "data-side": name, onclick: () => { app.root.dataset.sheet = chosen === name && app.root.dataset.sheet === "open" ? "" : "open"; choose(name); } }, labels[name])));
   box.append(tabs, ...Object.values(pages));
   let chosen = "answer";
   function choose(name) {
@@ -34,39 +35,39 @@ export function sidebar(app, box) {
     const parts = [];
     const c = scene.capacity, way = scene.way ?? "plus", side = way === "plus" ? "+x" : "−x";
     if (scene.immovable) parts.push(h("p", { class: "verdict good" }, scene.immovable));
-    else if (scene.unknown) parts.push(h("p", { class: "verdict" }, h("b", {}, "Limit analysis has no answer: "), scene.unknown));
-    else if (!scene.stands) parts.push(h("p", { class: "verdict bad" }, h("b", {}, "Cannot stand. "), capital(app.detail?.why ?? "no thrust line stays within the blocks"), "."));
-    else if (!scene.within) parts.push(h("p", { class: "verdict bad" }, h("b", {}, `Collapses towards ${side}. `), capital(scene.why), "."));
-    else parts.push(h("p", { class: "verdict good" }, h("b", {}, scene.gamma ? "Stands when tilted. " : "Stands. "), scene.gamma ? `Collapse towards ${side} at ${number(c[`${way}_g`], 4)} g.` : `Collapse at ${number(Math.min(c.plus_g, c.minus_g), 4)} g.`));
+    else if (scene.unknown) parts.push(h("p", { class: "verdict" }, h("b", {}, tr`Limit analysis has no answer: `), scene.unknown));
+    else if (!scene.stands) parts.push(h("p", { class: "verdict bad" }, h("b", {}, tr`Cannot stand. `), capital(app.detail?.why ?? tr`no thrust line stays within the blocks`), "."));
+    else if (!scene.within) parts.push(h("p", { class: "verdict bad" }, h("b", {}, tr`Collapses towards ${side}. `), capital(scene.why), "."));
+    else parts.push(h("p", { class: "verdict good" }, h("b", {}, scene.gamma ? tr`Stands when tilted. ` : tr`Stands. `), scene.gamma ? tr`Collapse towards ${side} at ${number(c[`${way}_g`], 4)} g.` : tr`Collapse at ${number(Math.min(c.plus_g, c.minus_g), 4)} g.`));
     const rows = [];
-    if (c && (scene.dilating?.plus || scene.dilating?.minus)) parts.push(h("p", { class: "remark" }, "Joints slide in the mechanism: the collapse acceleration is an upper bound (dilatant friction). The analysis tilt of a deck also gives the least state found without dilatancy."));
+    if (c && (scene.dilating?.plus || scene.dilating?.minus)) parts.push(h("p", { class: "remark" }, tr`Joints slide in the mechanism: the collapse acceleration is an upper bound (dilatant friction). The analysis tilt of a deck also gives the least state found without dilatancy.`));
     if (c) {
-      rows.push(row("Capacity to +x", h("span", { "data-number": "plus" }, `${number(c.plus_g, 4)} g · ${number(degrees(c.plus_g), 4)}°`), "horizontal acceleration, and tilt of the ground, at which the structure becomes a mechanism"));
-      rows.push(row("Capacity to −x", h("span", { "data-number": "minus" }, `${number(c.minus_g, 4)} g · ${number(degrees(c.minus_g), 4)}°`)));
+      rows.push(row(tr`Capacity to +x`, h("span", { "data-number": "plus" }, `${number(c.plus_g, 4)} g · ${number(degrees(c.plus_g), 4)}°`), tr`horizontal acceleration, and tilt of the ground, at which the structure becomes a mechanism`));
+      rows.push(row(tr`Capacity to −x`, h("span", { "data-number": "minus" }, `${number(c.minus_g, 4)} g · ${number(degrees(c.minus_g), 4)}°`)));
     }
     if (scene.least_N !== undefined) {
-      rows.push(row("Least thrust", h("span", { "data-number": "least" }, quantity(scene.least_N, "N")), "horizontal thrust of the chain at the present tilt"));
-      rows.push(row("Greatest thrust", h("span", { "data-number": "most" }, quantity(scene.most_N, "N"))));
+      rows.push(row(tr`Least thrust`, h("span", { "data-number": "least" }, quantity(scene.least_N, "N")), tr`horizontal thrust of the chain at the present tilt`));
+      rows.push(row(tr`Greatest thrust`, h("span", { "data-number": "most" }, quantity(scene.most_N, "N"))));
     }
-    if (scene.chosen) rows.push(row("Chosen line", quantity(scene.chosen.thrust_N, "N"), "the line between those of least and greatest thrust that has this one"));
-    if (scene.through) rows.push(row("Through the point", quantity(scene.through.thrust_N, "N")));
-    if (app.detail && "safety" in app.detail) rows.push(row("Geometric safety", app.detail.safety === null ? "unbounded" : number(app.detail.safety, 3), "one over the least part of the joints that holds a thrust line upright"));
-    if (scene.required_friction !== undefined) rows.push(row("Required friction", number(scene.required_friction, 3), `coefficient of friction required at collapse to ${side}`));
-    for (const tie of scene.ties ?? []) rows.push(row(`${tie.name}, at collapse`, quantity(tie.force_N, "N"), `tension of the tie at collapse to ${side}`));
-    rows.push(row("Weight", `${quantity(scene.weight_N, "N")} for ${number(scene.depth_m, 3)} m of depth`));
-    rows.push(row("Stones, joints", `${scene.blocks}, ${scene.joints}`));
+    if (scene.chosen) rows.push(row(tr`Chosen line`, quantity(scene.chosen.thrust_N, "N"), tr`the line between those of least and greatest thrust that has this one`));
+    if (scene.through) rows.push(row(tr`Through the point`, quantity(scene.through.thrust_N, "N")));
+    if (app.detail && "safety" in app.detail) rows.push(row(tr`Geometric safety`, app.detail.safety === null ? "unbounded" : number(app.detail.safety, 3), tr`one over the least part of the joints that holds a thrust line upright`));
+    if (scene.required_friction !== undefined) rows.push(row(tr`Required friction`, number(scene.required_friction, 3), tr`coefficient of friction required at collapse to ${side}`));
+    for (const tie of scene.ties ?? []) rows.push(row(tr`${tie.name}, at collapse`, quantity(tie.force_N, "N"), tr`tension of the tie at collapse to ${side}`));
+    rows.push(row(tr`Weight`, tr`${quantity(scene.weight_N, "N")} for ${number(scene.depth_m, 3)} m of depth`));
+    rows.push(row(tr`Stones, joints`, `${scene.blocks}, ${scene.joints}`));
     for (const [key, value] of Object.entries(scene.measures ?? {})) rows.push(row(key.replace(/_m$/, "").replaceAll("_", " "), quantity(value, key.endsWith("_m") ? "m" : "")));
     parts.push(h("table", { class: "numbers" }, h("tbody", {}, rows)));
     if (scene.chains?.length > 1) {
-      parts.push(h("label", { class: "field" }, "Thrust of the ", h("select", { "aria-label": "Whose thrust", onchange: (e) => app.show({ chain: e.target.value, through: null }) }, scene.chains.map((name) => h("option", { value: name, selected: name === scene.chain }, name)))));
+      parts.push(h("label", { class: "field" }, tr`Thrust of the `, h("select", { "aria-label": tr`Whose thrust`, onchange: (e) => app.show({ chain: e.target.value, through: null }) }, scene.chains.map((name) => h("option", { value: name, selected: name === scene.chain }, name)))));
     }
-    for (const [name, text] of [["plus", "Hinges, load to +x"], ["minus", "Hinges, load to −x"]]) {
+    for (const [name, text] of [["plus", tr`Hinges, load to +x`], ["minus", tr`Hinges, load to −x`]]) {
       if (!scene[`${name}_hinges`]?.length || !app.drawn(name)) continue;
-      parts.push(h("h3", {}, text), h("ul", { class: "plain" }, scene[`${name}_hinges`].map((x) => h("li", {}, x.where)), (scene[`${name}_sliding`] ?? []).slice(0, 6).map((x) => h("li", {}, `slides: ${x.name}`))));
+      parts.push(h("h3", {}, text), h("ul", { class: "plain" }, scene[`${name}_hinges`].map((x) => h("li", {}, x.where)), (scene[`${name}_sliding`] ?? []).slice(0, 6).map((x) => h("li", {}, tr`slides: ${x.name}`))));
     }
     if (scene.reactions?.length && app.layers.reactions) {
-      const of = { least: "at least thrust", through: "of the chosen line", plus: "at collapse to +x", minus: "at collapse to −x" }[scene.reactions_of] ?? "";
-      parts.push(h("h3", {}, `Reactions ${of}`), h("table", { class: "numbers" }, h("thead", {}, h("tr", {}, h("th", {}, ""), h("th", {}, "across"), h("th", {}, "up"))), h("tbody", {}, scene.reactions.slice(0, 12).map((r) => h("tr", {}, h("th", { scope: "row" }, r.name), h("td", {}, quantity(r.x_N, "N", 3)), h("td", {}, quantity(r.y_N, "N", 3)))))));
+      const of = { least: tr`at least thrust`, through: tr`of the chosen line`, plus: tr`at collapse to +x`, minus: tr`at collapse to −x` }[scene.reactions_of] ?? "";
+      parts.push(h("h3", {}, tr`Reactions ${of}`), h("table", { class: "numbers" }, h("thead", {}, h("tr", {}, h("th", {}, ""), h("th", {}, "across"), h("th", {}, "up"))), h("tbody", {}, scene.reactions.slice(0, 12).map((r) => h("tr", {}, h("th", { scope: "row" }, r.name), h("td", {}, quantity(r.x_N, "N", 3)), h("td", {}, quantity(r.y_N, "N", 3)))))));
     }
     if (scene.remark) parts.push(h("p", { class: "remark" }, scene.remark));
     for (const text of scene.warnings ?? []) parts.push(h("p", { class: "remark" }, text));
@@ -84,9 +85,9 @@ export function sidebar(app, box) {
     const raw = (l) => ({ x: Number((l.at[0] + app.anchor[0]).toPrecision(9)), force: l.force_N, ...(l.horizontal_N ? { horizontal: l.horizontal_N } : {}) });
     const simple = there.every((l) => l.end === null);
     return h("div", { class: "row wrap" },
-      h("button", { onclick: add, disabled: !simple }, name ? "Add a load" : "Add limit analysis"),
-      there.length && simple ? h("button", { onclick: () => app.change({ [`analysis.${name}.load`]: there.length > 1 ? there.slice(0, -1).map(raw) : null }) }, "Remove the last load") : null,
-      app.deck?.structure?.kind !== "blocks" ? h("button", { title: "Every stone as a block whose vertices can be dragged", onclick: () => app.ask({ do: "blocks" }) }, "Free the stones") : null);
+      h("button", { onclick: add, disabled: !simple }, name ? tr`Add a load` : tr`Add limit analysis`),
+      there.length && simple ? h("button", { onclick: () => app.change({ [`analysis.${name}.load`]: there.length > 1 ? there.slice(0, -1).map(raw) : null }) }, tr`Remove the last load`) : null,
+      app.deck?.structure?.kind !== "blocks" ? h("button", { title: tr`Every stone as a block whose vertices can be dragged`, onclick: () => app.ask({ do: "blocks" }) }, tr`Free the stones`) : null);
   }
 
   // Sizes
@@ -96,7 +97,7 @@ export function sidebar(app, box) {
     if (pages.sizes.contains(active) && active.matches("input, select")) return;
     const groups = new Map();
     for (const form of app.forms) { if (!groups.has(form.section)) groups.set(form.section, []); groups.get(form.section).push(form); }
-    pages.sizes.replaceChildren(h("p", { class: "hint" }, "A number, or a number with its unit. Grey values are defaults; an emptied field becomes one."), ...[...groups].map(([section, forms]) => h("details", { open: section === "structure" || section === "motion" }, h("summary", {}, NAMES[section]), h("div", { class: "fields" }, forms.map((form) => field(section, form))))));
+    pages.sizes.replaceChildren(h("p", { class: "hint" }, tr`A number, or a number with its unit. Grey values are defaults; an emptied field becomes one.`), ...[...groups].map(([section, forms]) => h("details", { open: section === "structure" || section === "motion" }, h("summary", {}, NAMES[section]), h("div", { class: "fields" }, forms.map((form) => field(section, form))))));
   }
   function field(section, form) {
     const key = `${section}.${form.key}`, id = `field-${key}`.replaceAll(".", "-");
@@ -119,7 +120,7 @@ export function sidebar(app, box) {
 
   // Deck
 
-  const text = h("textarea", { spellcheck: "false", "aria-label": "The deck as text", wrap: "off" });
+  const text = h("textarea", { spellcheck: "false", "aria-label": tr`The deck as text`, wrap: "off" });
   const numbersBox = h("pre", { class: "gutter", "aria-hidden": "true" });
   const complaints = h("ul", { class: "complaints", role: "alert" });
   let timer = null;
@@ -127,25 +128,25 @@ export function sidebar(app, box) {
   text.addEventListener("scroll", () => { numbersBox.scrollTop = text.scrollTop; });
   function lines() { numbersBox.textContent = text.value.split("\n").map((_, k) => k + 1).join("\n"); }
   const copy = async () => {
-    try { await navigator.clipboard.writeText(app.text); app.say("The deck is copied."); } catch { text.select(); document.execCommand("copy"); app.say("The deck is copied."); }
+    try { await navigator.clipboard.writeText(app.text); app.say(tr`The deck is copied.`); } catch { text.select(); document.execCommand("copy"); app.say(tr`The deck is copied.`); }
   };
   app.save = () => {
-    const field = h("input", { type: "text", value: app.source.path ?? app.name, "aria-label": "Path within the folder" });
+    const field = h("input", { type: "text", value: app.source.path ?? app.name, "aria-label": tr`Path within the folder` });
     const replace = h("input", { type: "checkbox", checked: Boolean(app.source.path) });
-    const box = app.dialog("Save the deck", h("form", { onsubmit: (e) => {
+    const box = app.dialog(tr`Save the deck`, h("form", { onsubmit: (e) => {
       e.preventDefault();
-      app.ask({ do: "save", path: field.value, replace: replace.checked }, { reply: (words) => { if (words.saved) { app.source = { path: words.saved }; app.say(`Saved as ${words.saved}`); box.close(); } } });
-    } }, h("p", {}, `In ${app.welcome.folder}, as`), field, h("label", {}, replace, " replace what is there"), h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, "Save"))));
+      app.ask({ do: "save", path: field.value, replace: replace.checked }, { reply: (words) => { if (words.saved) { app.source = { path: words.saved }; app.say(tr`Saved as ${words.saved}`); box.close(); } } });
+    } }, h("p", {}, `In ${app.welcome.folder}, as`), field, h("label", {}, replace, tr` replace what is there`), h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, tr`Save`))));
   };
-  const adder = h("select", { "aria-label": "Add an analysis", onchange: (e) => { if (e.target.value) app.ask({ do: "analysis", add: e.target.value }); e.target.value = ""; } });
-  pages.deck.append(h("div", { class: "row wrap" }, h("button", { onclick: copy }, "Copy"), h("button", { class: "keeps", onclick: () => app.save() }, "Save…"), h("button", { onclick: () => download(new Blob([app.text], { type: "application/toml" }), app.name) }, "Download"), h("button", { onclick: () => app.chooser() }, "Open…"), adder), complaints, h("div", { class: "editor" }, numbersBox, text));
+  const adder = h("select", { "aria-label": tr`Add an analysis`, onchange: (e) => { if (e.target.value) app.ask({ do: "analysis", add: e.target.value }); e.target.value = ""; } });
+  pages.deck.append(h("div", { class: "row wrap" }, h("button", { onclick: copy }, tr`Copy`), h("button", { class: "keeps", onclick: () => app.save() }, tr`Save…`), h("button", { onclick: () => download(new Blob([app.text], { type: "application/toml" }), app.name) }, tr`Download`), h("button", { onclick: () => app.chooser() }, tr`Open…`), adder), complaints, h("div", { class: "editor" }, numbersBox, text));
   function deck() {
     const editing = box.getRootNode().activeElement === text;
     if (!editing && text.value !== app.text) text.value = app.text;
     if (!editing) complaints.replaceChildren();
     lines();
   }
-  app.on("welcome", (w) => adder.replaceChildren(h("option", { value: "" }, "Add analysis…"), ...w.kinds.analysis.map((k) => h("option", { value: k }, k))));
+  app.on("welcome", (w) => adder.replaceChildren(h("option", { value: "" }, tr`Add analysis…`), ...w.kinds.analysis.map((k) => h("option", { value: k }, k))));
   app.on("complaint", (words, message) => { if (message?.do === "open" && message.here === "same") complaints.replaceChildren(...(words.complaints ?? [words.bad]).map((c) => h("li", {}, c))); });
 
   function fill() { if (chosen === "answer") answer(); else if (chosen === "sizes") sizes(); else if (chosen === "deck") deck(); }

@@ -1,5 +1,6 @@
 // Bodies in space: parallel projection, hidden parts by a depth buffer as in show/scene.py, turned by hand or by keys.
 import { h, quantity, s, set } from "./dom.js";
+import { tr } from "./words.js";
 
 const LIGHT = unit([-0.35, -0.75, 1]), DARKEST = 0.55, FINE = 2;
 const TONES = ["--stone", "--support", "--c4", "--c1", "--c3", "--bad"]; // walls, floors, and cracks from fine to wide
@@ -169,7 +170,7 @@ export function space(box) {
   /** Axes, scale, bars, and where it is pushed. */
   function overlay(p) {
     const { w, hgt, right, up } = p, parts = [], place = (x, y, z) => [p.left + p.k * (right[0] * x + right[1] * y + right[2] * z), p.base - p.k * (up[0] * x + up[1] * y + up[2] * z)];
-    set(svg, { viewBox: `0 0 ${w} ${hgt}`, width: w, height: hgt, "aria-label": `${it.label} Seen from ${Math.round(it.azimuth)} degrees in plan and ${Math.round(it.elevation)} above; arrow keys turn it.` });
+    set(svg, { viewBox: `0 0 ${w} ${hgt}`, width: w, height: hgt, "aria-label": tr`${it.label} Seen from ${Math.round(it.azimuth)} degrees in plan and ${Math.round(it.elevation)} above; arrow keys turn it.` });
     for (let i = 0; body.bar && i < body.bar.length; i += 6) {
       const [a, b] = [place(...body.bar.subarray(i, i + 3)), place(...body.bar.subarray(i + 3, i + 6))];
       parts.push(s("line", { class: "tie", x1: a[0], y1: a[1], x2: b[0], y2: b[1] }));
@@ -184,7 +185,7 @@ export function space(box) {
     if (body.push !== undefined) {
       const turn = (body.push * Math.PI) / 180, way = [Math.cos(turn), Math.sin(turn), 0], dx = 60 * (right[0] * way[0] + right[1] * way[1]), dy = -60 * (up[0] * way[0] + up[1] * way[1]);
       const size = Math.hypot(dx, dy) || 1, [ux, uy] = [dx / size, dy / size], [ax, ay] = [w / 2, hgt - 40];
-      parts.push(s("path", { class: "push", d: `M${ax} ${ay}L${ax + dx} ${ay + dy}M${ax + dx - 9 * ux - 5 * uy} ${ay + dy - 9 * uy + 5 * ux}L${ax + dx} ${ay + dy}L${ax + dx - 9 * ux + 5 * uy} ${ay + dy - 9 * uy - 5 * ux}` }), s("text", { x: ax, y: ay + 30, "text-anchor": "middle", text: `push along ${body.push}°` }));
+      parts.push(s("path", { class: "push", d: `M${ax} ${ay}L${ax + dx} ${ay + dy}M${ax + dx - 9 * ux - 5 * uy} ${ay + dy - 9 * uy + 5 * ux}L${ax + dx} ${ay + dy}L${ax + dx - 9 * ux + 5 * uy} ${ay + dy - 9 * uy - 5 * ux}` }), s("text", { x: ax, y: ay + 30, "text-anchor": "middle", text: tr`push along ${body.push}°` }));
     }
     svg.replaceChildren(...parts);
   }

@@ -1,9 +1,10 @@
 // The drawing of a structure: stones, lines of thrust, hinges, loads, reactions, and the handles that hands move.
 import { degrees, number, quantity, s, set, shapes } from "./dom.js";
+import { tr } from "./words.js";
 
 const LINES = [
-  ["least", "least thrust"], ["most", "greatest thrust"], ["through", "thrust through the point"],
-  ["plus", "collapse, load to +x"], ["minus", "collapse, load to −x"], ["central", "most central"],
+  ["least", tr`least thrust`], ["most", tr`greatest thrust`], ["through", tr`thrust through the point`],
+  ["plus", tr`collapse, load to +x`], ["minus", tr`collapse, load to −x`], ["central", tr`most central`],
 ];
 const CLOSE = { fine: 26, coarse: 44 }; // px between the centres of handles, by the finger or the mouse
 const MANY = 24; // handles beyond which they stay where they are, and the nearest one is taken
@@ -64,7 +65,7 @@ export function piecesPath(line, start) {
 
 /** The stage. `hands`: {drag(name, place, ends), step(name, dx, dy), type(name), through(place), tilt(gamma, ends)} */
 export function stage(box, hands) {
-  const svg = s("svg", { class: "stage", role: "group", "aria-label": "Drawing of the structure" });
+  const svg = s("svg", { class: "stage", role: "group", "aria-label": tr`Drawing of the structure` });
   const world = s("g"), screen = s("g"), overlay = s("g");
   const ground = s("path", { class: "ground" }), earth = s("path", { class: "earth" });
   const ties = s("path", { class: "tie" }), dampers = s("path", { class: "tie damper" }), mass = s("path", { class: "mass" }), stones = s("path", { class: "stones" }), ghost = s("path", { class: "ghost" });
@@ -252,7 +253,7 @@ export function stage(box, hands) {
     shapes(ruler, [
       { tag: "path", d: `M${x} ${y - 4}V${y}H${x + step * view.k}V${y - 4}` },
       { tag: "text", x: x + step * view.k + 6, y: y + 1, text: quantity(step, "m", 1) },
-      ...(view.theta ? [{ tag: "text", x: view.w - 14, y: 18, "text-anchor": "end", text: `ground tilted by ${number(degrees(scene.gamma), 3)}°, as ${number(scene.gamma, 3)} g sideways` }] : []),
+      ...(view.theta ? [{ tag: "text", x: view.w - 14, y: 18, "text-anchor": "end", text: tr`ground tilted by ${number(degrees(scene.gamma), 3)}°, as ${number(scene.gamma, 3)} g sideways` }] : []),
     ]);
   }
   function drawMarks(scene, layers) {
@@ -265,7 +266,7 @@ export function stage(box, hands) {
       for (const name of ["plus", "minus"]) if (it.drawn(name)) for (const h of scene[`${name}_hinges`] ?? []) hinge(h, name);
       for (const name of ["plus", "minus"]) if (it.drawn(name)) for (const j of scene[`${name}_sliding`] ?? []) {
         const [x, y] = screenOf(...j.at);
-        parts.push({ tag: "path", class: `slide ${name}`, d: `M${x - 6} ${y}h12m-4 -4l4 4l-4 4`, title: `slides: ${j.name}` });
+        parts.push({ tag: "path", class: `slide ${name}`, d: `M${x - 6} ${y}h12m-4 -4l4 4l-4 4`, title: tr`slides: ${j.name}` });
       }
       for (const name of ["least", "most"]) if (layers[name] && scene[`${name}_touches`]?.length) {
         const squares = scene[`${name}_touches`].map((at) => screenOf(...at).map((v) => (v - 3).toFixed(1)).join(" "));
@@ -278,7 +279,7 @@ export function stage(box, hands) {
       const [x, y] = screenOf(...r.at), long = 20 + (34 * size) / (scene.weight_N || size);
       const [a, b] = [x - ux * long, y - uy * long], across = [-uy, ux];
       parts.push({ tag: "path", class: "reaction", d: `M${a} ${b}L${x} ${y}m${-ux * 8 + across[0] * 4} ${-uy * 8 + across[1] * 4}L${x} ${y}L${x - ux * 8 - across[0] * 4} ${y - uy * 8 - across[1] * 4}`,
-        title: `reaction at ${r.name}: ${quantity(r.x_N, "N", 3)} across, ${quantity(r.y_N, "N", 3)} up` });
+        title: tr`reaction at ${r.name}: ${quantity(r.x_N, "N", 3)} across, ${quantity(r.y_N, "N", 3)} up` });
     }
     shapes(marks, shownPose?.falling ? openJoints() : parts);
   }
@@ -286,7 +287,7 @@ export function stage(box, hands) {
     shapes(loads, (scene.loads ?? []).filter((l) => l.force_N).map((l) => {
       const [x, y] = screenOf(...l.at), [a, b] = screenOf(l.at[0], l.at[1] + l.scale * l.force_N);
       const ux = x - a, uy = y - b, size = Math.hypot(ux, uy) || 1, [vx, vy] = [ux / size, uy / size];
-      return { tag: "path", class: "load", d: `M${a} ${b}L${x} ${y}M${x - vx * 9 - vy * 4} ${y - vy * 9 + vx * 4}L${x} ${y}L${x - vx * 9 + vy * 4} ${y - vy * 9 - vx * 4}`, title: `load of ${quantity(l.force_N, "N", 4)}` };
+      return { tag: "path", class: "load", d: `M${a} ${b}L${x} ${y}M${x - vx * 9 - vy * 4} ${y - vy * 9 + vx * 4}L${x} ${y}L${x - vx * 9 + vy * 4} ${y - vy * 9 - vx * 4}`, title: tr`load of ${quantity(l.force_N, "N", 4)}` };
     }));
   }
 
@@ -298,10 +299,10 @@ export function stage(box, hands) {
       for (const h of handles) wanted.set(h.name, { ...h, text: Array.isArray(h.value) ? `${number(h.value[0])}; ${number(h.value[1])} m` : quantity(h.value, h.unit), now: Array.isArray(h.value) ? h.value[0] : h.value });
       if (scene.through && it.layers?.through) {
         const t = scene.through;
-        wanted.set("through", { name: "through", label: `Thrust line through ${t.name}`, at: t.at, along: "both", text: `at ${number(t.reached, 3)} of the joint, ${quantity(t.thrust_N, "N", 4)}`, now: t.reached, sort: "through" });
+        wanted.set("through", { name: "through", label: tr`Thrust line through ${t.name}`, at: t.at, along: "both", text: tr`at ${number(t.reached, 3)} of the joint, ${quantity(t.thrust_N, "N", 4)}`, now: t.reached, sort: "through" });
       }
       const [, , x1] = it.bounds, reach = x1 + 0.1 * (x1 - it.bounds[0]);
-      if (!scene.seen) wanted.set("tilt", { name: "tilt", label: "Tilt of the ground", at: [reach, 0], along: "y", text: `${number(degrees(scene.gamma), 3)}°, ${number(scene.gamma, 3)} g`, now: scene.gamma, sort: "tilt" });
+      if (!scene.seen) wanted.set("tilt", { name: "tilt", label: tr`Tilt of the ground`, at: [reach, 0], along: "y", text: `${number(degrees(scene.gamma), 3)}°, ${number(scene.gamma, 3)} g`, now: scene.gamma, sort: "tilt" });
     }
     for (const [name, element] of knob) if (!wanted.has(name)) { element.remove(); knob.delete(name); }
     const names = [...wanted.keys()], places = names.map((name) => screenOf(...wanted.get(name).at));

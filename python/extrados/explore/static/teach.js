@@ -1,11 +1,12 @@
 // The lessons of a panel: one is begun, predicted, tried and checked.
 import { h } from "./dom.js";
 import { LESSONS } from "./lessons.js";
+import { tr } from "./words.js";
 
 export function teachPanel(app, box) {
   const list = h("ol", { class: "exercises" });
   const text = h("div", { class: "exercise", "aria-live": "polite" });
-  box.append(h("p", {}, "Ten lessons of five minutes: predict, try, check, and read who asked first."), list, text);
+  box.append(h("p", {}, tr`Ten lessons of five minutes: predict, try, check, and read who asked first.`), list, text);
   const done = new Set(JSON.parse(read("extrados-lessons") ?? "[]"));
   let current = null;
   function read(key) { try { return localStorage.getItem(key); } catch { return null; } }
@@ -19,13 +20,13 @@ export function teachPanel(app, box) {
     app.setTab(x.tab);
     const history = h("p", { class: "history" });
     let predicted = null;
-    const choices = h("fieldset", {}, h("legend", {}, "What do you expect?"), x.choices.map((text, n) => h("label", {}, h("input", { type: "radio", name: "prediction", onchange: () => { predicted = n; checks.disabled = false; } }), ` ${text}`)));
+    const choices = h("fieldset", {}, h("legend", {}, tr`What do you expect?`), x.choices.map((text, n) => h("label", {}, h("input", { type: "radio", name: "prediction", onchange: () => { predicted = n; checks.disabled = false; } }), ` ${text}`)));
     const told = h("p", { class: "told", role: "status" });
     const say = (good, words) => {
       told.className = `told ${good ? "good" : "bad"}`;
       told.textContent = words;
       if (!good) return;
-      history.replaceChildren(h("b", {}, predicted === x.right ? "Your prediction was right. " : `You predicted otherwise; right is: ${x.choices[x.right]}. `.replace("..", ".")), x.history);
+      history.replaceChildren(h("b", {}, predicted === x.right ? tr`Your prediction was right. ` : tr`You predicted otherwise; right is: ${x.choices[x.right]}. `.replace("..", ".")), x.history);
       done.add(k);
       try { localStorage.setItem("extrados-lessons", JSON.stringify([...done])); } catch { /* a browser without storage */ }
       items();
@@ -35,8 +36,8 @@ export function teachPanel(app, box) {
       const found = x.check(app);
       if (found[0] === "ask") x.verify(app, found[1], say); else say(...found);
     };
-    const checks = h("button", { class: "first", disabled: true, onclick: check }, "Check");
-    text.replaceChildren(h("h3", {}, x.title), h("p", {}, x.task), h("p", { class: "question" }, x.question), choices, h("div", { class: "row" }, checks, h("button", { onclick: () => begin(k) }, "Begin again")), told, history);
+    const checks = h("button", { class: "first", disabled: true, onclick: check }, tr`Check`);
+    text.replaceChildren(h("h3", {}, x.title), h("p", {}, x.task), h("p", { class: "question" }, x.question), choices, h("div", { class: "row" }, checks, h("button", { onclick: () => begin(k) }, tr`Begin again`)), told, history);
     items();
   }
   items();
