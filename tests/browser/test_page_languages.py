@@ -38,7 +38,8 @@ def test_a_language_is_chosen_and_the_deck_is_kept(page: Any) -> None:
     open_text(page, ROCKING + "\n# kept\n")
     for language, tab in (("de", "Bauwerk"), ("fr", "Structure"), ("es", "Estructura"), ("en", "Structure")):
         page.click(".top button.icon:has-text('?')")
-        page.select_option("dialog select", language)
+        with page.expect_event("load"):
+            page.select_option("dialog select", language)
         until(
             page,
             "([lang, text]) => document.documentElement.lang === lang && window.extrados?.text === text",

@@ -24,12 +24,12 @@ export const LESSONS = [
     },
   },
   {
-    title: "Oppenheim's arch", tab: "structure",
+    title: tr`Oppenheim's arch`, tab: "structure",
     task: tr`Tilt the ground by the handle at its right end until this arch of seven voussoirs collapses. Then set it upright, and let the mechanism move.`,
     question: tr`At which acceleration to the side does the arch collapse, and how many hinges does it need? Leave it tilted just so.`,
     choices: [tr`three hinges`, tr`four hinges`, tr`seven hinges`], right: 1,
     history: tr`Oppenheim (1992) studied this arch as a linkage of three bars with four hinges, and asked which ground motions it survives.`,
-    deck: arch({ title: "Oppenheim's arch", structure: ring(10.0, 1.5, 157.5, 7) }),
+    deck: arch({ title: tr`Oppenheim's arch`, structure: ring(10.0, 1.5, 157.5, 7) }),
     check(app) {
       const { plus_g: plus } = app.scene.capacity ?? {};
       if (!near(value(app, "structure.thickness"), 1.5, 1e-3) || !near(value(app, "structure.embrace"), 157.5, 1e-3)) return [false, tr`The sizes have changed: begin again.`];
@@ -38,12 +38,12 @@ export const LESSONS = [
     },
   },
   {
-    title: "A buttress", tab: "structure",
+    title: tr`A buttress`, tab: "structure",
     task: tr`This vault stands on buttresses. Change their width, and see the capacity of the vault to the side.`,
     question: tr`How wide must the buttresses be for a capacity of 0.10 g, to within 2 %?`,
     choices: [tr`The capacity is proportional to the width.`, tr`The capacity is proportional to the weight of the vault.`, tr`Width has no influence.`], right: 0,
     history: tr`Builders sized buttresses by rules of proportion for centuries. La Hire (1712) weighed the overturning of a pier against the thrust of the vault.`,
-    deck: arch({ title: "A buttress", structure: 'kind = "vault"\nradius = 5.0\nthickness = 0.6\nembrace = 120.0\nface = 4.2\nbuttress_width = 1.6\nheight = 9.0' }),
+    deck: arch({ title: tr`A buttress`, structure: 'kind = "vault"\nradius = 5.0\nthickness = 0.6\nembrace = 120.0\nface = 4.2\nbuttress_width = 1.6\nheight = 9.0' }),
     check(app) {
       const c = app.scene.capacity ? Math.min(app.scene.capacity.plus_g, app.scene.capacity.minus_g) : -1, width = value(app, "structure.buttress_width");
       if (!near(value(app, "structure.height"), 9, 1e-3)) return [false, tr`Leave the height as it was: 9 m.`];
@@ -96,12 +96,12 @@ export const LESSONS = [
     },
   },
   {
-    title: "Hooke's chain", tab: "structure",
+    title: tr`Hooke's chain`, tab: "structure",
     task: tr`A hanging chain carries its weight by tension alone. Turned upside down, it is a line of thrust. This arch holds many of them: click into the blocks, and the line through that point is drawn.`,
     question: tr`Draw the line of thrust that passes the middle of the joint at the crown.`,
     choices: [tr`exactly one line of thrust fits into this arch`, tr`many lines of thrust fit`, tr`none fits`], right: 1,
     history: tr`Hooke (1675) hid his answer in an anagram: as hangs the flexible line, so but inverted will stand the rigid arch. Poleni (1748) hung a loaded chain to judge the cracked dome of St Peter's.`,
-    deck: arch({ title: "Hooke's chain", structure: ring(5.0, 0.8, 150.0, 40) }),
+    deck: arch({ title: tr`Hooke's chain`, structure: ring(5.0, 0.8, 150.0, 40) }),
     check(app) {
       const t = app.scene.through;
       if (!t) return [false, tr`Click into the blocks at the crown.`];

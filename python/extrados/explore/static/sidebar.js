@@ -67,7 +67,7 @@ export function sidebar(app, box) {
     }
     if (scene.reactions?.length && app.layers.reactions) {
       const of = { least: tr`at least thrust`, through: tr`of the chosen line`, plus: tr`at collapse to +x`, minus: tr`at collapse to −x` }[scene.reactions_of] ?? "";
-      parts.push(h("h3", {}, tr`Reactions ${of}`), h("table", { class: "numbers" }, h("thead", {}, h("tr", {}, h("th", {}, ""), h("th", {}, "across"), h("th", {}, "up"))), h("tbody", {}, scene.reactions.slice(0, 12).map((r) => h("tr", {}, h("th", { scope: "row" }, r.name), h("td", {}, quantity(r.x_N, "N", 3)), h("td", {}, quantity(r.y_N, "N", 3)))))));
+      parts.push(h("h3", {}, tr`Reactions ${of}`), h("table", { class: "numbers" }, h("thead", {}, h("tr", {}, h("th", {}, ""), h("th", {}, tr`across`), h("th", {}, tr`up`))), h("tbody", {}, scene.reactions.slice(0, 12).map((r) => h("tr", {}, h("th", { scope: "row" }, r.name), h("td", {}, quantity(r.x_N, "N", 3)), h("td", {}, quantity(r.y_N, "N", 3)))))));
     }
     if (scene.remark) parts.push(h("p", { class: "remark" }, scene.remark));
     for (const text of scene.warnings ?? []) parts.push(h("p", { class: "remark" }, text));

@@ -62,7 +62,7 @@ export function structurePanel(app, lower) {
       { tag: "line", class: "end", x1: X(plus), x2: X(plus), y1: y - 8, y2: y + 8 }, { tag: "line", class: "end", x1: X(-minus), x2: X(-minus), y1: y - 8, y2: y + 8 },
       label(X(plus), y - 13, `${number(plus, 3)} g`, w), label(X(-minus), y - 13, `${number(-minus, 3)} g`, w),
       { tag: "circle", class: scene.within ? "now" : "now bad", cx: X(scene.gamma), cy: y, r: 6 },
-      label(X(scene.gamma), y + 22, scene.gamma ? tr`now ${number(scene.gamma, 3)} g` : "upright", w)];
+      label(X(scene.gamma), y + 22, scene.gamma ? tr`now ${number(scene.gamma, 3)} g` : tr`upright`, w)];
     const { least_N: least, most_N: most } = scene;
     if (least !== undefined && hgt > 110) {
       const low = Math.min(0, least), high = Math.max(1.15 * Math.max(most, least, 1e-9), most + 0.1 * (most - least)), T = (v) => 16 + ((v - low) / (high - low)) * (w - 32), t = 92;
