@@ -55,11 +55,18 @@ class Wall:
     pressure: float
     failure: str
     peak: float
+    drift: float  # at the peak, mean of both senses; nan where it is not reported
 
     @property
     def axial(self) -> float:
         """The axial load [N]."""
         return self.pressure * self.length * self.thickness
+
+    @property
+    def flexural(self) -> float:
+        """Shear [N] of the section that crushes at its toe, by the stress block of codes."""
+        ratio = self.pressure / (CRUSHES_AT * self.compressive)
+        return 0.5 * self.axial * self.length * (1.0 - ratio) / (self.span * self.height)
 
     @property
     def mode(self) -> str:
@@ -69,11 +76,14 @@ class Wall:
 
 @dataclass(frozen=True)
 class Predicted:
-    """Strength [N] by a method and the failure that goes with it, "F", "S" or ""; or why there is none."""
+    """Strength [N] by a method and the failure that goes with it, "F", "S" or ""; or why there is none. drift: at the peak,
+    drop: where the load has dropped to 80 %."""
 
     strength: float = math.nan
     failure: str = ""
     why_not: str = ""
+    drift: float = math.nan
+    drop: float = math.nan
 
 
 def read_walls(file: Path) -> list[Wall]:
@@ -83,6 +93,7 @@ def read_walls(file: Path) -> list[Wall]:
     for row in csv.DictReader(lines):
         number = {key: float(value) for key, value in row.items() if value and key not in _TEXTS}
         peaks = [number[key] for key in ("peak_pos_kN", "peak_neg_kN") if key in number]
+        drifts = [number[key] for key in ("drift_at_peak_pos_pct", "drift_at_peak_neg_pct") if key in number]
         compressive, cohesion = 1e6 * number["masonry_compressive_MPa"], 1e6 * number["shear_strength_initial_MPa"]
         walls.append(
             Wall(
@@ -93,6 +104,7 @@ def read_walls(file: Path) -> list[Wall]:
                 young=1e6 * number.get("young_MPa", 1e-6 * MODULUS * compressive), cohesion=cohesion,
                 friction=number.get("friction", FRICTION), span=number["shear_span_over_height"],
                 pressure=1e6 * number["vertical_stress_MPa"], failure=row["failure"], peak=1e3 * sum(peaks) / len(peaks),
+                drift=1e-2 * sum(drifts) / len(drifts) if drifts else math.nan,
             )
         )  # fmt: skip
     return walls
@@ -227,8 +239,17 @@ def by_membrane(wall: Wall) -> dict[str, Predicted]:
             }
         ],
     }
+    return {"membrane": _followed(wall, deck)}
+
+
+def _followed(wall: Wall, deck: dict[str, Any]) -> Predicted:
+    """The peak of a wall that `sla` follows under displacements; flexure where it comes within 5 % of the flexural strength."""
     answer = _answer(deck)
-    return {"membrane": answer if isinstance(answer, Predicted) else Predicted(answer["greatest_load_N"])}
+    if isinstance(answer, Predicted):
+        return answer
+    peak, drift, drop = answer["greatest_load_N"], answer["greatest_load_displacement_m"] / wall.height, answer.get("drop_drift")
+    failure = "F" if peak >= 0.95 * wall.flexural else "S"
+    return Predicted(peak, failure, "", drift, math.nan if drop is None else drop)
 
 
 #: G_f over f_t and G_c over f_c [m], assumed for all walls
@@ -286,11 +307,12 @@ def main() -> None:
         found = list(pool.map(predict, walls, [asked.method] * len(walls)))
     with (asked.out / "predictions.csv").open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file)
-        table.writerow(["wall", "failure", "measured_kN", "method", "predicted_kN", "predicted_failure", "why_not"])
+        table.writerow(["wall", "failure", "measured_kN", "method", "predicted_kN", "predicted_failure", "why_not",
+                        "measured_drift", "predicted_drift", "predicted_drop_drift"])
         for wall, by in zip(walls, found, strict=True):
             for method, one in by.items():
                 table.writerow([wall.name, wall.failure, f"{wall.peak / 1e3:.2f}", method, f"{one.strength / 1e3:.2f}",
-                                one.failure, one.why_not])  # fmt: skip
+                                one.failure, one.why_not, f"{wall.drift:.5f}", f"{one.drift:.5f}", f"{one.drop:.5f}"])  # fmt: skip
     print(f"{'method':16}{'all':>18}{'shear':>18}{'hybrid':>18}{'flexure':>18}{'right mode':>12}{'none':>6}")
     for method in sorted({name for by in found for name in by}):
         pairs = [

@@ -10,7 +10,8 @@ module sla_interface
       code_slide => sla_event_slide
    use common_status, only : status_ok, status_out_of_memory, status_bad_geometry
    use sla_group, only : scan_result, slider, event_vectors, material_options, admitted, unbounded, most_entries
-   use sla_joint_points, only : joint_points, joint_law, joint_law_new, line, sticks, slides_up, slides_down, soft, &
+   use sla_joint_history, only : joint_history
+   use sla_joint_points, only : joint_law, joint_law_new, line, sticks, slides_up, slides_down, soft, &
       jump, nodal, across, along, shear, bond, bond_of, modulus, slips, is_closed, is_sliding, &
       scan_point
    use sla_tables, only : tooth_tables, tooth_tables_copy
@@ -22,7 +23,7 @@ module sla_interface
    !> Loads that are the same
    real(wp), parameter :: same = 1.0e-9_wp
 
-   type, extends(joint_points) :: interface_group
+   type, extends(joint_history) :: interface_group
    contains
       procedure :: matrix
       procedure :: force

@@ -79,6 +79,16 @@ class ShellModel:
         return any(isinstance(g, core.ShellJoints) and bool(np.isfinite(g.friction).any()) for g in self.groups)
 
     @property
+    def continues(self) -> bool:
+        """Whether equilibrium iterations may follow the building."""
+        return True
+
+    @property
+    def steps_alone(self) -> bool:
+        """Whether they follow it from the first load on: joints slide out of the plane of their wall in steps alone."""
+        return self.slides
+
+    @property
     def watched(self) -> list[core.Monitor]:
         """What is recorded at each event."""
         return [self.control]
