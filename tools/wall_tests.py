@@ -7,7 +7,8 @@ are those of `read_walls`. Each wall becomes one deck per method, as a user woul
 
     limit     bricks in running bond, joints without cohesion that crush; the load acts at the shear span
     codes     `code-checks` of a panel, by each code; the least applicable strength of each
-    membrane  `sla` of a panel without bricks, pushed sideways under its axial load
+    membrane  `sla` of a panel without bricks, pushed sideways under its axial load to a drift of 1 %
+    units     `sla` of its units and joints, likewise
 
 Empty cells are filled by these rules: friction 0.4; cohesion of the joints as tested; tensile strength of the diagonal
 test, else the cohesion; modulus 600 times the compressive strength. Crushing in limit analysis at 0.85 of the strength.
@@ -212,20 +213,39 @@ CODES = ("ASCE 41", "EN 1998-3", "Magenes-Calvi", "NTC")
 
 def by_membrane(wall: Wall) -> dict[str, Predicted]:
     """The wall as a membrane that cracks and crushes, its foot held, its top moved sideways under the constant axial load."""
+    strengths = {
+        "tensile_strength": wall.tensile, "fracture_energy": CRACK_DUCTILITY * wall.tensile,
+        "compressive_strength": wall.compressive, "crushing_energy": CRUSHING_DUCTILITY * wall.compressive,
+    }  # fmt: skip
+    return {"membrane": _followed(wall, _panel(wall, {}, strengths, {}, {"size": wall.length / 15.0}))}
+
+
+def by_units(wall: Wall) -> dict[str, Predicted]:
+    """The same of units that crack, in running bond, with joints that open, slide and crush."""
+    courses, count = round(wall.height / wall.unit_height), max(1, round(wall.length / wall.unit_length))
+    bond = {"unit_length": wall.length / count, "unit_height": wall.height / courses}
+    tension, cracks = BOND_TENSION * wall.cohesion, UNIT_TENSION * wall.compressive
+    joints = {
+        "friction": wall.friction, "cohesion": wall.cohesion, "shear_energy": SLIP_DUCTILITY * wall.cohesion,
+        "tension": tension, "fracture_energy": CRACK_DUCTILITY * tension,
+        "compressive_strength": wall.compressive, "crushing_energy": CRUSHING_DUCTILITY * wall.compressive,
+    }  # fmt: skip
+    units = {"tensile_strength": cracks, "fracture_energy": CRACK_DUCTILITY * cracks}
+    mesh = {"size": 0.5 * bond["unit_length"], "joints": "interfaces"}
+    return {"units": _followed(wall, _panel(wall, bond, units, joints, mesh))}
+
+
+def _panel(
+    wall: Wall, bond: dict[str, Any], strengths: dict[str, Any], joints: dict[str, Any], mesh: dict[str, Any]
+) -> dict[str, Any]:
+    """The deck of a wall whose foot is held and whose top is moved sideways to a drift of 1 % under the constant axial load."""
     panel: dict[str, Any] = {"kind": "panel", "width": wall.length, "height": wall.height, "thickness": wall.thickness}
     if wall.span < 0.75:
         panel["ties"] = [{"edge": "top", "direction": "y"}]  # the top moves without turning
-    deck = {
-        "structure": panel,
-        "material": {
-            "density": MASONRY,
-            "young": wall.young,
-            "poisson": 0.2,
-            "tensile_strength": wall.tensile,
-            "fracture_energy": CRACK_DUCTILITY * wall.tensile,
-            "compressive_strength": wall.compressive,
-            "crushing_energy": CRUSHING_DUCTILITY * wall.compressive,
-        },
+    return {
+        "structure": panel | bond,
+        "material": {"density": MASONRY, "young": wall.young, "poisson": 0.2, **strengths},
+        **({"joints": joints} if joints else {}),
         "supports": {"held": [{"edge": "bottom"}]},
         "analysis": [
             {
@@ -235,11 +255,10 @@ def by_membrane(wall: Wall) -> dict[str, Predicted]:
                 "reference": [{"kind": "displacement", "direction": "x", "parts": [{"edge": "top"}]}],
                 "target_displacement": 0.01 * wall.height,
                 "events": 30000,
-                "mesh": {"size": wall.length / 15.0},
+                "mesh": mesh,
             }
         ],
     }
-    return {"membrane": _followed(wall, deck)}
 
 
 def _followed(wall: Wall, deck: dict[str, Any]) -> Predicted:
@@ -247,18 +266,25 @@ def _followed(wall: Wall, deck: dict[str, Any]) -> Predicted:
     answer = _answer(deck)
     if isinstance(answer, Predicted):
         return answer
-    peak, drift, drop = answer["greatest_load_N"], answer["greatest_load_displacement_m"] / wall.height, answer.get("drop_drift")
+    peak, drift, drop = (
+        answer["greatest_load_N"],
+        answer["greatest_load_displacement_m"] / wall.height,
+        answer.get("drop_drift"),
+    )
     failure = "F" if peak >= 0.95 * wall.flexural else "S"
     return Predicted(peak, failure, "", drift, math.nan if drop is None else drop)
 
 
-#: G_f over f_t and G_c over f_c [m], assumed for all walls
-CRACK_DUCTILITY, CRUSHING_DUCTILITY = 50e-6, 1.6e-3
+#: Energies over strengths of cracks, slip and crushing [m], assumed for all walls
+CRACK_DUCTILITY, SLIP_DUCTILITY, CRUSHING_DUCTILITY = 50e-6, 200e-6, 1.6e-3
+#: Tension of joints over their cohesion, and of units over the compressive strength of masonry, assumed for all walls
+BOND_TENSION, UNIT_TENSION = 0.7, 0.1
 
 METHODS: dict[str, Callable[[Wall], dict[str, Predicted]]] = {
     "limit": by_limit_analysis,
     "codes": by_codes,
     "membrane": by_membrane,
+    "units": by_units,
 }
 
 
@@ -307,8 +333,20 @@ def main() -> None:
         found = list(pool.map(predict, walls, [asked.method] * len(walls)))
     with (asked.out / "predictions.csv").open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file)
-        table.writerow(["wall", "failure", "measured_kN", "method", "predicted_kN", "predicted_failure", "why_not",
-                        "measured_drift", "predicted_drift", "predicted_drop_drift"])
+        table.writerow(
+            [
+                "wall",
+                "failure",
+                "measured_kN",
+                "method",
+                "predicted_kN",
+                "predicted_failure",
+                "why_not",
+                "measured_drift",
+                "predicted_drift",
+                "predicted_drop_drift",
+            ]
+        )
         for wall, by in zip(walls, found, strict=True):
             for method, one in by.items():
                 table.writerow([wall.name, wall.failure, f"{wall.peak / 1e3:.2f}", method, f"{one.strength / 1e3:.2f}",

@@ -206,7 +206,8 @@ contains
       if (status /= status_ok) return
       status = status_invalid_argument
       if ((points == model%mesh%points .or. points == 0) .and. nodes == model%mesh%nodes .and. &
-         freedoms == size(model%mesh%equation, 1) .and. all(abs(values) <= huge(1.0_c_double)) .and. model_continues(model)) then
+         freedoms == size(model%mesh%equation, 1) .and. all(abs(values) <= huge(1.0_c_double)) .and. &
+         model_continues(model)) then
         call resume_path(model, displacement, values, status)
       end if
       call handle_leave(handle)

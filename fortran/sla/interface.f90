@@ -554,7 +554,8 @@ contains
       end if
    end subroutine state
 
-   !> Rows as of a plane point: jumps [m] for strains, 1 across and 3 along the joint; 4 sigma, 6 tau; 7-8 the normal;
+   !> Rows as of a plane point: jumps [m] for strains, 1 across, 3 along the joint and 2, between shells, out of their
+   !> plane; 4 sigma, 6 tau, 5 that out of the plane; 7-8 the normal;
    !> 9 and 10 the stiffness left across and along; 11 tension tooth, 12 tooth of the cohesion; 15 area;
    !> 19 the band of its tooth tables [m]
    pure subroutine report(group, ua, ub, lambda, noise, values)
@@ -564,7 +565,7 @@ contains
       real(wp), intent(in) :: lambda
       real(wp), intent(in) :: noise
       real(wp), intent(out) :: values(:, :)     !! (report_rows, points)
-      real(wp) :: la(most_entries), lb(most_entries), da(2), db(2), k
+      real(wp) :: la(most_entries), lb(most_entries), da(2), db(2), k, stays
       type(line) :: law
       type(scan_result) :: found
       integer :: e, p
@@ -579,6 +580,12 @@ contains
             db = jump(group, e, p, lb)
             values(1:3:2, p) = da + lambda * db
             values(4, p) = k * values(1, p)
+            if (allocated(group%row)) then
+               values(2, p) = dot_product(group%row(:, 3, p), la(1:group%freedoms) + lambda * lb(1:group%freedoms))
+               stays = 0.0_wp
+               if (allocated(group%history)) stays = group%history(5, p)
+               values(5, p) = group%law%ks(e) * (values(2, p) - stays)
+            end if
             values(6, p) = law%k * values(3, p) - law%k0 + law%h(1) + lambda * law%h(2)
             values(7:8, p) = group%normal(:, e)
             values(9, p) = k / group%law%kn(e)

@@ -257,8 +257,8 @@ contains
    end subroutine correct
 
    !> The solution x of (K + C) x = b with the unsymmetric part C of sliding friction, from inv(K) b: GMRES (Saad and
-   !> Schultz 1986) on I + inv(K) C, which differs from the identity by as many vectors as points slide. An answer that is
-   !> not found exactly is a correction as good as that of a modified Newton iteration
+   !> Schultz 1986) on I + inv(K) C, which differs from the identity by as many vectors as points slide. The caller
+   !> measures the residual
    subroutine solve_coupled(model, x, status)
       type(element_model), intent(in) :: model
       real(wp), intent(inout), contiguous :: x(:)      !! inv(K) b
@@ -381,8 +381,8 @@ contains
       end do
    end subroutine newton_step
 
-   !> Damage frozen, then updated, until nothing changes; now and then Newton's method tries to end it from the damage so
-   !> far
+   !> Damage frozen, then updated, until nothing changes; now and then Newton's method tries to end it from the damage
+   !> so far
    subroutine staggered_step(model, length, iterations, found, carried, lost, status)
       type(element_model), intent(inout) :: model
       real(wp), intent(in) :: length

@@ -4,9 +4,9 @@
 !> By the jumps dn and s, a vector of the plane of the joint:
 !>   across     sigma = E_t dn where it is open, E_c dn where it is closed, secants of the softening laws
 !>   along      tau = ks (s - p), |tau| <= c + mu p_n, with the pressure p_n = -sigma (Lourenco and Rots 1997)
-!> p is the slip that stays. The strain of the law of the cohesion is its own slip w, c(w) / ks of which is elastic. As p
-!> grows by w - c / ks, the slip s - p_0 of a step from p_0 gives w = |s - p_0| - mu p_n / ks + p_w in closed form, where
-!> p_w is w - c / ks at the start of the step. Friction does not dilate.
+!> p is the slip that stays. The strain of the law of the cohesion is its own slip w, of which c(w) / ks is elastic. As
+!> p grows by w - c / ks, a step from p_0 has w = |s - p_0| - mu p_n / ks + p_w in closed form, where p_w is w - c / ks
+!> at its start. Friction does not dilate.
 !>
 !> Tension and cohesion are one bond: the same part of both is left, by the progress of their laws.
 !>

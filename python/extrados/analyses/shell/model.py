@@ -190,7 +190,7 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
         np.isfinite(j.strength["friction"]) for j in mesh.joints
     ):
         raise Refused(
-            'joints that slide keep forces that only load-unload can follow: give them friction = "no-sliding", or leave '
+            'joints that slide keep forces that only "continue" and "load-unload" can follow: give them friction = "no-sliding", or leave '
             "without_equilibrium out",
             ("analysis", "without_equilibrium"),
         )
@@ -209,7 +209,7 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     if not weight > 0.0:
         raise BadGeometry("a building without weight: give the material a density")
     behaviour = core.Behaviour(
-        options.cracking, options.shear_retention, options.crack_closure,
+        options.cracking, options.shear_retention, options.closes,
         MOST_CHANGES_OF_JOINTS if mesh.joints else core.Behaviour.most_changes,
     )  # fmt: skip
     control = _control(mesh, options, along, held)
