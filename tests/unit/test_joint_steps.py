@@ -36,18 +36,8 @@ def test_a_box_slides_on_its_sole_by_coulombs_law(direction: float) -> None:
     assert 0.4 * WEIGHT <= load.max() <= 1.03 * (0.4 * WEIGHT + 1e3 * FEET)
     assert load[-1] == pytest.approx(0.4 * WEIGHT, rel=2e-3)  # 2 mm of slip have taken the bond
     assert found.results.capacity_N == pytest.approx(load.max())
-    assert all(
-        row.last_slip_m == pytest.approx(6e-3, rel=0.05)
-        for row in found.results.joints
-        if row.wall in "ac" or direction
-    )
+    assert all(row.last_slip_m == pytest.approx(6e-3, rel=0.12) for row in found.results.joints)  # also those across
     assert found.results.unbalanced_steps == 0 and found.results.step_balance_ratio < 0.02
-
-
-def test_walls_across_the_push_slide_out_of_their_plane() -> None:
-    """The joints of the walls across carry a share of the friction and slide with the house."""
-    rows = {row.wall: row for row in box().results.joints}
-    assert rows["b"].last_slip_m > 1e-3 or rows["d"].last_slip_m > 1e-3
 
 
 COUPLET = {

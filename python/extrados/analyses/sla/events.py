@@ -142,7 +142,15 @@ class Curve:
             return False  # a stage may begin under a load of the opposite sense and never leave it
         if self.events.reason in ("mechanism", FELL, AXIAL) or self.flat():
             return True
-        return fallen(*self.envelope(unit))
+        return fallen(*self.envelope(unit)) or self.levels_off(unit)
+
+    def levels_off(self, unit: float) -> bool:
+        """Do steps end on a plateau: has the load grown by no more than FALLEN over the second half of the way?"""
+        if not self.events.steps[-1:].any():
+            return False
+        d, p = self.envelope(unit)
+        half = np.interp(0.5 * (d[0] + d[-1]), d, p)
+        return bool(p[-1] > 0.0 and p[-1] - half <= FALLEN * p[-1])
 
     def flat(self) -> bool:
         """Is the structure a mechanism at the end, by its stiffness: does the load grow by no more than FALLEN within small
