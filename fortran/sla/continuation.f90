@@ -351,12 +351,11 @@ contains
          ledger%dissipated = ledger%dissipated + lost
          ledger%cracked = ledger%cracked + lost
          ! A staggered step may drop to another equilibrium: the energy between both becomes motion, and is lost. In the
-         ! first step the springs by which events soften the cohesion of joints become slip that stays: their energy is lost
+         ! first step the teeth become their law, and the springs by which events soften the cohesion slip that stays
          released = ledger%external - energy - ledger%dissipated - path%gap
-         if ((code == code_staggered .or. code == code_unbalanced) .and. released > 0.0_wp .and. &
-             (path%steps > 0 .or. has_friction(model))) then
+         if ((code == code_staggered .or. code == code_unbalanced) .and. released > 0.0_wp) then
             ledger%dissipated = ledger%dissipated + released
-            if (path%steps > 0) path%released = path%released + released
+            path%released = path%released + released
          end if
          path%gap = ledger%external - energy - ledger%dissipated
          path%force = force
