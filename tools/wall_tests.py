@@ -56,7 +56,7 @@ class Wall:
     pressure: float
     failure: str
     peak: float
-    drift: float  # at the peak, mean of both senses; nan where it is not reported
+    drift: float  # at the peak, mean of both senses; nan if not reported
 
     @property
     def axial(self) -> float:
@@ -78,7 +78,7 @@ class Wall:
 @dataclass(frozen=True)
 class Predicted:
     """Strength [N] by a method and the failure that goes with it, "F", "S" or ""; or why there is none. drift: at the peak,
-    drop: where the load has dropped to 80 %."""
+    drop: at a load of 80 %."""
 
     strength: float = math.nan
     failure: str = ""
@@ -262,7 +262,7 @@ def _panel(
 
 
 def _followed(wall: Wall, deck: dict[str, Any]) -> Predicted:
-    """The peak of a wall that `sla` follows under displacements; flexure where it comes within 5 % of the flexural strength."""
+    """The peak of a wall that `sla` follows under displacements; flexure if within 5 % of the flexural strength."""
     answer = _answer(deck)
     if isinstance(answer, Predicted):
         return answer

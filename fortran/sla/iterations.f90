@@ -29,8 +29,6 @@ module sla_iterations
    !> Residual over the largest nodal force; of the convex problems
    real(wp), parameter :: tolerance = 1.0e-4_wp, inner_tolerance = 1.0e-5_wp
    integer, parameter :: most_newton = 12, most_loops = 300, most_inner = 40, most_halvings = 4
-   !> Part of the force out of balance after a loop to which the next one solves
-   real(wp), parameter :: inexact = 0.1_wp
    !> Loop of a staggered step after which Newton's method tries first, and then each time twice as many later
    integer, parameter :: first_try = 4
    !> Vectors of the solution with sliding friction, and the part of the right side that may be left
@@ -394,7 +392,7 @@ contains
       real(wp), intent(inout) :: lost
       integer(c_int), intent(out) :: status
       real(wp), allocatable :: tried(:)
-      real(wp) :: energy, scale, lambda, enough
+      real(wp) :: energy, scale, lambda
       integer :: next_try, inner, info
       found = .false.
       carried = .true.
@@ -403,10 +401,7 @@ contains
       status = merge(status_ok, status_out_of_memory, info == 0)
       if (info /= 0) return
       do iterations = 1, most_loops
-         ! Damage that is far from its end needs no exact equilibrium
-         enough = inner_tolerance
-         if (iterations > 1) enough = max(enough, inexact * model%path%residual)
-         call frozen_solution(model, length, enough, status)
+         call frozen_solution(model, length, status)
          if (status /= status_ok) return
          carried = .not. has_run_away(model, length)
          if (.not. carried) return
@@ -434,10 +429,9 @@ contains
    end subroutine staggered_step
 
    !> The one equilibrium at the present damage: Newton's method on a convex energy
-   subroutine frozen_solution(model, length, enough, status)
+   subroutine frozen_solution(model, length, status)
       type(element_model), intent(inout) :: model
       real(wp), intent(in) :: length
-      real(wp), intent(in) :: enough           !! residual over the largest nodal force
       integer(c_int), intent(out) :: status
       real(wp) :: energy, scale, before, slope, part, trial
       integer :: i, k, n
@@ -445,7 +439,7 @@ contains
       status = status_ok
       do i = 0, most_inner
          call evaluate(model, by_frozen, .true., energy, scale)
-         if (residual_of(model, scale) < enough .and. i > 0) return
+         if (residual_of(model, scale) < inner_tolerance .and. i > 0) return
          before = energy - dot_product(model%load%fa, model%path%u(0:n))
          call correct(model, model%path%drive + length, status)
          if (status /= status_ok) return
@@ -484,7 +478,7 @@ contains
          end select
       end do
       call predict(model, length, status)
-      if (status == status_ok) call frozen_solution(model, length, inner_tolerance, status)
+      if (status == status_ok) call frozen_solution(model, length, status)
       if (status /= status_ok) return
       carried = .not. has_run_away(model, length)
       if (.not. carried) return

@@ -159,9 +159,10 @@ contains
          return
       end if
       slope = 0.0_wp
+      start = 0.0_wp
       if (how /= by_frozen .and. law%coheres) then
          ! The bond at the start of the step, with what tension has taken since
-         start = max(kept(3), 0.0_wp)
+         start = kept(3)
          if (law%cracks) start = max(start, law%cohesion%strain_of(law%tension%progress(state%history(1))))
          trial = way - law%friction * pressure / law%ks + start - law%cohesion%secant(start) * start / law%ks
          if (trial > state%history(3)) then
@@ -187,16 +188,35 @@ contains
       end if
       state%energy = 0.5_wp * limit**2 / law%ks
       if (how == by_frozen) state%energy = limit * way - 0.5_wp * limit**2 / law%ks
-      state%history(7) = kept(7) + 0.5_wp * (limit + limit_of(law, kept)) * norm2(state%history(4:5) - kept(4:5))
+      ! The lesser pressure: slip while a joint loses its pressure costs no more. What a staggered step releases beyond
+      ! that counts as motion
+      way = norm2(state%history(4:5) - kept(4:5))
+      state%history(7) = kept(7) + law%friction * max(min(pressure, kept(6)), 0.0_wp) * way
+      if (law%coheres) state%history(7) = state%history(7) + bond_work(law, start, state%history, way)
    end subroutine respond_along
 
-   !> Shear strength by histories [Pa]
-   pure function limit_of(law, history) result(limit)
+   !> Work of the cohesion on a slip that stays [J/m^2]: the area of its law by p, that by w less the elastic part
+   pure function bond_work(law, start, history, slip) result(work)
       type(joint_material), intent(in) :: law
+      real(wp), intent(in) :: start                 !! slip of the law at the start of the step [m]
       real(wp), intent(in) :: history(joint_rows)
-      real(wp) :: limit
-      limit = max(cohesion_left(law, law%progress(history)) + law%friction * history(6), 0.0_wp)
-   end function limit_of
+      real(wp), intent(in) :: slip                  !! [m]
+      real(wp) :: work, from, to
+      from = max(start, law%cohesion%peak)
+      to = max(law%cohesion%strain_of(law%progress(history)), law%cohesion%peak)
+      work = law%cohesion%secant(from) * from * slip
+      if (to > from) work = min(work, plastic_area(to) - plastic_area(from))
+
+   contains
+
+      pure function plastic_area(w) result(area)
+         real(wp), intent(in) :: w
+         real(wp) :: area, c
+         c = law%cohesion%secant(w) * w
+         area = law%cohesion%lost(w) + 0.5_wp * c * (w - c / law%ks)
+      end function plastic_area
+
+   end function bond_work
 
    !> Cohesion at a progress of the bond; a bond of which no cohesion is given holds until it has cracked [Pa]
    pure function cohesion_left(law, x) result(c)

@@ -174,7 +174,7 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     )
     without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"] = key(
         "continue",
-        "where no load suits all points, see sla: equilibrium iterations in displacement control go on from there (rotating "
+        "where no load suits all points, see sla: equilibrium iterations in displacement control continue from there (rotating "
         "cracks; joints that slide from the first load on), or A stays and the greatest lower limit decides, which is the default "
         "of stages",
         source="thesis 4.3.1",

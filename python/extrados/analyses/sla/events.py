@@ -38,6 +38,8 @@ STRAINS_AND_STRESSES = core.REPORT[:6]
 #: Drift to which a run goes on that has lost equilibrium under its constant loads; longest step of equilibrium iterations, and
 #: displacement below which nothing counts as running away, over the extent across the control displacement
 DRIFT, LONGEST_STEP, RUNAWAY = 0.01, 1e-4, 2.5e-3
+#: Part of the work of the loads by which the energies of steps may differ without a warning
+UNBALANCED = 0.06
 #: How a run ends in which the load can grow for ever, and one that has reached a displacement
 UNBOUNDED, MECHANISM_REACHED, REACHED = (
     core.STOPS[lists.number("sla_stop", name)] for name in ("unbounded", "mechanism", "displacement")
@@ -492,6 +494,15 @@ def run_reference_loads(
             "isotropic masonry alone (no bed joints, lateral reduction, confinement, shear retention or bars): the events beyond "
             "are those of load-unload."
         )
+    steps = events.steps & events.equilibrium
+    if steps.any():
+        work = np.maximum(np.abs(events.external[steps]), np.finfo(float).tiny)
+        gap = float((np.abs(events.external - events.stored - events.lost)[steps] / work).max())
+        if gap > UNBALANCED:
+            curve.warnings.append(
+                f"The energies of the steps in displacement control do not balance: {100 * gap:.0f} % of the work of the loads. Sudden "
+                "losses of equilibrium cause more damage than that work supplies: use loads and displacements, not dissipated energies."
+            )
     if events.reason in (TOO_FAR, UNBOUNDED) and not events.steps[-1:].any():
         watch, ends = model.control, [core_model.displacement(load) for load in (0.0, 1.0)]
         constant, one = (sign * float(watch.share @ u[watch.node, watch.direction]) for u in ends)
