@@ -188,10 +188,8 @@ contains
       end if
       state%energy = 0.5_wp * limit**2 / law%ks
       if (how == by_frozen) state%energy = limit * way - 0.5_wp * limit**2 / law%ks
-      ! The lesser pressure: slip while a joint loses its pressure costs no more. What a staggered step releases beyond
-      ! that counts as motion
       way = norm2(state%history(4:5) - kept(4:5))
-      state%history(7) = kept(7) + law%friction * max(min(pressure, kept(6)), 0.0_wp) * way
+      state%history(7) = kept(7) + 0.5_wp * law%friction * max(pressure + kept(6), 0.0_wp) * way
       if (law%coheres) state%history(7) = state%history(7) + bond_work(law, start, state%history, way)
    end subroutine respond_along
 

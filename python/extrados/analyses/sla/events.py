@@ -496,7 +496,8 @@ def run_reference_loads(
         )
     steps = events.steps & events.equilibrium
     if steps.any():
-        work = np.maximum(np.abs(events.external[steps]), np.finfo(float).tiny)
+        # Work that unloading takes back is no measure
+        work = np.maximum(np.maximum.accumulate(np.abs(events.external))[steps], np.finfo(float).tiny)
         gap = float((np.abs(events.external - events.stored - events.lost)[steps] / work).max())
         if gap > UNBALANCED:
             curve.warnings.append(
