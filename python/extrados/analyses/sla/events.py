@@ -501,8 +501,8 @@ def run_reference_loads(
         gap = float((np.abs(events.external - events.stored - events.lost)[steps] / work).max())
         if gap > UNBALANCED:
             curve.warnings.append(
-                f"The energies of the steps in displacement control do not balance: {100 * gap:.0f} % of the work of the loads. Sudden "
-                "losses of equilibrium cause more damage than that work supplies: use loads and displacements, not dissipated energies."
+                f"Work, stored and dissipated energy of the steps in displacement control differ by {100 * gap:.0f} % of the work of the "
+                "loads. Loads and displacements are in equilibrium; the dissipated energy is not reliable."
             )
     if events.reason in (TOO_FAR, UNBOUNDED) and not events.steps[-1:].any():
         watch, ends = model.control, [core_model.displacement(load) for load in (0.0, 1.0)]
