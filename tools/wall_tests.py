@@ -7,7 +7,8 @@ are those of `read_walls`. Each wall becomes one deck per method, as a user woul
 
     limit     bricks in running bond, joints without cohesion that crush; the load acts at the shear span
     codes     `code-checks` of a panel, by each code; the least applicable strength of each
-    membrane  `sla` of a panel without bricks, pushed sideways under its axial load
+    membrane  `sla` of a panel without bricks, pushed sideways under its axial load to a drift of 1 %
+    units     `sla` of its units and joints, likewise
 
 Empty cells are filled by these rules: friction 0.4; cohesion of the joints as tested; tensile strength of the diagonal
 test, else the cohesion; modulus 600 times the compressive strength. Crushing in limit analysis at 0.85 of the strength.
@@ -55,11 +56,18 @@ class Wall:
     pressure: float
     failure: str
     peak: float
+    drift: float  # at the peak, mean of both senses; nan if not reported
 
     @property
     def axial(self) -> float:
         """The axial load [N]."""
         return self.pressure * self.length * self.thickness
+
+    @property
+    def flexural(self) -> float:
+        """Shear [N] of the section that crushes at its toe, by the stress block of codes."""
+        ratio = self.pressure / (CRUSHES_AT * self.compressive)
+        return 0.5 * self.axial * self.length * (1.0 - ratio) / (self.span * self.height)
 
     @property
     def mode(self) -> str:
@@ -69,11 +77,14 @@ class Wall:
 
 @dataclass(frozen=True)
 class Predicted:
-    """Strength [N] by a method and the failure that goes with it, "F", "S" or ""; or why there is none."""
+    """Strength [N] by a method and the failure that goes with it, "F", "S" or ""; or why there is none. drift: at the peak,
+    drop: at a load of 80 %."""
 
     strength: float = math.nan
     failure: str = ""
     why_not: str = ""
+    drift: float = math.nan
+    drop: float = math.nan
 
 
 def read_walls(file: Path) -> list[Wall]:
@@ -83,6 +94,7 @@ def read_walls(file: Path) -> list[Wall]:
     for row in csv.DictReader(lines):
         number = {key: float(value) for key, value in row.items() if value and key not in _TEXTS}
         peaks = [number[key] for key in ("peak_pos_kN", "peak_neg_kN") if key in number]
+        drifts = [number[key] for key in ("drift_at_peak_pos_pct", "drift_at_peak_neg_pct") if key in number]
         compressive, cohesion = 1e6 * number["masonry_compressive_MPa"], 1e6 * number["shear_strength_initial_MPa"]
         walls.append(
             Wall(
@@ -93,6 +105,7 @@ def read_walls(file: Path) -> list[Wall]:
                 young=1e6 * number.get("young_MPa", 1e-6 * MODULUS * compressive), cohesion=cohesion,
                 friction=number.get("friction", FRICTION), span=number["shear_span_over_height"],
                 pressure=1e6 * number["vertical_stress_MPa"], failure=row["failure"], peak=1e3 * sum(peaks) / len(peaks),
+                drift=1e-2 * sum(drifts) / len(drifts) if drifts else math.nan,
             )
         )  # fmt: skip
     return walls
@@ -200,20 +213,39 @@ CODES = ("ASCE 41", "EN 1998-3", "Magenes-Calvi", "NTC")
 
 def by_membrane(wall: Wall) -> dict[str, Predicted]:
     """The wall as a membrane that cracks and crushes, its foot held, its top moved sideways under the constant axial load."""
+    strengths = {
+        "tensile_strength": wall.tensile, "fracture_energy": CRACK_DUCTILITY * wall.tensile,
+        "compressive_strength": wall.compressive, "crushing_energy": CRUSHING_DUCTILITY * wall.compressive,
+    }  # fmt: skip
+    return {"membrane": _followed(wall, _panel(wall, {}, strengths, {}, {"size": wall.length / 15.0}))}
+
+
+def by_units(wall: Wall) -> dict[str, Predicted]:
+    """The same of units that crack, in running bond, with joints that open, slide and crush."""
+    courses, count = round(wall.height / wall.unit_height), max(1, round(wall.length / wall.unit_length))
+    bond = {"unit_length": wall.length / count, "unit_height": wall.height / courses}
+    tension, cracks = BOND_TENSION * wall.cohesion, UNIT_TENSION * wall.compressive
+    joints = {
+        "friction": wall.friction, "cohesion": wall.cohesion, "shear_energy": SLIP_DUCTILITY * wall.cohesion,
+        "tension": tension, "fracture_energy": CRACK_DUCTILITY * tension,
+        "compressive_strength": wall.compressive, "crushing_energy": CRUSHING_DUCTILITY * wall.compressive,
+    }  # fmt: skip
+    units = {"tensile_strength": cracks, "fracture_energy": CRACK_DUCTILITY * cracks}
+    mesh = {"size": 0.5 * bond["unit_length"], "joints": "interfaces"}
+    return {"units": _followed(wall, _panel(wall, bond, units, joints, mesh))}
+
+
+def _panel(
+    wall: Wall, bond: dict[str, Any], strengths: dict[str, Any], joints: dict[str, Any], mesh: dict[str, Any]
+) -> dict[str, Any]:
+    """The deck of a wall whose foot is held and whose top is moved sideways to a drift of 1 % under the constant axial load."""
     panel: dict[str, Any] = {"kind": "panel", "width": wall.length, "height": wall.height, "thickness": wall.thickness}
     if wall.span < 0.75:
         panel["ties"] = [{"edge": "top", "direction": "y"}]  # the top moves without turning
-    deck = {
-        "structure": panel,
-        "material": {
-            "density": MASONRY,
-            "young": wall.young,
-            "poisson": 0.2,
-            "tensile_strength": wall.tensile,
-            "fracture_energy": CRACK_DUCTILITY * wall.tensile,
-            "compressive_strength": wall.compressive,
-            "crushing_energy": CRUSHING_DUCTILITY * wall.compressive,
-        },
+    return {
+        "structure": panel | bond,
+        "material": {"density": MASONRY, "young": wall.young, "poisson": 0.2, **strengths},
+        **({"joints": joints} if joints else {}),
         "supports": {"held": [{"edge": "bottom"}]},
         "analysis": [
             {
@@ -223,21 +255,36 @@ def by_membrane(wall: Wall) -> dict[str, Predicted]:
                 "reference": [{"kind": "displacement", "direction": "x", "parts": [{"edge": "top"}]}],
                 "target_displacement": 0.01 * wall.height,
                 "events": 30000,
-                "mesh": {"size": wall.length / 15.0},
+                "mesh": mesh,
             }
         ],
     }
+
+
+def _followed(wall: Wall, deck: dict[str, Any]) -> Predicted:
+    """The peak of a wall that `sla` follows under displacements; flexure if within 5 % of the flexural strength."""
     answer = _answer(deck)
-    return {"membrane": answer if isinstance(answer, Predicted) else Predicted(answer["greatest_load_N"])}
+    if isinstance(answer, Predicted):
+        return answer
+    peak, drift, drop = (
+        answer["greatest_load_N"],
+        answer["greatest_load_displacement_m"] / wall.height,
+        answer.get("drop_drift"),
+    )
+    failure = "F" if peak >= 0.95 * wall.flexural else "S"
+    return Predicted(peak, failure, "", drift, math.nan if drop is None else drop)
 
 
-#: G_f over f_t and G_c over f_c [m], assumed for all walls
-CRACK_DUCTILITY, CRUSHING_DUCTILITY = 50e-6, 1.6e-3
+#: Energies over strengths of cracks, slip and crushing [m], assumed for all walls
+CRACK_DUCTILITY, SLIP_DUCTILITY, CRUSHING_DUCTILITY = 50e-6, 200e-6, 1.6e-3
+#: Tension of joints over their cohesion, and of units over the compressive strength of masonry, assumed for all walls
+BOND_TENSION, UNIT_TENSION = 0.7, 0.1
 
 METHODS: dict[str, Callable[[Wall], dict[str, Predicted]]] = {
     "limit": by_limit_analysis,
     "codes": by_codes,
     "membrane": by_membrane,
+    "units": by_units,
 }
 
 
@@ -286,11 +333,24 @@ def main() -> None:
         found = list(pool.map(predict, walls, [asked.method] * len(walls)))
     with (asked.out / "predictions.csv").open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file)
-        table.writerow(["wall", "failure", "measured_kN", "method", "predicted_kN", "predicted_failure", "why_not"])
+        table.writerow(
+            [
+                "wall",
+                "failure",
+                "measured_kN",
+                "method",
+                "predicted_kN",
+                "predicted_failure",
+                "why_not",
+                "measured_drift",
+                "predicted_drift",
+                "predicted_drop_drift",
+            ]
+        )
         for wall, by in zip(walls, found, strict=True):
             for method, one in by.items():
                 table.writerow([wall.name, wall.failure, f"{wall.peak / 1e3:.2f}", method, f"{one.strength / 1e3:.2f}",
-                                one.failure, one.why_not])  # fmt: skip
+                                one.failure, one.why_not, f"{wall.drift:.5f}", f"{one.drift:.5f}", f"{one.drop:.5f}"])  # fmt: skip
     print(f"{'method':16}{'all':>18}{'shear':>18}{'hybrid':>18}{'flexure':>18}{'right mode':>12}{'none':>6}")
     for method in sorted({name for by in found for name in by}):
         pairs = [

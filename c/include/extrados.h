@@ -78,6 +78,7 @@ EXTRADOS_API void extrados_sparse_tree(void *handle, int64_t *blocks, const int6
 /* Factorise and solve by CHOLMOD alone: the algorithm the updates are compared with. */
 EXTRADOS_API int extrados_sparse_plain(void *handle, const double *value, int vectors, double *z);
 EXTRADOS_API int extrados_sparse_indefinite(void *handle, const double *value, int vectors, double *z);
+EXTRADOS_API int extrados_sparse_again(void *handle, int vectors, double *z);
 
 /* band.c: a symmetric positive matrix of n equations, `width` of them down from the diagonal, the lower triangle by columns
  * of width + 1; the factor takes its place, with the inverse of each pivot. not_positive_definite where a pivot is negative, or lost

@@ -30,7 +30,8 @@ struct extrados_sparse {
   double *d, *column;        /* D; most_changes dense columns in factor order, zero between calls */
   double *buffer;            /* most_changes + most_vectors rows of one supernode */
   cholmod_dense *y, *e, *answer; /* workspace of the plain solves of the refactorising algorithm */
-  cholmod_factor *simplicial; /* LDL' of matrices that need not be positive definite, made when first wanted */
+  cholmod_factor *definite, *simplicial; /* of other matrices on the pattern, made when first wanted: LL', supernodal, */
+  cholmod_factor *latest;                /* and LDL' where that one fails; the one that was made last */
 };
 
 static int code_of(const cholmod_common *common) {
@@ -124,6 +125,7 @@ void extrados_sparse_free(void **handle) {
   cholmod_l_free_dense(&self->e, &self->common);
   cholmod_l_free_dense(&self->answer, &self->common);
   cholmod_l_free_factor(&self->factor, &self->common);
+  cholmod_l_free_factor(&self->definite, &self->common);
   cholmod_l_free_factor(&self->simplicial, &self->common);
   cholmod_l_finish(&self->common);
   free(self);
@@ -136,12 +138,12 @@ static int all_finite(int64_t count, const double *x) {
 }
 
 /* CHOLMOD's loops are shared among up to four threads, whoever asks; where there is no room for them it goes alone. */
-static int factor_values(struct extrados_sparse *self) {
+static int factor_values(struct extrados_sparse *self, cholmod_factor *factor) {
   const int room = extrados_blas_enter();
   if (room != EXTRADOS_ok) return room;
   const int levels = omp_get_max_active_levels();
   if (extrados_threads(most_threads) < most_threads) omp_set_max_active_levels(0);
-  cholmod_l_factorize(&self->matrix, self->factor, &self->common);
+  cholmod_l_factorize(&self->matrix, factor, &self->common);
   omp_set_max_active_levels(levels);
   extrados_blas_leave();
   return EXTRADOS_ok;
@@ -154,7 +156,7 @@ static int factorise(struct extrados_sparse *self, const double *value, double *
   if (!all_finite((int64_t)self->matrix.nzmax, value)) return EXTRADOS_not_finite;
   self->matrix.x = (void *)(uintptr_t)value;
   self->matrix.xtype = CHOLMOD_REAL;
-  const int room = factor_values(self);
+  const int room = factor_values(self, self->factor);
   if (room != EXTRADOS_ok) return room;
   if (self->common.status != CHOLMOD_OK) {
     int code = code_of(&self->common);
@@ -458,13 +460,21 @@ int extrados_sparse_plain(void *handle, const double *value, int vectors, double
   return code == EXTRADOS_ok ? solve_by(self, self->factor, vectors, z) : code;
 }
 
-/* As extrados_sparse_plain, by a factor of its own without square roots: tangent matrices past a peak have negative pivots.
- * Without exchanges of rows, as the pattern is fixed; the caller measures the residual. not_positive_definite: a zero pivot. */
+/* As extrados_sparse_plain, by factors of its own: tangent matrices past a peak have negative pivots. LL' by supernodes;
+ * where that fails without square roots, and without exchanges of rows, as the pattern is fixed: the caller measures the
+ * residual. not_positive_definite: a zero pivot. */
 int extrados_sparse_indefinite(void *handle, const double *value, int vectors, double *z) {
   struct extrados_sparse *self = handle;
   if (!all_finite((int64_t)self->matrix.nzmax, value)) return EXTRADOS_not_finite;
   self->matrix.x = (void *)(uintptr_t)value;
   self->matrix.xtype = CHOLMOD_REAL;
+  if (!self->definite) self->definite = cholmod_l_analyze(&self->matrix, &self->common);
+  if (!self->definite) return code_of(&self->common);
+  const int room = factor_values(self, self->definite);
+  if (room != EXTRADOS_ok) return room;
+  self->latest = self->definite;
+  if (self->common.status == CHOLMOD_OK && self->definite->minor == self->definite->n)
+    return solve_by(self, self->latest, vectors, z);
   self->common.supernodal = CHOLMOD_SIMPLICIAL;
   self->common.final_ll = 0;
   if (!self->simplicial) self->simplicial = cholmod_l_analyze(&self->matrix, &self->common);
@@ -472,6 +482,13 @@ int extrados_sparse_indefinite(void *handle, const double *value, int vectors, d
   self->common.supernodal = CHOLMOD_SUPERNODAL;
   self->common.final_ll = 1;
   if (!self->simplicial || self->common.status != CHOLMOD_OK) return code_of(&self->common);
+  self->latest = self->simplicial;
   if (self->simplicial->minor < self->simplicial->n) return EXTRADOS_not_positive_definite;
-  return solve_by(self, self->simplicial, vectors, z);
+  return solve_by(self, self->latest, vectors, z);
+}
+
+/* Solutions by the factor that extrados_sparse_indefinite made last. */
+int extrados_sparse_again(void *handle, int vectors, double *z) {
+  struct extrados_sparse *self = handle;
+  return self->latest ? solve_by(self, self->latest, vectors, z) : EXTRADOS_invalid_argument;
 }

@@ -173,7 +173,7 @@ contains
       use sla_model, only : element_model
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: points
-      real(c_double), intent(out) :: values(2, points)
+      real(c_double), intent(out) :: values(7, points)
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       values = 0.0_c_double
@@ -199,14 +199,15 @@ contains
       integer(c_int), intent(in) :: nodes
       real(c_double), intent(in) :: displacement(freedoms, nodes)     !! [m], [rad]
       integer(c_int), intent(in) :: points
-      real(c_double), intent(in) :: values(2, points)   !! see histories
+      real(c_double), intent(in) :: values(7, points)   !! see histories; none: those of the teeth so far
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       call model_take(handle, stage_loaded, stage_loaded, model, status)
       if (status /= status_ok) return
       status = status_invalid_argument
-      if (points == model%mesh%points .and. nodes == model%mesh%nodes .and. freedoms == size(model%mesh%equation, 1) &
-         .and. all(values >= 0.0_c_double) .and. model_continues(model)) then
+      if ((points == model%mesh%points .or. points == 0) .and. nodes == model%mesh%nodes .and. &
+         freedoms == size(model%mesh%equation, 1) .and. all(abs(values) <= huge(1.0_c_double)) .and. &
+         model_continues(model)) then
         call resume_path(model, displacement, values, status)
       end if
       call handle_leave(handle)

@@ -493,6 +493,13 @@ contains
       do i = 1, group%rule%points
          call of_section(group, e, i, a, b, d, g(:, :, i))
       end do
+      call to_element(group, e, local, v)
+      part = 0.0_wp
+      call add_forces(group, e, none, none, none, g, v, part)
+      call from_element(group, e, part, column)
+      f(1:n) = f(1:n) + column(1:n)
+      energy = energy + 0.5_wp * dot_product(local(1:n), column(1:n))
+      if (size(k) == 0) return
       do i = 1, n
          one = 0.0_wp
          one(i) = 1.0_wp
@@ -501,8 +508,6 @@ contains
          call add_forces(group, e, none, none, none, g, v, part)
          call from_element(group, e, part, column)
          k(1:n, i) = k(1:n, i) + column(1:n)
-         f(1:n) = f(1:n) + column(1:n) * local(i)
-         energy = energy + 0.5_wp * dot_product(local(1:n), column(1:n)) * local(i)
       end do
    end subroutine respond
 

@@ -5,7 +5,7 @@ module sla_c_bindings
    private
    public :: extrados_sparse_order, extrados_sparse_new, extrados_sparse_free, extrados_sparse_factor
    public :: extrados_sparse_solve, extrados_sparse_change, extrados_sparse_backward, extrados_sparse_tree
-   public :: extrados_sparse_plain, extrados_sparse_indefinite
+   public :: extrados_sparse_plain, extrados_sparse_indefinite, extrados_sparse_again
 
    interface
       function extrados_sparse_order(n, start, row, ordering, order) bind(c) result(status)
@@ -103,6 +103,15 @@ module sla_c_bindings
          real(c_double), intent(inout) :: z(*)
          integer(c_int) :: status
       end function extrados_sparse_indefinite
+
+      function extrados_sparse_again(handle, vectors, z) bind(c) result(status)
+         import :: c_int, c_double, c_ptr
+         implicit none (type, external)
+         type(c_ptr), value, intent(in) :: handle
+         integer(c_int), value, intent(in) :: vectors
+         real(c_double), intent(inout) :: z(*)
+         integer(c_int) :: status
+      end function extrados_sparse_again
    end interface
 
 end module sla_c_bindings

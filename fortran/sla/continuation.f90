@@ -12,8 +12,8 @@ module sla_continuation
       stop_fraction => sla_stop_fraction, stop_load => sla_stop_load, stop_mechanism => sla_stop_mechanism, &
       stop_none => sla_stop_none
    use common_status, only : status_cancelled, status_ok, status_out_of_memory
-   use sla_coaxial, only : by_frozen
-   use sla_group, only : history_group, point_group, unbounded
+   use sla_coaxial, only : by_secant
+   use sla_group, only : friction_group, history_group, point_group, unbounded
    use sla_iterations, only : evaluate, explicit_step, few, growth, implicit_step, is_driven, longest_step, &
       loads_run_away
    use sla_ledger, only : event_log, judge_fall
@@ -59,21 +59,14 @@ contains
       integer(c_int), intent(out) :: status
       type(load_work) :: last
       real(wp) :: slope
-      integer :: g, n, m, info
+      integer :: n, m, info
       n = model%mesh%equations
       m = size(model%support%moved, 1)
       status = status_ok
-      do g = 1, size(model%mesh%holders)
-         select type (group => model%mesh%holders(g)%group)
-         class is (history_group)
-            if (status == status_ok) call group%begin(status)
-         end select
-      end do
-      if (status /= status_ok) return
       associate (path => model%path, solution => model%solution, ledger => model%ledger)
          if (.not. allocated(path%start)) then
             allocate (path%u(0:n + m), path%now(0:n + m), path%before(0:n + m), path%push(0:n + m), &
-               path%start(0:n + m), stat=info)
+               path%start(0:n + m), path%beside(merge(size(model%stiffness%row), 0, has_friction(model)), 2), stat=info)
             if (info /= 0) status = status_out_of_memory
             if (info /= 0) return
          end if
@@ -101,13 +94,43 @@ contains
          path%lambda_now = path%lambda
          path%lambda_before = path%lambda
       end associate
+      call begin_histories(model, status)
    end subroutine begin_path
 
-   !> Go on from the displacements and histories that a path of other loads and supports ended with
+   !> Those of all points by the teeth lost so far, at the path's displacements
+   subroutine begin_histories(model, status)
+      type(element_model), intent(inout) :: model
+      integer(c_int), intent(out) :: status
+      integer :: g
+      status = status_ok
+      do g = 1, size(model%mesh%holders)
+         select type (group => model%mesh%holders(g)%group)
+         class is (history_group)
+            if (status == status_ok) call group%begin(model%path%u, status)
+         end select
+      end do
+   end subroutine begin_histories
+
+   !> Are there joints that can slide?
+   pure function has_friction(model) result(yes)
+      type(element_model), intent(in) :: model
+      logical :: yes
+      integer :: g
+      yes = .false.
+      do g = 1, size(model%mesh%holders)
+         select type (group => model%mesh%holders(g)%group)
+         class is (friction_group)
+            yes = yes .or. group%slides
+         end select
+      end do
+   end function has_friction
+
+   !> Go on from the displacements and histories that a path of other loads and supports ended with; without histories
+   !> from those of the teeth lost so far
    subroutine resume_path(model, displacement, histories, status)
       type(element_model), intent(inout) :: model
       real(wp), intent(in) :: displacement(:, :)     !! (freedoms of a node, nodes) [m], [rad]
-      real(wp), intent(in) :: histories(:, :)        !! (2, points)
+      real(wp), intent(in) :: histories(:, :)        !! (history_rows, points), or none
       integer(c_int), intent(out) :: status
       real(wp), allocatable :: most(:)
       integer :: i, k, g, n, m, info
@@ -141,10 +164,13 @@ contains
          path%drive_start = path%drive
          path%constant = dot_product(model%load%fa, path%u(0:n))
       end associate
-      do g = 1, size(model%mesh%holders)
+      if (size(histories, 2) == 0) call begin_histories(model, status)
+      do g = 1, merge(size(model%mesh%holders), 0, size(histories, 2) > 0)
          select type (group => model%mesh%holders(g)%group)
          class is (history_group)
-            group%history(:, :) = histories(:, group%offset + 1:group%offset + group%points)
+            associate (rows => size(group%history, 1))
+               group%history(:, :) = histories(1:rows, group%offset + 1:group%offset + group%points)
+            end associate
             call group%keep()
             group%rate(:, :) = 0.0_wp
          end select
@@ -155,13 +181,15 @@ contains
    !> Histories of all points in the last state
    pure subroutine path_histories(model, histories)
       type(element_model), intent(in) :: model
-      real(wp), intent(out) :: histories(:, :)       !! (2, points)
+      real(wp), intent(out) :: histories(:, :)       !! (history_rows, points)
       integer :: g
       histories = 0.0_wp
       do g = 1, size(model%mesh%holders)
          select type (group => model%mesh%holders(g)%group)
          class is (history_group)
-            if (allocated(group%kept)) histories(:, group%offset + 1:group%offset + group%points) = group%kept
+            if (allocated(group%kept)) then
+               histories(1:size(group%kept, 1), group%offset + 1:group%offset + group%points) = group%kept
+            end if
          end select
       end do
    end subroutine path_histories
@@ -309,7 +337,7 @@ contains
       m = size(model%support%moved, 1)
       status = status_ok
       associate (path => model%path, ledger => model%ledger, loop => model%loop)
-         call evaluate(model, by_frozen, .false., energy, scale)
+         call evaluate(model, by_secant, .false., energy, scale)
          force = path%lambda
          was = path%lambda_now
          if (is_driven(model)) then
@@ -322,9 +350,10 @@ contains
          path%constant = dot_product(model%load%fa, path%u(0:n))
          ledger%dissipated = ledger%dissipated + lost
          ledger%cracked = ledger%cracked + lost
-         ! A staggered step may drop to another equilibrium: the energy between both becomes motion, and is lost
+         ! A staggered step may drop to another equilibrium: the energy between both becomes motion, and is lost. In the
+         ! first step the teeth become their law, and the springs by which events soften the cohesion slip that stays
          released = ledger%external - energy - ledger%dissipated - path%gap
-         if ((code == code_staggered .or. code == code_unbalanced) .and. path%steps > 0 .and. released > 0.0_wp) then
+         if ((code == code_staggered .or. code == code_unbalanced) .and. released > 0.0_wp) then
             ledger%dissipated = ledger%dissipated + released
             path%released = path%released + released
          end if

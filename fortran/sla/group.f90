@@ -41,13 +41,15 @@ module sla_group
    public :: bound
    public :: scan_result, event_vectors, material_options
    public :: below, unbounded, most_entries, most_rank, offer_hi, offer_lo, offer_empty, linear_bound, &
-      component, along, admitted, report_rows, state_rows
+      component, along, admitted, report_rows, state_rows, history_rows
 
    real(wp), parameter :: unbounded = huge(1.0_wp)
    !> Freedoms of an element; vectors of an event, as many as the factor takes (extrados_most_changes)
    integer, parameter :: most_entries = 24, most_rank = 5
    !> Rows of a point's report, see plane and bar
    integer, parameter :: report_rows = 19
+   !> Most rows of a point's history
+   integer, parameter :: history_rows = 7
 
    !> A point of a model
    type :: point_place
@@ -147,9 +149,10 @@ module sla_group
 
    !> Elements whose points keep histories: the greatest strains so far, which decide their damage
    type, abstract, extends(point_group) :: history_group
-      real(wp), allocatable :: history(:, :)   !! (2, points)
-      real(wp), allocatable :: kept(:, :)      !! (2, points) of the last state in equilibrium
-      real(wp), allocatable :: rate(:, :)      !! (2, points) growth in the last step
+      real(wp), allocatable :: history(:, :)   !! (rows of the group's own, points), no more than history_rows
+      real(wp), allocatable :: kept(:, :)      !! (rows, points) of the last state in equilibrium
+      real(wp), allocatable :: rate(:, :)      !! (rows, points) growth in the last step
+      real(wp), allocatable :: damage_kept(:, :)   !! (state_rows, points) there: crack bands that a step may fix
    contains
       procedure(continues_interface), deferred :: continues
       procedure(begin_interface), deferred :: begin
@@ -164,7 +167,7 @@ module sla_group
 
    !> Elements whose points can slide: their stress is k d - k0 + h, with a force h that follows the displacements, see
    !> sla_friction, and k0 that of a spring whose origin moved
-   type, abstract, extends(point_group) :: friction_group
+   type, abstract, extends(history_group) :: friction_group
       logical :: slides = .false.          !! there is friction: points can come to have forces beside their stiffness
    contains
       procedure(origins_interface), deferred :: origins
@@ -177,6 +180,7 @@ module sla_group
       procedure(advance_interface), deferred :: advance
       procedure(excess_interface), deferred :: excess
       procedure(elastic_interface), deferred :: elastic
+      procedure(couple_interface), deferred :: couple
    end type friction_group
 
    type :: group_holder
@@ -281,14 +285,15 @@ module sla_group
       end function continues_interface
 
       !> The histories that the teeth lost so far have come from
-      subroutine begin_interface(group, status)
-         import :: c_int, history_group
+      subroutine begin_interface(group, u, status)
+         import :: c_int, history_group, wp
          implicit none (type, external)
          class(history_group), intent(inout) :: group
+         real(wp), intent(in) :: u(0:)       !! displacements that they belong to
          integer(c_int), intent(out) :: status
       end subroutine begin_interface
 
-      !> Forces, matrix and stored energy of an element
+      !> Forces, symmetric matrix and stored energy of an element
       pure subroutine respond_interface(group, e, local, how, f, k, energy)
          import :: history_group, wp
          implicit none (type, external)
@@ -297,9 +302,21 @@ module sla_group
          real(wp), intent(in) :: local(:)    !! displacements of its freedoms
          integer, intent(in) :: how          !! by_... of sla_coaxial
          real(wp), intent(out) :: f(:)
-         real(wp), intent(out) :: k(:, :)
+         real(wp), intent(out) :: k(:, :)    !! none where its size is 0
          real(wp), intent(out) :: energy     !! [J]
       end subroutine respond_interface
+
+      !> What sliding friction adds to the matrix of an element by its tangent: the shear stress of pressed points grows
+      !> with the pressure, not symmetrically
+      pure subroutine couple_interface(group, e, local, k, couples)
+         import :: friction_group, wp
+         implicit none (type, external)
+         class(friction_group), intent(in) :: group
+         integer, intent(in) :: e
+         real(wp), intent(in) :: local(:)
+         real(wp), intent(out) :: k(:, :)
+         logical, intent(out) :: couples     !! else k is zero
+      end subroutine couple_interface
 
       !> The histories follow the displacements; the energy that this costs is added
       pure subroutine update_interface(group, u, lost)
@@ -418,13 +435,15 @@ module sla_group
 contains
 
    !> Histories of undamaged points
-   subroutine new_histories(group, status)
+   subroutine new_histories(group, rows, status)
       class(history_group), intent(inout) :: group
+      integer, intent(in) :: rows
       integer(c_int), intent(out) :: status
       integer :: info
       info = 0
-      if (.not. allocated(group%history)) allocate (group%history(2, group%points), group%kept(2, group%points), &
-         group%rate(2, group%points), stat=info)
+      if (.not. allocated(group%history)) allocate (group%history(rows, group%points), &
+         group%kept(rows, group%points), group%rate(rows, group%points), &
+         group%damage_kept(state_rows, group%points), stat=info)
       status = merge(status_ok, status_out_of_memory, info == 0)
       if (info /= 0) return
       group%history(:, :) = 0.0_wp
@@ -437,12 +456,14 @@ contains
       class(history_group), intent(inout) :: group
       group%rate(:, :) = group%history - group%kept
       group%kept(:, :) = group%history
+      call group%state(.true., group%damage_kept)
    end subroutine keep
 
    !> Back to the last state in equilibrium
    pure subroutine restore(group)
       class(history_group), intent(inout) :: group
       group%history(:, :) = group%kept
+      call group%state(.false., group%damage_kept)
    end subroutine restore
 
    !> On from the last state in equilibrium at the rate of the last step

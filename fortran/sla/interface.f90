@@ -10,7 +10,8 @@ module sla_interface
       code_slide => sla_event_slide
    use common_status, only : status_ok, status_out_of_memory, status_bad_geometry
    use sla_group, only : scan_result, slider, event_vectors, material_options, admitted, unbounded, most_entries
-   use sla_joint_points, only : joint_points, joint_law, joint_law_new, line, sticks, slides_up, slides_down, soft, &
+   use sla_joint_history, only : joint_history
+   use sla_joint_points, only : joint_law, joint_law_new, line, sticks, slides_up, slides_down, soft, &
       jump, nodal, across, along, shear, bond, bond_of, modulus, slips, is_closed, is_sliding, &
       scan_point
    use sla_tables, only : tooth_tables, tooth_tables_copy
@@ -22,7 +23,7 @@ module sla_interface
    !> Loads that are the same
    real(wp), parameter :: same = 1.0e-9_wp
 
-   type, extends(joint_points) :: interface_group
+   type, extends(joint_history) :: interface_group
    contains
       procedure :: matrix
       procedure :: force
@@ -553,7 +554,8 @@ contains
       end if
    end subroutine state
 
-   !> Rows as of a plane point: jumps [m] for strains, 1 across and 3 along the joint; 4 sigma, 6 tau; 7-8 the normal;
+   !> Rows as of a plane point: jumps [m] for strains, 1 across, 3 along the joint and 2, between shells, out of their
+   !> plane; 4 sigma, 6 tau, 5 that out of the plane; 7-8 the normal;
    !> 9 and 10 the stiffness left across and along; 11 tension tooth, 12 tooth of the cohesion; 15 area;
    !> 19 the band of its tooth tables [m]
    pure subroutine report(group, ua, ub, lambda, noise, values)
@@ -563,7 +565,7 @@ contains
       real(wp), intent(in) :: lambda
       real(wp), intent(in) :: noise
       real(wp), intent(out) :: values(:, :)     !! (report_rows, points)
-      real(wp) :: la(most_entries), lb(most_entries), da(2), db(2), k
+      real(wp) :: la(most_entries), lb(most_entries), da(2), db(2), k, stays
       type(line) :: law
       type(scan_result) :: found
       integer :: e, p
@@ -578,6 +580,12 @@ contains
             db = jump(group, e, p, lb)
             values(1:3:2, p) = da + lambda * db
             values(4, p) = k * values(1, p)
+            if (allocated(group%row)) then
+               values(2, p) = dot_product(group%row(:, 3, p), la(1:group%freedoms) + lambda * lb(1:group%freedoms))
+               stays = 0.0_wp
+               if (allocated(group%history)) stays = group%history(5, p)
+               values(5, p) = group%law%ks(e) * (values(2, p) - stays)
+            end if
             values(6, p) = law%k * values(3, p) - law%k0 + law%h(1) + lambda * law%h(2)
             values(7:8, p) = group%normal(:, e)
             values(9, p) = k / group%law%kn(e)

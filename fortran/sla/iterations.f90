@@ -15,13 +15,13 @@ module sla_iterations
    use common_kinds, only : wp
    use common_lists, only : code_newton => sla_event_newton, code_staggered => sla_event_staggered, &
       code_extrapolated => sla_event_extrapolated, code_unbalanced => sla_event_unbalanced
-   use common_status, only : status_cancelled, status_not_positive_definite, status_ok
+   use common_status, only : status_cancelled, status_not_positive_definite, status_ok, status_out_of_memory
    use sla_assembly, only : position
-   use sla_c_bindings, only : extrados_sparse_indefinite
+   use sla_c_bindings, only : extrados_sparse_again, extrados_sparse_indefinite
    use sla_coaxial, only : by_frozen, by_secant, by_tangent
-   use sla_group, only : element_group, history_group, most_entries, unbounded
+   use sla_group, only : element_group, friction_group, history_group, most_entries, unbounded
    use sla_model, only : element_model
-   use, intrinsic :: iso_c_binding, only : c_int
+   use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
    public :: implicit_step, explicit_step, evaluate, is_driven, longest_step, loads_run_away, few, growth
@@ -29,6 +29,11 @@ module sla_iterations
    !> Residual over the largest nodal force; of the convex problems
    real(wp), parameter :: tolerance = 1.0e-4_wp, inner_tolerance = 1.0e-5_wp
    integer, parameter :: most_newton = 12, most_loops = 300, most_inner = 40, most_halvings = 4
+   !> Loop of a staggered step after which Newton's method tries first, and then each time twice as many later
+   integer, parameter :: first_try = 4
+   !> Vectors of the solution with sliding friction, and the part of the right side that may be left
+   integer, parameter :: most_krylov = 40
+   real(wp), parameter :: krylov_tolerance = 1.0e-6_wp
    !> Iterations of a step after which the next may be longer
    integer, parameter :: few = 10
    real(wp), parameter :: growth = 1.5_wp
@@ -113,25 +118,38 @@ contains
       real(wp), intent(out) :: scale           !! largest nodal force of an element [N]
       real(wp) :: local(most_entries), f(most_entries), k(most_entries, most_entries), part
       integer :: g, e, i, n
+      integer :: wanted
+      logical :: couples
       n = model%mesh%equations
+      wanted = merge(most_entries, 0, whole)
       energy = 0.0_wp
       scale = 0.0_wp
       model%solution%force(:) = 0.0_wp
       if (whole) then
          model%stiffness%value(:) = 0.0_wp
          model%path%push(:) = 0.0_wp
+         model%path%beside(:, :) = 0.0_wp
+         model%path%coupled = .false.
       end if
       do g = 1, size(model%mesh%holders)
          associate (group => model%mesh%holders(g)%group, force => model%solution%force)
             do e = 1, group%elements
                call group%gather(e, model%path%u, local)
-               call respond(group, e, local, how, f, k, part)
+               call respond(group, e, local, how, f, k(1:wanted, 1:wanted), part)
                energy = energy + part
                do i = 1, group%freedoms
                   force(group%equation(i, e)) = force(group%equation(i, e)) + f(i) * group%factor(i, e)
                   scale = max(scale, abs(f(i)))
                end do
-               if (whole) call add_matrix(model, group, e, k)
+               if (whole) call add_matrix(model, group, e, k, .true.)
+               if (.not. (whole .and. how == by_tangent)) cycle
+               select type (group)
+               class is (friction_group)
+                  if (.not. group%slides) cycle
+                  call group%couple(e, local, k, couples)
+                  model%path%coupled = model%path%coupled .or. couples
+                  if (couples) call add_matrix(model, group, e, k, .false.)
+               end select
             end do
          end associate
       end do
@@ -146,28 +164,31 @@ contains
       real(wp), intent(in) :: local(:)
       integer, intent(in) :: how
       real(wp), intent(out) :: f(:)
-      real(wp), intent(out) :: k(:, :)
+      real(wp), intent(out) :: k(:, :)         !! none where its size is 0
       real(wp), intent(out) :: energy
+      real(wp) :: own(most_entries, most_entries)
       integer :: i, n
       select type (group)
       class is (history_group)
          call group%respond(e, local, how, f, k, energy)
       class default
          n = group%freedoms
-         call group%matrix(e, k)
+         call group%matrix(e, own)
          do i = 1, n
-            f(i) = dot_product(k(i, 1:n), local(1:n))
+            f(i) = dot_product(own(i, 1:n), local(1:n))
          end do
+         if (size(k) > 0) k(1:n, 1:n) = own(1:n, 1:n)
          energy = 0.5_wp * dot_product(f(1:n), local(1:n))
       end select
    end subroutine respond
 
    !> An element's matrix into that of the unknowns, and the forces by which moved supports act on them
-   pure subroutine add_matrix(model, group, e, k)
+   pure subroutine add_matrix(model, group, e, k, symmetric)
       type(element_model), intent(inout) :: model
       class(element_group), intent(in) :: group
       integer, intent(in) :: e
       real(wp), intent(in) :: k(:, :)
+      logical, intent(in) :: symmetric     !! else it goes beside the matrix
       integer :: i, j, n, row, column
       real(wp) :: value
       n = model%mesh%equations
@@ -180,9 +201,14 @@ contains
             value = k(i, j) * group%factor(i, e) * group%factor(j, e)
             if (column > n) then
                model%path%push(row) = model%path%push(row) + value * model%support%moved(column - n, 2)
-            else if (row >= column .and. row <= n) then
+            else if (symmetric .and. row >= column .and. row <= n) then
                associate (at => position(model%stiffness%start, model%stiffness%row, row, column))
                   model%stiffness%value(at) = model%stiffness%value(at) + value
+               end associate
+            else if (.not. symmetric .and. row <= n) then
+               associate (at => position(model%stiffness%start, model%stiffness%row, max(row, column), &
+                  min(row, column)), beside => model%path%beside)
+                  beside(at, merge(1, 2, row >= column)) = beside(at, merge(1, 2, row >= column)) + value
                end associate
             end if
          end do
@@ -212,6 +238,10 @@ contains
          z(:, 2) = fb(1:n) - path%push(1:n)
          status = extrados_sparse_indefinite(model%stiffness%factor, model%stiffness%value, 2_c_int, z)
          path%solutions = path%solutions + 1
+         if (status == status_ok .and. path%coupled) then
+            call solve_coupled(model, z(:, 1), status)
+            if (status == status_ok) call solve_coupled(model, z(:, 2), status)
+         end if
          if (status /= status_ok) return
          if (is_driven(model)) then
             change = target - path%lambda
@@ -225,6 +255,75 @@ contains
          if (.not. all(abs(z(:, 1)) <= unbounded)) status = status_not_positive_definite
       end associate
    end subroutine correct
+
+   !> The solution x of (K + C) x = b with the unsymmetric part C of sliding friction, from inv(K) b: GMRES (Saad and
+   !> Schultz 1986) on I + inv(K) C, which differs from the identity by as many vectors as points slide. The caller
+   !> measures the residual
+   subroutine solve_coupled(model, x, status)
+      type(element_model), intent(in) :: model
+      real(wp), intent(inout), contiguous :: x(:)      !! inv(K) b
+      integer(c_int), intent(out) :: status
+      real(wp), allocatable :: basis(:, :)
+      real(wp) :: h(most_krylov + 1, most_krylov), turn(2, most_krylov), right(most_krylov + 1), size_of, kept
+      integer :: i, j, k, info
+      allocate (basis(size(x), most_krylov + 1), stat=info)
+      status = merge(status_ok, status_out_of_memory, info == 0)
+      if (info /= 0) return
+      size_of = norm2(x)
+      if (.not. (size_of > 0.0_wp .and. size_of <= unbounded)) return
+      right = 0.0_wp
+      right(1) = size_of
+      basis(:, 1) = x / size_of
+      k = 0
+      do j = 1, most_krylov
+         call multiply_beside(model, basis(:, j), basis(:, j + 1))
+         status = extrados_sparse_again(model%stiffness%factor, 1_c_int, basis(:, j + 1))
+         if (status /= status_ok) return
+         basis(:, j + 1) = basis(:, j + 1) + basis(:, j)
+         do i = 1, j
+            h(i, j) = dot_product(basis(:, i), basis(:, j + 1))
+            basis(:, j + 1) = basis(:, j + 1) - h(i, j) * basis(:, i)
+         end do
+         h(j + 1, j) = norm2(basis(:, j + 1))
+         if (h(j + 1, j) > 0.0_wp) basis(:, j + 1) = basis(:, j + 1) / h(j + 1, j)
+         do i = 1, j - 1
+            kept = turn(1, i) * h(i, j) + turn(2, i) * h(i + 1, j)
+            h(i + 1, j) = -turn(2, i) * h(i, j) + turn(1, i) * h(i + 1, j)
+            h(i, j) = kept
+         end do
+         kept = hypot(h(j, j), h(j + 1, j))
+         if (.not. (kept > 0.0_wp .and. kept <= unbounded)) exit
+         turn(:, j) = [h(j, j), h(j + 1, j)] / kept
+         h(j, j) = kept
+         right(j + 1) = -turn(2, j) * right(j)
+         right(j) = turn(1, j) * right(j)
+         k = j
+         if (abs(right(j + 1)) <= krylov_tolerance * size_of) exit
+      end do
+      do i = k, 1, -1
+         right(i) = (right(i) - dot_product(h(i, i + 1:k), right(i + 1:k))) / h(i, i)
+      end do
+      if (k > 0) x = matmul(basis(:, 1:k), right(1:k))
+   end subroutine solve_coupled
+
+   !> Product of what sliding friction adds to the matrix
+   pure subroutine multiply_beside(model, x, y)
+      type(element_model), intent(in) :: model
+      real(wp), intent(in) :: x(:)
+      real(wp), intent(out) :: y(:)
+      integer :: column, row
+      integer(c_int64_t) :: at
+      y = 0.0_wp
+      associate (start => model%stiffness%start, beside => model%path%beside)
+         do column = 1, size(x)
+            do at = start(column) + 1, start(column + 1)
+               row = int(model%stiffness%row(at)) + 1
+               y(row) = y(row) + beside(at, 1) * x(column)
+               y(column) = y(column) + beside(at, 2) * x(row)
+            end do
+         end do
+      end associate
+   end subroutine multiply_beside
 
    !> Go a part of the way of the last correction
    pure subroutine move(model, part)
@@ -282,7 +381,8 @@ contains
       end do
    end subroutine newton_step
 
-   !> Damage frozen, then updated, until nothing changes
+   !> Damage frozen, then updated, until nothing changes; now and then Newton's method tries to end it from the damage
+   !> so far
    subroutine staggered_step(model, length, iterations, found, carried, lost, status)
       type(element_model), intent(inout) :: model
       real(wp), intent(in) :: length
@@ -291,9 +391,15 @@ contains
       logical, intent(out) :: carried
       real(wp), intent(inout) :: lost
       integer(c_int), intent(out) :: status
-      real(wp) :: energy, scale
+      real(wp), allocatable :: tried(:)
+      real(wp) :: energy, scale, lambda
+      integer :: next_try, inner, info
       found = .false.
       carried = .true.
+      next_try = first_try
+      allocate (tried, mold=model%path%u, stat=info)
+      status = merge(status_ok, status_out_of_memory, info == 0)
+      if (info /= 0) return
       do iterations = 1, most_loops
          call frozen_solution(model, length, status)
          if (status /= status_ok) return
@@ -304,6 +410,19 @@ contains
          model%path%residual = residual_of(model, scale)
          found = model%path%residual < tolerance
          if (found) return
+         if (iterations == next_try) then
+            next_try = 2 * next_try
+            tried(:) = model%path%u
+            lambda = model%path%lambda
+            call newton_step(model, length, inner, found, status)
+            if (status /= status_ok) return
+            carried = .not. has_run_away(model, length)
+            if (found .and. carried) return
+            model%path%u(:) = tried
+            model%path%lambda = lambda
+            carried = .true.
+            found = .false.
+         end if
          if (cancel_requested()) status = status_cancelled
          if (status /= status_ok) return
       end do

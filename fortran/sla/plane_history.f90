@@ -54,13 +54,14 @@ contains
    end function law_of
 
    !> Histories by the softer of both directions
-   subroutine begin(group, status)
+   subroutine begin(group, u, status)
       class(plane_history), intent(inout) :: group
+      real(wp), intent(in) :: u(0:)
       integer(c_int), intent(out) :: status
       type(coaxial_law) :: law
       integer :: e, p
-      call group%new_histories(status)
-      if (status /= status_ok) return
+      call group%new_histories(2, status)
+      if (status /= status_ok .or. size(u) == 0) return
       do p = 1, group%points
          e = (p - 1) / group%per + 1
          law = law_of(group, e, p)
@@ -98,7 +99,11 @@ contains
          call group%nodal(e, p, [0.0_wp, 0.0_wp, 1.0_wp], b(:, 3))
          energy = energy + group%weight(p) * state%energy
          do i = 1, n
-            f(i) = f(i) + group%weight(p) * dot_product(b(i, :), state%sigma)
+            f(i) = f(i) + group%weight(p) * (b(i, 1) * state%sigma(1) + b(i, 2) * state%sigma(2) + &
+               b(i, 3) * state%sigma(3))
+         end do
+         if (size(k) == 0) cycle
+         do i = 1, n
             db(i, :) = group%weight(p) * matmul(b(i, :), state%matrix)
          end do
          do i = 1, n

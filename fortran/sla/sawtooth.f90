@@ -49,6 +49,8 @@ module sla_sawtooth
       procedure :: slope
       procedure :: lost
       procedure :: strain_at
+      procedure :: progress
+      procedure :: strain_of
    end type softening
 
 contains
@@ -234,6 +236,31 @@ contains
          end if
       end do
    end function strain_at
+
+   !> How far a total strain has gone along the softening branch, in parts of the range: 0 up to the peak. Laws of one
+   !> kind have the same part of their strengths left at the same progress
+   pure function progress(law, eps) result(x)
+      class(softening), intent(in) :: law
+      real(wp), intent(in) :: eps
+      real(wp) :: x
+      x = 0.0_wp
+      if (eps > law%peak) x = (parameter_of(law, eps) - law%first()) / span(law)
+   end function progress
+
+   !> Total strain at a progress
+   pure function strain_of(law, x) result(eps)
+      class(softening), intent(in) :: law
+      real(wp), intent(in) :: x
+      real(wp) :: eps
+      eps = law%strain(law%first() + x * span(law))
+   end function strain_of
+
+   !> Parameter from the peak to the end of the linear law, the decay, or Hordijk's ultimate crack strain
+   pure function span(law) result(length)
+      class(softening), intent(in) :: law
+      real(wp) :: length
+      length = merge(law%range - law%peak, law%range, law%kind == law_linear)
+   end function span
 
    !> Integral of Hordijk's curve from 0 to r, both axes relative
    pure function hordijk_integral(r) result(area)

@@ -115,6 +115,9 @@ module sla_state
       real(wp), allocatable :: start(:)                  !! (0:n + moved) of the first state [m]
       real(wp) :: drive_start = 0.0_wp                   !! control there [J]
       real(wp), allocatable :: push(:)                   !! (0:n + moved) forces per multiplier of moved supports [N]
+      !> (entries, 2) of the matrix, and of its transpose: what sliding friction adds, see sla_group (couple)
+      real(wp), allocatable :: beside(:, :)
+      logical :: coupled = .false.                       !! it adds something
       real(wp) :: lambda = 0.0_wp                        !! of the iteration
       real(wp) :: lambda_now = 0.0_wp, lambda_before = 0.0_wp
       real(wp) :: drive = 0.0_wp                         !! work-conjugate displacement of load B in the last state [J]

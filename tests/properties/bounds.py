@@ -184,8 +184,8 @@ SOLE = {"structure": {"kind": "building", "storeys": [3.0], "beds": [{"name": "s
     lambda d: changed(d, structure={"beds": [{"name": "sole"}]}, joints=MORTAR)
 ), 0.02, share=0.2, examples=(SOLE,))  # fmt: skip
 def no_more_than_coulomb(deck: Deck, within: float) -> None:
-    """On a weak sole the capacity stays below friction times the weight and cohesion times the area, an upper bound where the model,
-    whose joints stay elastic out of their plane, carries more."""
+    """On a weak sole the building slides: its capacity stays below friction times the weight and cohesion times the area. A model that
+    carries more says that this is an upper bound."""
     answer = ask(deck, "pushover", direction=0.0, mesh={"size": 1.0, "layers": 3}, events=20000)
     ok(answer)
     r = answer.results

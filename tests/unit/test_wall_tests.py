@@ -41,7 +41,7 @@ def test_limit_analysis_of_a_slender_wall_is_its_flexure(tmp_path, span: float) 
 
 def test_statistics() -> None:
     def pair(failure: str, ratio: float, said: str) -> tuple[tool.Wall, tool.Predicted]:
-        wall = tool.Wall("w", 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, failure, 100.0)
+        wall = tool.Wall("w", 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, failure, 100.0, 0.01)
         return wall, tool.Predicted(100.0 * ratio, said)
 
     pairs = [pair("S", 2.0, "S"), pair("S", 0.5, "F"), pair("F", 1.0, "F"), pair("H-FS", 1.0, "S")]

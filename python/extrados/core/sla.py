@@ -86,6 +86,8 @@ START, HELD, HELD_RATE, MARK, MODE = 0, 1, 6, 8, 10
 VARIANTS = tuple(lists.numbers("sla_variant"))
 #: How a run goes on without equilibrium, in the order of fortran/api/api_sla.f90 (follow)
 CONTINUATIONS = ("newton", "implicit-explicit")
+#: Rows of the histories of a point, see fortran/sla/group.f90
+HISTORIES = 7
 #: Ratio of neighbouring bands where the band follows from the crack: the energy is right to a percent
 BAND_STEP = 1.02
 
@@ -466,17 +468,20 @@ class Model(Owner):
         return bool(yes)
 
     def histories(self) -> np.ndarray:
-        """The histories of all points (2, points) in the last state of equilibrium iterations: greatest strains in tension and in
-        compression."""
+        """The histories of all points (HISTORIES, points) in the last state of equilibrium iterations: of masonry the greatest
+        strains in tension and in compression, of joints those of fortran/sla/joint_law.f90."""
         values, status = _core.api_sla.histories(self.handle, self.points)
         check(status, "histories of the points")
         return np.array(values, order="F")
 
-    def go_on(self, displacement: npt.ArrayLike, histories: npt.ArrayLike) -> None:
-        """Begin a stage with equilibrium iterations, at a displacement (nodes, freedoms) [m] and histories (2, points) of another."""
+    def go_on(self, displacement: npt.ArrayLike, histories: npt.ArrayLike | None = None) -> None:
+        """Begin a stage with equilibrium iterations, at a displacement (nodes, freedoms) [m] and histories (HISTORIES, points) of
+        another; by default those that the events so far have left."""
+        points = 0 if histories is None else self.points
+        histories = np.zeros((HISTORIES, 0)) if histories is None else histories
         status = _core.api_sla.go_on(
             self.handle, real("displacement", np.transpose(displacement), (self.freedoms, self.nodes)),
-            real("histories", histories, (2, self.points)),
+            real("histories", histories, (HISTORIES, points)),
         )  # fmt: skip
         check(status, "continuation")
         self.iterates = True

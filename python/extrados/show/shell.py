@@ -124,6 +124,13 @@ def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 1e3 * get(f"{prefix}envelope_displacement"), get(f"{prefix}envelope_load") / 1e3, color=color,
                 linewidth=1.5, label=f"push to {numbers.sense}",
             )  # fmt: skip
+            step = (get(f"{prefix}event_step") > 0) & fine
+            if step.any():
+                label = "equilibrium iterations" if not prefix else None
+                ax.plot(d[step], p[step], ".", color=style.STEPS, markersize=4, zorder=3, label=label)
+            if numbers.drop_displacement_m is not None:
+                label = "drop to 80 % of the peak" if not prefix else None
+                ax.axvline(1e3 * numbers.drop_displacement_m, color="#777", linestyle=":", linewidth=0.9, label=label)
             idea = numbers.bilinear
             if idea:
                 shift = get(f"{prefix}envelope_displacement")[0]
@@ -147,7 +154,8 @@ def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         right.set_ylabel("base shear over weight")
         ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
-            "Capacity curves: every state (thin), the envelope and its bilinear idealisation of equal area; dotted, Coulomb's limit of the level that slides first, "
+            "Capacity curves: every state (thin), the envelope and its bilinear idealisation of equal area; dots, states found by "
+            "equilibrium iterations beyond single events; dotted, Coulomb's limit of the level that slides first, "
             "which the curve does not include; "
             "variants of what is assumed in blue-grey, other analyses of the run in grey."
         )

@@ -14,7 +14,7 @@ from extrados.show import style
 from extrados.show.cracked import CORNERS, CRACKS, at_points, polygons, scale
 from extrados.show.sla_film import film_sla
 
-LOST, ENVELOPE, STEPS = "#d9822b", "#1f4e79", "#3a7d44"
+LOST, ENVELOPE = "#d9822b", "#1f4e79"
 #: Panels that stand beside each other at most; one more does before the next row begins
 MOST_BESIDE = 3
 STAGES = ("#7b93ab", "#b3342d", "#1f4e79", "#d9822b", "#3a7d44", "#7b2d8b")
@@ -162,7 +162,7 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                     linewidth=1.4, label=f"envelope, load to {numbers.sense}")  # fmt: skip
             step = (get(f"{prefix}event_step") > 0) & fine
             if step.any():
-                ax.plot(d[step], p[step], ".", color=STEPS, markersize=4, zorder=3,
+                ax.plot(d[step], p[step], ".", color=style.STEPS, markersize=4, zorder=3,
                         label="equilibrium iterations" if not prefix else None)  # fmt: skip
             if numbers.get("drop_displacement_m") is not None:
                 ax.axvline(1e3 * numbers.drop_displacement_m, color="#777", linestyle=":", linewidth=0.9,

@@ -79,6 +79,16 @@ class ShellModel:
         return any(isinstance(g, core.ShellJoints) and bool(np.isfinite(g.friction).any()) for g in self.groups)
 
     @property
+    def continues(self) -> bool:
+        """Whether equilibrium iterations may follow the building."""
+        return True
+
+    @property
+    def steps_alone(self) -> bool:
+        """Whether they follow it from the first load on: joints slide out of the plane of their wall in steps alone."""
+        return self.slides
+
+    @property
     def watched(self) -> list[core.Monitor]:
         """What is recorded at each event."""
         return [self.control]
@@ -180,7 +190,7 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
         np.isfinite(j.strength["friction"]) for j in mesh.joints
     ):
         raise Refused(
-            'joints that slide keep forces that only load-unload can follow: give them friction = "no-sliding", or leave '
+            'joints that slide keep forces that only "continue" and "load-unload" can follow: give them friction = "no-sliding", or leave '
             "without_equilibrium out",
             ("analysis", "without_equilibrium"),
         )
@@ -199,7 +209,7 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     if not weight > 0.0:
         raise BadGeometry("a building without weight: give the material a density")
     behaviour = core.Behaviour(
-        options.cracking, options.shear_retention, options.crack_closure,
+        options.cracking, options.shear_retention, options.closes,
         MOST_CHANGES_OF_JOINTS if mesh.joints else core.Behaviour.most_changes,
     )  # fmt: skip
     control = _control(mesh, options, along, held)

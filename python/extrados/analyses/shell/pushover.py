@@ -107,7 +107,7 @@ def _stages(
     main = min(options.main, len(staged) - 1)
     if main != options.main:
         result.warnings.append(f"the numbers are those of stage {options.stage_names[main]}, the last that began")
-    if {stage.sense for stage in options.stages if not stage.settlements} == {"+", "-"} and not options.crack_closure:
+    if {stage.sense for stage in options.stages if not stage.settlements} == {"+", "-"} and not options.closes:
         result.warnings.append(
             "cracks stay open where the push turns: what one sense has opened carries no pressure in the other; let "
             "crack_closure = true shut them"
@@ -282,7 +282,8 @@ def _joints(model: ShellModel, curve: Curve, state: State) -> list[dict[str, Any
         found: dict[str, Any] = {"joint": joint.name, "wall": joint.wall}
         for prefix, at in (("", state), ("last_", last)):
             found[f"{prefix}opening_m"] = max(float(at.report["strain_n"][points].max()), 0.0)
-            found[f"{prefix}slip_m"] = float(np.abs(at.report["strain_ns"][points]).max())
+            slip = np.hypot(at.report["strain_ns"][points], at.report["strain_s"][points])
+            found[f"{prefix}slip_m"] = float(slip.max())
         area = last.report["volume"][points]
         broken = (last.report["tooth_n"][points] > 1) | (last.report["tooth_s"][points] > 1)
         found["first_base_shear_N"] = float(force[hits[0]]) if len(hits) else None

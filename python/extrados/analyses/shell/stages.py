@@ -38,6 +38,7 @@ def run_stages(
             return [(model, curve)]
         applied, moved, damage = model.constant, model.settled.copy(), core_model.damage()
         ledger, events = NOTHING_DONE, 0
+        path: tuple[np.ndarray, np.ndarray] | None = None  # displacements and histories at the end of steps
         if stage_a is not None and len(stage_a):
             ledger, events = stage_a.ledger, int(stage_a.number[-1])
         pushed: list[tuple[np.ndarray, float]] = []  # the load of each push, and its multiplier
@@ -48,22 +49,25 @@ def run_stages(
             if len(moved):
                 core_model.supports(moved, staged.rate if staged.driven else np.zeros(len(moved)))
             core_model.loads(staged.constant, staged.reference, carried=True, events=events, ledger=ledger)
-            start = core_model.displacement(0.0)
-            if staged.driven:
+            if path is not None:
+                core_model.go_on(*path)
+            start = core_model.displacement(0.0) if path is None else path[0]
+            if staged.driven and path is None:
                 staged.already = float(core_model.reactions()[:, 0] @ staged.rate)
+            if staged.driven:
                 staged.control = _of_ground(staged)
             watch = staged.control
             before = float(watch.share @ start[watch.node, watch.direction])
             own = options.model_copy(
                 update={
                     "events": stage.events or options.events, "stop_fraction": stage.stop_fraction,
-                    "target_displacement": None,
+                    "target_displacement": None, "without_equilibrium": options.rule,
                     **({} if k == options.main else {"states": [], "probes": []}),
                 }
             )  # fmt: skip
             told = lambda done, total, text, name=name: progress(done, total, f"stage {name}, {text}")  # noqa: E731
             stop = _stop(model, staged, stage, before, k)
-            if not staged.driven:
+            if not staged.driven and path is None:
                 # A mechanism by the compliance of the building as it was: a stage may begin with little of it left
                 softer = _softness(core_model, staged.reference, start) / sound[_direction(options, stage)]
                 stop = replace(stop, compliance=max(model.mechanism_ratio / softer, 1.0))
@@ -79,6 +83,9 @@ def run_stages(
             found.append((staged, curve))
             if not curve.leads_on(options.stage_names[k + 1 :]):
                 break
+            if path is not None and staged.driven and len(curve.events):
+                curve.already = float(curve.events.pull[0])
+            path = None if curve.histories is None else (curve.states[-1].displacement, curve.histories)
             done = curve.events
             reached, damage = float(done.load[-1]), curve.damage_end
             ledger, events = done.ledger, int(done.number[-1])

@@ -168,10 +168,15 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] = key(
         1e4, "stop where the compliance has grown by this factor"
     )
-    crack_closure: bool = key(False, "cracks that close regain their stiffness")
-    without_equilibrium: Literal["load-unload", "continue", "proportional", "force-release"] = key(
-        "load-unload",
-        "where no load suits all points, see sla; continue, not in stages: equilibrium iterations in displacement control",
+    crack_closure: bool | None = key(
+        None,
+        "cracks that close regain their stiffness; default true of rotating cracks that equilibrium iterations follow, else false",
+    )
+    without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"] = key(
+        "continue",
+        "where no load suits all points, see sla: equilibrium iterations in displacement control continue from there (rotating "
+        "cracks; joints that slide from the first load on), or A stays and the greatest lower limit decides, which is the default "
+        "of stages",
         source="thesis 4.3.1",
     )
     continuation: Literal["newton", "implicit-explicit"] = key("newton", "equilibrium iterations, see sla")
@@ -220,7 +225,6 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
                 "directions": self.directions != ["+"], "drives": bool(self.drives), "variants": bool(self.variants),
                 "target_displacement": self.target_displacement is not None, "stop_fraction": self.stop_fraction > 0.0,
                 'without_equilibrium = "proportional"': self.without_equilibrium == "proportional",
-                'without_equilibrium = "continue"': self.without_equilibrium == "continue",
                 "constant_damage = false": not self.constant_damage,
             }
         )  # fmt: skip
@@ -233,6 +237,18 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
         if self.shear_retention is not None and self.cracking == "isotropic":
             raise ValueError("isotropic cracking has no shear retention")
         return self
+
+    @property
+    def rule(self) -> str:
+        """What follows where no load suits all points."""
+        staged = self.stages and "without_equilibrium" not in self.model_fields_set
+        return "load-unload" if staged else self.without_equilibrium
+
+    @property
+    def closes(self) -> bool:
+        """Whether cracks that close regain their stiffness."""
+        follows = self.rule == "continue" and self.cracking == "rotating"
+        return follows if self.crack_closure is None else self.crack_closure
 
     @property
     def main(self) -> int:

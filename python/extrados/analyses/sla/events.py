@@ -38,6 +38,8 @@ STRAINS_AND_STRESSES = core.REPORT[:6]
 #: Drift to which a run goes on that has lost equilibrium under its constant loads; longest step of equilibrium iterations, and
 #: displacement below which nothing counts as running away, over the extent across the control displacement
 DRIFT, LONGEST_STEP, RUNAWAY = 0.01, 1e-4, 2.5e-3
+#: Part of the work of the loads by which the energies of steps may differ without a warning
+UNBALANCED = 0.06
 #: How a run ends in which the load can grow for ever, and one that has reached a displacement
 UNBOUNDED, MECHANISM_REACHED, REACHED = (
     core.STOPS[lists.number("sla_stop", name)] for name in ("unbounded", "mechanism", "displacement")
@@ -142,7 +144,15 @@ class Curve:
             return False  # a stage may begin under a load of the opposite sense and never leave it
         if self.events.reason in ("mechanism", FELL, AXIAL) or self.flat():
             return True
-        return fallen(*self.envelope(unit))
+        return fallen(*self.envelope(unit)) or self.levels_off(unit)
+
+    def levels_off(self, unit: float) -> bool:
+        """Do steps end on a plateau: has the load grown by no more than FALLEN over the second half of the way?"""
+        if not self.events.steps[-1:].any():
+            return False
+        d, p = self.envelope(unit)
+        half = np.interp(0.5 * (d[0] + d[-1]), d, p)
+        return bool(p[-1] > 0.0 and p[-1] - half <= FALLEN * p[-1])
 
     def flat(self) -> bool:
         """Is the structure a mechanism at the end, by its stiffness: does the load grow by no more than FALLEN within small
@@ -378,9 +388,11 @@ def run_reference_loads(
         way = UnderWay.of(kept)
         core_model.renew(kept["damage"], kept["standing"])
     spent_before, begun = way.seconds, way.done
-    goes_on = options.without_equilibrium == "continue" and core_model.continues
+    goes_on = options.without_equilibrium == "continue" and core_model.continues and model.continues
     variant = "load-unload" if options.without_equilibrium == "continue" else options.without_equilibrium
     follow(core_model, model, options.continuation if goes_on else None)
+    if goes_on and model.steps_alone and not core_model.iterates:
+        core_model.go_on(core_model.displacement(0.0))
     ends_by_drift = goes_on and stop.displacement == np.inf and not stop.side
     if ends_by_drift:
         stop = replace(stop, displacement=DRIFT * model.reach)
@@ -482,6 +494,16 @@ def run_reference_loads(
             "isotropic masonry alone (no bed joints, lateral reduction, confinement, shear retention or bars): the events beyond "
             "are those of load-unload."
         )
+    steps = events.steps & events.equilibrium
+    if steps.any():
+        # Work that unloading takes back is no measure
+        work = np.maximum(np.maximum.accumulate(np.abs(events.external))[steps], np.finfo(float).tiny)
+        gap = float((np.abs(events.external - events.stored - events.lost)[steps] / work).max())
+        if gap > UNBALANCED:
+            curve.warnings.append(
+                f"Work, stored and dissipated energy of the steps in displacement control differ by {100 * gap:.0f} % of the work of the "
+                "loads. Loads and displacements are in equilibrium; the dissipated energy is not reliable."
+            )
     if events.reason in (TOO_FAR, UNBOUNDED) and not events.steps[-1:].any():
         watch, ends = model.control, [core_model.displacement(load) for load in (0.0, 1.0)]
         constant, one = (sign * float(watch.share @ u[watch.node, watch.direction]) for u in ends)

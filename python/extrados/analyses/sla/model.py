@@ -85,6 +85,17 @@ class SlaModel:
         """True where a joint has a coefficient of friction."""
         return any(isinstance(g, core.Joints) and bool(np.isfinite(g.friction).any()) for g in self.groups)
 
+    @property
+    def continues(self) -> bool:
+        """Whether equilibrium iterations may follow the wall: dry joints end in the mechanism of limit analysis by events."""
+        joints = [g for g in self.groups if isinstance(g, core.Joints)]
+        return not joints or any(g.tension is not None or g.cohesion is not None for g in joints)
+
+    @property
+    def steps_alone(self) -> bool:
+        """Whether they follow it from the first load on."""
+        return False
+
     def open(self, options: Sla, threads: int) -> core.Model:
         """The model in the core; Refused names a free node or a bad element."""
         # Below this many points a thread costs more than it saves; results are the same for any number

@@ -1,0 +1,39 @@
+"""Walls of a public database of tests, blind: one rule for all, no parameter set from a result (tools/wall_tests.py)."""
+
+import math
+import sys
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "tools"))
+import wall_tests as tool
+
+TABLE = Path(__file__).parent / "wall-tests.csv"
+
+
+def most_shear(wall: tool.Wall) -> float:
+    """Shear [N] of a plastic section that crushes at its whole strength and pulls at its tensile strength everywhere."""
+    axial = wall.axial + tool.MASONRY * tool.GRAVITY * wall.length * wall.height * wall.thickness
+    area = wall.length * wall.thickness
+    pressed = (axial + wall.tensile * area) / (wall.compressive + wall.tensile) / wall.thickness
+    moment = 0.5 * (axial + wall.tensile * area) * (wall.length - pressed)
+    return moment / (wall.span * wall.height)
+
+
+@pytest.mark.verify
+def test_membranes_of_tested_walls_stay_within_plastic_flexure() -> None:
+    """Every wall has a result; none exceeds its plastic flexural strength, and few stay far below it: a membrane does not
+    slide. Bias and scatter against the measured peaks are printed."""
+    walls = tool.read_walls(TABLE)
+    with ProcessPoolExecutor(2) as pool:
+        found = [by["membrane"] for by in pool.map(tool.by_membrane, walls)]
+    assert len(walls) == 33 and not any(one.why_not for one in found)
+    for wall, one in zip(walls, found, strict=True):
+        assert one.strength <= 1.02 * most_shear(wall), wall.name
+    share = sorted(one.strength / wall.flexural for wall, one in zip(walls, found, strict=True))
+    assert 0.95 <= share[len(share) // 2] <= 1.15
+    bias, scatter, count = tool.statistics(list(zip(walls, found, strict=True)))
+    print(f"predicted over measured: {bias:.3f}, scatter {scatter:.3f}, {count} walls")
+    assert math.isfinite(bias)
