@@ -88,6 +88,23 @@ def test_each_span_of_a_viaduct_has_its_own_rise(shape: str) -> None:
     assert not any("pier" in name for name in found)
 
 
+def test_the_drawing_is_to_scale_and_needs_no_result(tmp_path: Path) -> None:
+    """A sheet of 170 mm, the width of the printed text; no analysis has stored the geometry."""
+    arch = {"kind": "arch", "radius": 5.0, "thickness": 0.2, "embrace": 180.0, "voussoirs": 24, "depth": 2.0}
+    run = extrados.run({"structure": arch, "joints": {"normal_stiffness": 1e9}, "analysis": {"kind": "dem-parameters"}})
+    assert not any(run.arrays.values())
+    run.write(tmp_path / "out")
+    drawing = (tmp_path / "out" / "figures" / "building.svg").read_text()
+    width = float(re.search(r'width="([\d.]+)pt"', drawing)[1])
+    assert width / 72.0 * 25.4 == pytest.approx(170.0, abs=0.1)
+    page = (tmp_path / "out" / "report.html").read_text()
+    scale = int(re.search(r"at scale 1:(\d+)", page)[1])
+    # the dimension line of the clear span, 9.8 m, is the longest level line in the colour of dimensions
+    lines = re.findall(r'<path d="M ([\d.]+) ([\d.]+) \s*L ([\d.]+) ([\d.]+) \s*"[^>]*stroke: #1f4e79', drawing)
+    longest = max(float(c) - float(a) for a, b, c, d in lines if b == d)
+    assert longest / 72.0 * 25.4 == pytest.approx(9.8e3 / scale, rel=1e-3)
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("report") / "out"
