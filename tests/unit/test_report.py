@@ -3,6 +3,7 @@
 import itertools
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,8 +15,10 @@ from extrados.results import validity
 from extrados.results.store import StoreError
 from extrados.show import html, typeset
 from extrados.show.document import Code, Document, Heading, Table, Words
+from extrados.show.language import Language
 from extrados.show.report import write_report
 from extrados.show.telling import _flowing
+from extrados.show.template import read_template
 
 ARCH = {"kind": "arch", "radius": 2.0, "thickness": 0.4, "embrace": 180.0, "voussoirs": 12}
 
@@ -92,7 +95,7 @@ def test_the_drawing_is_to_scale_and_needs_no_result(tmp_path: Path) -> None:
     """A sheet of 170 mm, the width of the printed text; no analysis has stored the geometry."""
     arch = {"kind": "arch", "radius": 5.0, "thickness": 0.2, "embrace": 180.0, "voussoirs": 24, "depth": 2.0}
     run = extrados.run({"structure": arch, "joints": {"normal_stiffness": 1e9}, "analysis": {"kind": "dem-parameters"}})
-    assert not any(run.arrays.values())
+    assert not any("outline" in there for there in run.arrays.values())
     run.write(tmp_path / "out")
     drawing = (tmp_path / "out" / "figures" / "building.svg").read_text()
     width = float(re.search(r'width="([\d.]+)pt"', drawing)[1])
@@ -116,13 +119,134 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_page_says_who_what_and_how_to_repeat(folder: Path) -> None:
     page = (folder / "report.html").read_text()
-    for words in ("St Martin", "A. Mason", "2026-05-04", "Contents", "clear span", "3.6", "material.density", "2100", "kg/m^3",
+    for words in ("St Martin", "A. Mason", "2026-05-04", "Contents", "clear span", "3.60 m", ">density<", "2100 kg/m³",
                   "Limits of validity", "To repeat it", "Figure 2. The building", "Next step.", validity.Tilt.limits[:40]):  # fmt: skip
         assert words in page, words
     assert "An &lt;arch&gt;" in page and "<details" not in page, "what is folded vanishes in print"
     assert "analysis" in page and "http://" not in page.replace("http://www.w3.org", "")
-    sums = re.findall(r"<th>results.h5</th><td>([0-9a-f]{64})</td>", page)
+    sums = re.findall(r"<th>results.h5</th><td[^>]*>([0-9a-f]{64})</td>", page)
     assert sums == [extrados.load(folder).summary["files"]["results.h5"]]
+
+
+def _paper(folder: Path, name: str = "report.pdf") -> tuple[Any, str]:
+    pypdf = pytest.importorskip("pypdf")
+    reader = pypdf.PdfReader(folder / name)
+    return reader, "\n".join(page.extract_text() for page in reader.pages)
+
+
+def test_paper_is_accessible_and_its_source_sets_it_anew(folder: Path) -> None:
+    typst = pytest.importorskip("typst")
+    write_report(folder, printed=True)
+    reader, text = _paper(folder)
+    root = reader.trailer["/Root"]
+    assert root["/MarkInfo"]["/Marked"] and root["/Lang"] == "en" and "/StructTreeRoot" in root
+    assert "<pdfuaid:part>1</pdfuaid:part>" in root["/Metadata"].get_data().decode()
+    assert [one["/Title"] for one in reader.outline if isinstance(one, dict)] and reader.metadata["/Title"].startswith(
+        "An <arch>"
+    )
+    seen, waiting, alternatives = set(), [root["/StructTreeRoot"]], 0
+    while waiting:  # every figure of the tree of tags has its alternative text
+        one = waiting.pop().get_object()
+        if not isinstance(one, dict) or id(one) in seen:
+            continue
+        seen.add(id(one))
+        if one.get("/S") == "/Figure":
+            assert one.get("/Alt")
+            alternatives += 1
+        kids = one.get("/K", [])
+        waiting += [kid for kid in (kids if isinstance(kids, list) else [kids]) if not isinstance(kid, int)]
+    assert alternatives >= 2
+    for page in reader.pages:
+        for font in (one.get_object() for one in page["/Resources"].get("/Font", {}).values()):
+            held = font["/DescendantFonts"][0].get_object()["/FontDescriptor"].get_object()
+            assert {"/FontFile2", "/FontFile3"} & set(held), "embedded"
+    again = typst.compile(str(folder / "report.typ"), root=str(folder), format="pdf", ignore_system_fonts=True)
+    assert again.startswith(b"%PDF") and "St Martin" in text
+
+
+OFFICE = """language = "it"
+office = "Studio Bianchi"
+client = "Diocesi di Verona"
+reviewer = "B. Rossi"
+revision = "2"
+signatures = ["Progettista", "Collaudatore"]
+colour = "#7a1f1f"
+sections = ["limits", "answer"]
+[fields]
+Protocollo = "117/2026"
+"""
+
+
+def test_the_template_of_an_office_orders_and_chooses(folder: Path, tmp_path: Path) -> None:
+    template = tmp_path / "report.toml"
+    template.write_text(OFFICE)
+    write_report(folder, printed=True, template=template)
+    reader, text = _paper(folder)
+    for words in (
+        "Studio Bianchi",
+        "Diocesi di Verona",
+        "B. Rossi",
+        "117/2026",
+        "Progettista",
+        "St Martin",
+        "A. Mason",
+    ):
+        assert words in text, words
+    assert [one["/Title"] for one in reader.outline] == ["1 Limiti di validità", "2 Esito"], (
+        "the order and choice of the office"
+    )
+    assert "#7a1f1f" in (folder / "report.html").read_text()
+    write_report(folder, printed=True)
+
+
+@pytest.mark.parametrize(
+    ("line", "complaint"),
+    [
+        ('logo = "../logo.png"', "logo.png"), ('logo = "/etc/passwd"', "inside the template's folder"), ('logo = "logo.svg"', "ends in"),
+        ('logo = "text.png"', "is no PNG"), ('logo = "large.png"', "at most 1 MB"), ('colour = "red); #panic()"', "colour"),
+        ('sections = ["answer", "answer"]', "each section once"), ('sections = ["cover"]', "sections"), ('surprise = 1', "surprise"),
+        ('language = "xx"', "language"), ("office = ", "TOML"), (f'office = "{"x" * 300}"', "office"),
+    ],
+)  # fmt: skip
+def test_a_wrong_template_is_refused_in_words(tmp_path: Path, line: str, complaint: str) -> None:
+    (tmp_path / "in").mkdir()
+    (tmp_path / "logo.png").write_bytes(b"\x89PNG\r\n\x1a\n")
+    (tmp_path / "in" / "text.png").write_text("no picture")
+    (tmp_path / "in" / "large.png").write_bytes(b"\x89PNG\r\n\x1a\n" + bytes(1_100_000))
+    (tmp_path / "in" / "report.toml").write_text(line)
+    with pytest.raises(StoreError, match=complaint):
+        read_template(tmp_path / "in" / "report.toml")
+
+
+def test_quantities_are_those_of_engineers() -> None:
+    english, italian = Language(), Language("it")
+    values = [
+        (2.8155e6, "N"),
+        (8e6, "Pa"),
+        (0.55, "m"),
+        (2.9, "m"),
+        (-1.7e-9, "g"),
+        (0.21634, "g"),
+        (2348.0, "kg/m^3"),
+        (0.0, "N"),
+    ]
+    assert [english.quantity(*one) for one in values] == [
+        "2820 kN", "8.00 MPa", "550 mm", "2.90 m", "−1.70 × 10^-9 g", "0.216 g", "2350 kg/m³", "0 kN"
+    ]  # fmt: skip
+    assert (
+        italian.quantity(8.25e6, "Pa") == "8,25 MPa" and italian.quantity(2345.0, "kg/m^3", given=True) == "2345 kg/m³"
+    )
+    assert english.quantity(9.9996, "m") == "10.0 m" and english.given(0.6) == "0.6" and italian.given(1.35) == "1,35"
+
+
+def test_at_a_hinge_the_printed_stress_is_the_strength(tmp_path: Path) -> None:
+    """With stone that crushes, the force at a hinge stands off the edge by N/(2 f depth): its mean stress is the strength f."""
+    deck = {"structure": ARCH, "material": {"compressive_strength": "2 MPa"}, "analysis": {"kind": "tilt"}}
+    extrados.run(deck).write(tmp_path / "out")
+    page = (tmp_path / "out" / "report.html").read_text()
+    table = page[page.index("mean stress") :]
+    stresses = [float(x) for x in re.findall(r"<td>([\d.]+) MPa</td></tr>", table[: table.index("</table>")])]
+    assert max(stresses) == pytest.approx(2.0, rel=0.02) and len([x for x in stresses if x > 1.9]) >= 4, "four hinges"
 
 
 def test_paper_holds_what_the_page_holds(folder: Path) -> None:
