@@ -23,6 +23,8 @@ INK = "#1f4e79"
 WIDTH, HEIGHT, MARGIN = 170.0, 178.0, 4.0
 #: Rows of the title strip, room for one line of dimensions, between views, and over a view for its name [mm]
 STRIP, LINE, GAP, HEAD = 16.0, 6.0, 12.0, 10.0
+#: Width of a letter of a view's name [mm]
+LETTER = 2.0
 SCALES = (5, 10, 20, 25, 50, 100, 200, 250, 500, 1000, 2000, 5000)
 INCH = 25.4
 
@@ -39,7 +41,8 @@ class View:
 
     def size(self, scale: int) -> np.ndarray:
         """Width and height on paper [mm] with dimensions and name."""
-        return 1e3 / scale * (self.high - self.low) + (self.left + LINE, self.below + HEAD)
+        size = 1e3 / scale * (self.high - self.low) + (self.left + LINE, self.below + HEAD)
+        return np.maximum(size, (LETTER * len(self.name), 0.0))
 
 
 class Sheet:
@@ -61,7 +64,7 @@ class Sheet:
         for view, size in zip(views, sizes, strict=True):
             at = x if beside else 0.5 * (WIDTH - size[0])
             self.corner[view.name] = (
-                np.array([at + view.left, top - size[1] + view.below]) - 1e3 / self.scale * view.low
+                np.array([at + _aside(view, self.scale), top - size[1] + view.below]) - 1e3 / self.scale * view.low
             )
             self.ax.text(at + 0.5 * size[0], top - 3.0, view.name, ha="center", va="center", fontsize=8, weight="bold")
             if beside:
@@ -125,6 +128,12 @@ class Sheet:
         for k, value in ((0.0, 0.0), (0.5, 0.5 * step), (1.0, step)):
             unit = " m" if k == 1.0 else ""
             self.ax.text(x + k * long, y + 2.0, f"{words.given(value)}{unit}", fontsize=7, ha="center", va="bottom")
+
+
+def _aside(view: View, scale: int) -> float:
+    """From the left of a view to its drawing [mm], which stands in the middle of a wide name."""
+    wide = 1e3 / scale * float(view.high[0] - view.low[0]) + view.left + LINE
+    return view.left + 0.5 * max(0.0, float(view.size(scale)[0]) - wide)
 
 
 def _arranged(views: Sequence[View]) -> tuple[int, bool, float]:

@@ -414,7 +414,7 @@ def _stresses(run: Stored, a: dict[str, Any], words: Language) -> list[Block]:
                 place,
                 words.quantity(long, "m"),
                 words.quantity(float(normal[j]), "N"),
-                words.quantity(edge, "m"),
+                "< 1 mm" if edge < EDGE else words.quantity(edge, "m"),
                 stress,
             )
         )
