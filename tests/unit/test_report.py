@@ -295,3 +295,46 @@ def test_without_the_typesetter_the_page_is_written_and_pdf_is_refused(
 def test_project_author_and_date_are_words() -> None:
     with pytest.raises(DeckError, match="author: expected text"):
         make_deck({"author": 3, "structure": ARCH, "analysis": {"kind": "tilt"}})
+
+
+def test_a_surveyed_intrados_carries_what_the_curve_carries_that_it_was_measured_on() -> None:
+    """Seventeen points of a segmental arch, by two ways of description: rise, mass and collapse load agree."""
+    half, rise = 5.0, 2.9
+    radius = (half**2 + rise**2) / (2.0 * rise)
+    turn = np.linspace(-1.0, 1.0, 17) * np.arctan2(half, radius - rise)
+    points = [[half + radius * np.sin(t), max(0.0, radius * np.cos(t) + rise - radius)] for t in turn]
+    common = {"thickness": 0.6, "voussoirs": 30}
+    over = {
+        "fill": {"cover": 0.4, "passive": 0.5},
+        "backing": {"height": 1.0},
+        "surfacing": {"thickness": 0.1},
+        "depth": 4.0,
+    }
+    analysis = {"kind": "moving-load", "train": "LM1", "count": 9}
+    runs = [
+        extrados.run({"structure": {"kind": "bridge", "spans": [{**one, **common}], **over}, "joints": {"friction": 0.6}, "analysis": analysis})
+        for one in ({"span": 2.0 * half, "rise": rise}, {"shape": "surveyed", "intrados": points})
+    ]  # fmt: skip
+    drawn, measured = (run["moving-load"] for run in runs)
+    assert measured.adequacy_factor == pytest.approx(drawn.adequacy_factor, rel=3e-3)
+    sizes = {d["name"]: d["length_m"] for d in runs[1].summary["deck"]["dimensions"]}
+    assert (sizes["clear span"], sizes["rise"]) == pytest.approx((2.0 * half, rise), abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("change", "complaint"),
+    [
+        ({"intrados": [[0, 0], [2, 1], [1, 1], [4, 0]]}, "x that grows"), ({"intrados": [[0, 0], [1, 1], [3, 1], [4, 0.5]]}, "one level"),
+        ({"span": 4.0}, "leave it out"), ({"shape": "segmental", "span": 4.0, "rise": 1.0}, "belongs to the shape surveyed"), ({"intrados": [[0, 0], [1, 1]]}, "intrados"),
+        ({"intrados": [[0, 0], [1], [3, 1], [4, 0]]}, "points"),
+    ],
+)  # fmt: skip
+def test_a_wrong_intrados_is_refused_in_words(change: dict, complaint: str) -> None:
+    span = {
+        "shape": "surveyed",
+        "intrados": [[0.0, 0.0], [1.0, 1.0], [3.0, 1.0], [4.0, 0.0]],
+        "thickness": 0.4,
+        **change,
+    }
+    with pytest.raises(DeckError, match=complaint):
+        make_deck({"structure": {"kind": "bridge", "spans": [span]}, "analysis": {"kind": "tilt"}})

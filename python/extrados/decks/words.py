@@ -6,7 +6,7 @@ WORDS = {
     "note": "explanations and assumptions, printed in the report",
     "project": "name or number of the project, in the title block of the report",
     "client": "client, in the title block of the report",
-    "office": "office that answers for the report, in its title block",
+    "office": "office that issues the report, in its title block",
     "reviewer": "person who reviews the report, in its title block",
     "revision": "revision of the report, in its title block",
     "language": "language of the report: en, it, es, fr or de; default en",

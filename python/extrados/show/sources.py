@@ -1,7 +1,7 @@
 """The bibliography of a report: publications of the methods, and standards with the clauses that the analyses applied."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 THESIS = "DeJong, M. J. (2009). Seismic assessment strategies for masonry structures. PhD dissertation, Massachusetts Institute of Technology"
 HEYMAN = "Heyman, J. (1966). The stone skeleton. International Journal of Solids and Structures 2, 249-279."
@@ -22,17 +22,21 @@ METHODS = {
 #: Clauses of EN 1991-2:2003 that give the trains of this program
 TRAINS = {"LM1": "4.3.2", "LM71": "6.3.2", "SW/0": "6.3.3", "SW/2": "6.3.3"}
 TRAFFIC = "EN 1991-2:2003. Eurocode 1: Actions on structures. Part 2: Traffic loads on bridges"
+#: Trains of the UK annex, whose text was not read
+SPECIAL = "UK National Annex to EN 1991-2 (verify clause)."
 #: A value that is none of a publication
 UNCERTAIN = re.compile(r"from memory|derived here")
 
 
-def references(kinds: Iterable[str], sources: Iterable[str], trains: Iterable[str]) -> list[str]:
+def references(kinds: Iterable[str], sources: Iterable[str], trains: Sequence[str]) -> list[str]:
     """The bibliography: methods first, then the sources of values and rules, each once; places within the dissertation are told with
     its whole title, values without a certain source are left to their table."""
     found = [one for kind in kinds for one in METHODS.get(kind, ())]
     clauses = sorted({TRAINS[train] for train in trains if train in TRAINS})
     if clauses:
         found.append(f"{TRAFFIC}: {', '.join(clauses)}.")
+    if any(train.startswith("SV") for train in trains):
+        found.append(SPECIAL)
     places: list[str] = []
     for source in sources:
         for part in re.split(r"; ", source):

@@ -27,14 +27,14 @@ Text = Annotated[str, Field(max_length=200)]
 
 
 class ReportTable(Table):
-    """The keys of report.toml; those of the title block stand in place of the deck's where the deck has none."""
+    """The keys of report.toml; entries of the title block that the deck does not give."""
 
     language: Literal["en", "it", "es", "fr", "de"] | None = key(
         None, "language of the report; default that of the deck"
     )
     project: Text = key("", "name or number of the project")
     client: Text = key("", "client")
-    office: Text = key("", "office that answers for the report")
+    office: Text = key("", "office that issues the report")
     author: Text = key("", "author")
     reviewer: Text = key("", "reviewer")
     revision: Text = key("", "revision")
@@ -48,7 +48,7 @@ class ReportTable(Table):
     sections: list[Section] = key(
         list(SECTIONS), "sections of the report in their order", min_length=1, max_length=len(SECTIONS)
     )
-    figures: int = key(2, "figures of each analysis in the report; the others stand in the annex", ge=0, le=20)
+    figures: int = key(2, "figures of each analysis in the report; the annex has the others", ge=0, le=20)
 
     @field_validator("sections")
     @classmethod
