@@ -11,6 +11,7 @@ import extrados
 from extrados import kinds
 from extrados.decks.words import LANGUAGES
 from extrados.model.properties import Joints, Material, Supports
+from extrados.model.structures.bridge import Abutment, Backing, Fill, Pier, Span, Surfacing
 from extrados.results.validity import validity_of
 from extrados.schema.code import Code
 from extrados.show import language
@@ -41,7 +42,7 @@ def fixed() -> Iterator[str]:
         yield from (TITLES[kind], *validity_of(kind))
     yield from (*OUTCOMES.values(), *DIMENSIONS, *FACTORS.values(), *ENTRIES.values(), *(label for label, _ in GROUPS))
     yield from (f"The capacity is {one} bound." for one in ("an upper", "a lower"))
-    for table in (Material, Joints, Supports, Code):
+    for table in (Material, Joints, Supports, Code, Span, Pier, Abutment, Backing, Fill, Surfacing):
         yield from (key.replace("_", " ") for key in table.model_fields)
 
 

@@ -19,6 +19,8 @@ METHODS = {
     "rocking-spectrum": (HOUSNER,), "harmonic-map": (HOUSNER,), "dem": (CUNDALL, MOREAU), "dem-domain": (CUNDALL,),
     "sla": (ROTS,), "pushover": (ROTS,),
 }  # fmt: skip
+#: Publications that a key of the deck names by author and year
+NAMED = {"Gilbert and Melbourne 1994": GILBERT, "Housner 1963": HOUSNER, "Moreau 1988": MOREAU}
 #: Clauses of EN 1991-2:2003 that give the trains of this program
 TRAINS = {"LM1": "4.3.2", "LM71": "6.3.2", "SW/0": "6.3.3", "SW/2": "6.3.3"}
 TRAFFIC = "EN 1991-2:2003. Eurocode 1: Actions on structures. Part 2: Traffic loads on bridges"
@@ -45,7 +47,7 @@ def references(kinds: Iterable[str], sources: Iterable[str], trains: Sequence[st
             if (place := re.fullmatch(r"thesis (.+)", part)) is not None:
                 places.append(place[1])
             else:
-                found.append(f"{part.rstrip('.')}.")
+                found.append(NAMED.get(part) or f"{part.rstrip('.')}.")
     if places:
         found = [one for one in found if not one.startswith(THESIS)]
         found.append(f"{THESIS}: {', '.join(dict.fromkeys(places))}.")

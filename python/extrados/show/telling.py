@@ -314,8 +314,11 @@ def _defaults(deck: dict[str, Any], words: Language) -> list[Block]:
 
 def label_of(words: Language, table: str, key: str) -> str:
     """A key of the deck in words: "compressive strength", "spans 2: clear span" where it stands within another table."""
-    within = table.split(".")[1:]
-    before = f"{' '.join(part.replace('_', ' ') for part in within)}: " if within else ""
+    parts = []
+    for part in table.split(".")[1:]:
+        name, _, number = part.partition(" ")
+        parts.append(f"{words(name.replace('_', ' '))} {number}".strip())
+    before = f"{' '.join(parts)}: " if parts else ""
     return f"{before}{words(key.replace('_', ' '))}"
 
 
