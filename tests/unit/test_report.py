@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import extrados
-from extrados.decks.reader import DeckError, make_deck
+from extrados.decks.reader import DeckError, make_deck, read_deck
 from extrados.model.dimensions import dimensions
 from extrados.results import validity
 from extrados.results.store import StoreError
@@ -20,6 +20,7 @@ from extrados.show.report import write_report
 from extrados.show.telling import _flowing
 from extrados.show.template import read_template
 
+CASES = Path(__file__).parents[2] / "cases"
 ARCH = {"kind": "arch", "radius": 2.0, "thickness": 0.4, "embrace": 180.0, "voussoirs": 12}
 
 
@@ -338,3 +339,15 @@ def test_a_wrong_intrados_is_refused_in_words(change: dict, complaint: str) -> N
     }
     with pytest.raises(DeckError, match=complaint):
         make_deck({"structure": {"kind": "bridge", "spans": [span]}, "analysis": {"kind": "tilt"}})
+
+
+@pytest.mark.parametrize(("name", "most"), [("limit/church", 15), ("limit/panel", 8)])
+def test_a_report_has_few_pages(tmp_path: Path, name: str, most: int) -> None:
+    """A surveyed nave, and a garden wall; the annex holds the rest."""
+    pytest.importorskip("typst")
+    deck = read_deck(CASES / f"{name}.toml")
+    quick = [one for one in deck.data["analysis"] if one["kind"] in ("tilt", "thrust", "moving-load")]
+    extrados.run(make_deck({**deck.data, "analysis": quick}, deck.folder)).write(tmp_path / "out")
+    write_report(tmp_path / "out", printed=True)
+    assert len(_paper(tmp_path / "out")[0].pages) <= most
+    assert len(_paper(tmp_path / "out", "annex.pdf")[0].pages) >= 1
