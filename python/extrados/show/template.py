@@ -7,13 +7,12 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, ValidationError, field_validator
 
-from extrados.decks.toml import loads
 from extrados.results.store import StoreError
 from extrados.schema import files
 from extrados.schema.table import Table, key
 
 #: Bytes of a template, and of a logo
-LARGEST, LARGEST_LOGO = 100_000, 1_000_000
+LARGEST, LARGEST_LOGO = 20_000, 1_000_000
 #: What the first bytes of a logo are
 PICTURES = {".png": b"\x89PNG\r\n\x1a\n", ".jpg": b"\xff\xd8\xff", ".jpeg": b"\xff\xd8\xff"}
 Section = Literal["answer", "building", "hazard", "analyses", "factors", "limits", "bibliography"]
@@ -70,7 +69,7 @@ class Template:
 def read_template(path: Path) -> Template:
     """The template in a file; StoreError with every complaint."""
     try:
-        data: dict[str, Any] = loads(files.read(path, LARGEST).text())
+        data: dict[str, Any] = tomllib.loads(files.read(path, LARGEST).text())
         table = ReportTable.model_validate(data)
         if table.logo is None:
             return Template(table)
@@ -90,5 +89,5 @@ def read_template(path: Path) -> Template:
     except ValidationError as error:
         told = "; ".join(f"{'.'.join(map(str, one['loc'])) or 'template'}: {one['msg']}" for one in error.errors())
         raise StoreError(f"{path}: {told}") from None
-    except ValueError as error:  # BadFile is one
+    except (ValueError, RecursionError) as error:  # BadFile is one
         raise StoreError(str(error)) from None
