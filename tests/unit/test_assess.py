@@ -209,7 +209,7 @@ def test_a_building_on_a_plan_is_pushed_along_both_axes_and_its_walls_are_checke
     assert "Capacity without a verdict: push along x at " in r.statement and r.overall != "stands under all"
     run.write(tmp_path / "out", figures=False)
     saved, caption = draw_building(Run.read(tmp_path / "out"), _figures(tmp_path))
-    assert saved == "building" and "Storey: 2.8 m" in caption
+    assert saved == "building" and "Storey: 2.80 m" in caption
 
 
 def test_where_only_pushes_have_a_result_the_outcome_is_open() -> None:

@@ -13,12 +13,19 @@ from extrados.schema.text import printable
 def report(
     folder: Annotated[Path, typer.Argument(help="a results folder")],
     pdf: Annotated[bool | None, typer.Option(help="also report.pdf; default where the run holds an assessment")] = None,
+    template: Annotated[
+        Path | None,
+        typer.Option(help="report.toml of an office: logo, colour, title block, order and choice of sections"),
+    ] = None,
+    language: Annotated[
+        str | None, typer.Option(help="en, it, es, fr or de; default that of the template, else of the deck")
+    ] = None,
 ) -> None:
-    """Draw the figures and the report of stored results anew, as HTML and on A4 paper as PDF."""
+    """Draw the figures and the report of stored results anew, as HTML and on A4 paper as PDF with its source report.typ."""
     from extrados.show.report import write_report
 
     with errors():
-        out_console.say(f"Report:  {write_report(folder, pdf)[0]}")
+        out_console.say(f"Report:  {write_report(folder, pdf, template, language)[0]}")
 
 
 def plot(

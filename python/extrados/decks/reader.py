@@ -21,7 +21,7 @@ from extrados.decks.plural import MOST, PLURAL
 from extrados.decks.positions import Path as Key
 from extrados.decks.positions import Positions, key_lines
 from extrados.decks.toml import loads
-from extrados.decks.words import WORDS
+from extrados.decks.words import LANGUAGES, WORDS
 from extrados.model.properties import Initial, Joints, Material, Supports
 from extrados.model.structure import Structure
 from extrados.schema import files
@@ -214,6 +214,8 @@ class _Checker:
         for word in WORDS:
             if not isinstance(data.get(word, ""), str):
                 self.complain((word,), "expected text in quotes")
+        if data.get("language", "en") not in LANGUAGES:
+            self.complain(("language",), f"{_shown(data['language'])}: expected one of {_words(LANGUAGES)}")
         structure = self.section("structure", data.get("structure"), ("structure",))
         motion = self.section("motion", data.get("motion"), ("motion",))
         code = self.table(Code, data["code"], ("code",)) if "code" in data else None

@@ -3,7 +3,7 @@
 import numpy as np
 
 from extrados.model.geometry.assembly import GROUND, Assembly
-from extrados.model.geometry.chains import is_stack
+from extrados.model.geometry.chains import arch_of
 
 CROWN = 0.1  # of the span to either side of its middle
 LEVEL = 0.7  # least vertical part of the normal of a bed joint
@@ -12,11 +12,9 @@ LEVEL = 0.7  # least vertical part of the normal of a bed joint
 def place_of(assembly: Assembly, joint: int, point: np.ndarray) -> str:
     """The place of a joint, and on which side of it the point (2) [m] is: "left haunch of the nave, intrados"."""
     for name, joints in assembly.chains.items():
-        if joint in joints and not is_stack(assembly, joints):
-            found = _along(assembly, name, joints, joints.index(joint))
-            if found is not None:
-                near_p = np.hypot(*(point - assembly.p[joint])) < np.hypot(*(point - assembly.q[joint]))
-                return f"{found}, {'intrados' if near_p else 'extrados'}"
+        if joint in joints and joint in (arch := arch_of(assembly, joints)):
+            near_p = np.hypot(*(point - assembly.p[joint])) < np.hypot(*(point - assembly.q[joint]))
+            return f"{_along(assembly, name, arch, arch.index(joint))}, {'intrados' if near_p else 'extrados'}"
     side = _side(assembly, joint, point)
     a, b = int(assembly.a[joint]), int(assembly.b[joint])
     if GROUND in (a, b):
@@ -29,12 +27,10 @@ def place_of(assembly: Assembly, joint: int, point: np.ndarray) -> str:
     return f"head joint between {assembly.block_names[left]} and {assembly.block_names[right]}, {side}"
 
 
-def _along(assembly: Assembly, name: str, joints: list[int], k: int) -> str | None:
-    """Where the k-th joint of an arch lies along it; None where the chain is no arch but stands upright."""
-    (first, low), (last, high) = assembly.middle[[joints[0], joints[-1]]].tolist()
+def _along(assembly: Assembly, name: str, joints: list[int], k: int) -> str:
+    """Where the k-th joint of an arch, counted from its springing, lies along it."""
+    first, last = assembly.middle[[joints[0], joints[-1]], 0].tolist()
     span = last - first
-    if abs(span) < 0.5 * abs(high - low) or abs(span) < 1e-9:
-        return None
     share = (float(assembly.middle[joints[k], 0]) - first) / span
     name = name if name[-1].isdigit() else f"the {name}"
     if k == 0 or k == len(joints) - 1:

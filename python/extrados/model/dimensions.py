@@ -1,10 +1,12 @@
 """The dimensions by which an engineer knows a building: spans and rises of its arches, widths of what stands, its height."""
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
 
 from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.chains import arch_of
 
 
 @dataclass(frozen=True)
@@ -28,9 +30,9 @@ def dimensions(assembly: Assembly) -> list[Dimension]:
     vertices = np.concatenate(assembly.outlines)
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     found: list[Dimension] = []
-    for name, joints in assembly.chains.items():
-        if len(joints) > 2 and name != "stack":
-            found += _arch(assembly, name, joints)
+    spans = {name: arch for name, joints in assembly.chains.items() if (arch := arch_of(assembly, joints))}
+    for name, arch in spans.items():
+        found += _arch(assembly, "" if len(spans) == 1 else f" of {_with_article(name)}", arch)
     arches = bool(found)
     for block in assembly.buttresses:
         found += [_foot(assembly, j, f"width of the {assembly.block_names[block]}") for j in assembly.joints_of(block)
@@ -47,20 +49,39 @@ def dimensions(assembly: Assembly) -> list[Dimension]:
     return found
 
 
-def _arch(assembly: Assembly, name: str, joints: list[int]) -> list[Dimension]:
-    """The intrados is the end p of the joints of a chain."""
+def _with_article(name: str) -> str:
+    return name if name[-1].isdigit() else f"the {name}"
+
+
+def _arch(assembly: Assembly, of: str, joints: list[int]) -> list[Dimension]:
+    """Of the joints from springing to springing; the intrados is their end p."""
     intrados = assembly.p[joints]
     left, right = sorted((intrados[0], intrados[-1]), key=lambda point: float(point[0]))
     crown = int(np.argmax(intrados[:, 1]))
-    x, top = (float(v) for v in intrados[crown])
+    x, top = _highest(assembly, joints)
     level = max(float(left[1]), float(right[1]))
-    of = "" if len(assembly.chains) == 1 else f" of the {name}"
     inner, outer = (tuple(float(v) for v in end[joints[crown]]) for end in (assembly.p, assembly.q))
-    return [
-        Dimension(f"clear span{of}", (float(left[0]), level), (float(right[0]), level), "along"),
-        Dimension(f"rise{of}", (x, level), (x, top), "along"),
-        Dimension(f"thickness at the crown{of}", inner, outer, "right"),  # type: ignore[arg-type]
-    ]
+    found = [Dimension(f"clear span{of}", (float(left[0]), level), (float(right[0]), level), "along")]
+    if top - level > 1e-3 * abs(right[0] - left[0]):  # a straight prop has none
+        found.append(Dimension(f"rise{of}", (x, level), (x, top), "along"))
+    return [*found, Dimension(f"thickness at the crown{of}", inner, outer, "right")]  # type: ignore[arg-type]
+
+
+def _highest(assembly: Assembly, joints: list[int]) -> tuple[float, float]:
+    """The highest place of the intrados [m]: a joint, or a point of a voussoir between its joints."""
+    ends = [set(assembly.ends[j]) for j in joints]
+    points = [assembly.p[joints]]
+    for k, (one, two) in enumerate(itertools.pairwise(ends)):
+        p, along = assembly.p[joints[k]], assembly.p[joints[k + 1]] - assembly.p[joints[k]]
+        for block in one & two - {GROUND}:
+            off = assembly.outlines[block] - p
+            share = off @ along / max(float(along @ along), 1e-300)
+            aside = np.hypot(*(off - share[:, None] * along).T)
+            near = (share > 0.0) & (share < 1.0) & (aside < 0.5 * min(assembly.length[joints[k : k + 2]]))
+            points.append(assembly.outlines[block][near])
+    every = np.concatenate(points)
+    x, y = every[np.argmax(every[:, 1])]
+    return float(x), float(y)
 
 
 def _foot(assembly: Assembly, joint: int, name: str) -> Dimension:

@@ -104,6 +104,7 @@ def _head(deck: Deck, parts: list[Result], when: dict[str, str]) -> dict[str, An
             "project": deck.project,
             "author": deck.author,
             "date": deck.date,
+            **{word: deck.data.get(word, "") for word in ("client", "office", "reviewer", "revision", "language")},
             **described(deck),
             "resolved": resolved,
         },

@@ -211,7 +211,7 @@ def _write(rows: list[Assessed], out: Path, figures: bool) -> None:
             "ranking.html": html.page(made, out).encode(errors="backslashreplace"),
         }
         if typeset.available():
-            new["ranking.pdf"] = typeset.pdf(made, out)
+            new["ranking.pdf"] = typeset.pdf(typeset.markup(made, out).encode(errors="replace"), out)
         with tempfile.TemporaryDirectory(prefix=f".{out.name}.ranking-", dir=out.parent) as scratch:
             for name, content in new.items():
                 (Path(scratch) / name).write_bytes(content)

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, field
 
+from extrados.show.language import Language
+
 
 @dataclass(frozen=True)
 class Heading:
@@ -14,10 +16,12 @@ class Heading:
 
 @dataclass(frozen=True)
 class Words:
-    """A paragraph; look: "" plain, "answer", "bad" or "warn"; its lines are kept where it has several."""
+    """A paragraph; look: "" plain, "answer", "bad" or "warn"; its lines are kept where it has several. lang: code of its language
+    where it is another than the document's."""
 
     text: str
     look: str = ""
+    lang: str = ""
 
 
 @dataclass(frozen=True)
@@ -51,8 +55,9 @@ Block = Heading | Words | Table | Figure | Code
 
 @dataclass(frozen=True)
 class Document:
-    """title; facts: what stands below it, label and text; opening: the first page, before the contents; blocks in order; annex: what
-    the page on the screen holds after them, and paper does not; foot: on every printed page."""
+    """title; facts: the title block, label and text; opening: the first page, before the contents; blocks in order; annex: a
+    document of its own on paper, the end of the page on the screen; foot: on every printed page. signatures: labels of fields to sign
+    in; logo: the name of its picture below the report's folder; colour: of headings; words: the language."""
 
     title: str
     facts: list[tuple[str, str]]
@@ -60,3 +65,7 @@ class Document:
     foot: str
     opening: list[Block] = field(default_factory=list)
     annex: list[Block] = field(default_factory=list)
+    signatures: tuple[tuple[str, str], ...] = ()
+    logo: str = ""
+    colour: str = "#222222"
+    words: Language = field(default_factory=Language)

@@ -9,6 +9,7 @@ from extrados.results.codes import Checked, LocalMechanism
 from extrados.results.store import Stored
 from extrados.results.strengthen import Strengthen
 from extrados.show.document import Block, Figure, Table, Words
+from extrados.show.language import Language
 
 Figures = list[tuple[str, str]]
 #: Outcomes of verdicts in words, the gravest first
@@ -17,25 +18,34 @@ OUTCOMES = {
 }  # fmt: skip
 #: Ends of the names of figures that show a mechanism
 MECHANISMS = ("-collapse", "-mechanism")
+#: Kinds of analysis in words
+TITLES = {
+    "tilt": "Collapse acceleration by limit analysis", "thrust": "Thrust lines", "sweep": "Variation of one value",
+    "survey": "Survey of sections", "imperfections": "Uncertainty of the survey", "supports": "Moving supports",
+    "moving-load": "Moving load", "rocking": "Rocking under the motion", "failure-domain": "Failure domain of a pulse",
+    "failure-curves": "Failure curves of sines", "assessment": "Assessment by primary impulses", "fragility": "Fragility",
+    "resonance": "Resonance", "rocking-spectrum": "Rocking spectrum", "harmonic-map": "Map of harmonic motions",
+    "code-checks": "Checks of codes", "local-mechanism": "Local mechanism by codes", "motion": "Ground motion",
+    "shake-table": "Shake table", "sla": "Sequentially linear analysis", "pushover": "Pushover", "dem": "Discrete elements",
+    "dem-domain": "Failure domain of discrete elements", "assess": "Comparison of the strategies", "strengthen": "Strengthening",
+    "dem-parameters": "Parameters of discrete elements",
+}  # fmt: skip
 #: A safety factor below this is thin
 THIN = 1.5
 
 
-def opening(run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | None) -> list[Block]:
+def opening(run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | None, words: Language) -> list[Block]:
     """Blocks of the first page; empty where no analysis has a verdict."""
     lead = leading(run)
     if lead is None:
         return []
-    found: list[Block] = [
-        Words(
-            _conclusion(run, lead), "bad" if lead["verdict"]["outcome"] in ("collapses", "cannot-stand") else "answer"
-        )
-    ]
-    found.append(_comparison(run, lead))
+    grave = lead["verdict"]["outcome"] in ("collapses", "cannot-stand")
+    found: list[Block] = [Words(_conclusion(run, lead, words), "bad" if grave else "answer")]
+    found.append(_comparison(run, lead, words))
     if (picture := governing_figure(run, drawn, building)) is not None:
         found.append(picture)
-    found.append(Words(f"Confidence. {_confidence(run, lead)}"))
-    found.append(Words(f"Next step. {_next_step(run, lead)}"))
+    found.append(Words(f"{words('Confidence.')} {_confidence(run, lead, words)}"))
+    found.append(Words(f"{words('Next step.')} {_next_step(run, lead, words)}"))
     return found
 
 
@@ -65,14 +75,21 @@ def governing_figure(run: Stored, drawn: dict[str, Figures], building: tuple[str
         names += [a["name"] for a in run.analyses if a["kind"] == "tilt"]
     every = [f for name in names for f in drawn.get(name, [])]
     chosen = next((f for f in every if f[0].endswith(MECHANISMS)), every[0] if every else building)
-    return None if chosen is None else Figure(f"figures/{chosen[0]}", chosen[1], 0.7)
+    return None if chosen is None else Figure(f"figures/{chosen[0]}", chosen[1], 0.8)
 
 
-def _conclusion(run: Stored, lead: dict[str, Any]) -> str:
-    r = run[lead["name"]]
+def _conclusion(run: Stored, lead: dict[str, Any], words: Language) -> str:
+    """In English the sentences of the analysis; in another language the same numbers in sentences of the report."""
+    r, v = run[lead["name"]], lead["verdict"]
+    if words.code != "en":
+        said = [words("Outcome: {outcome}.", outcome=words(OUTCOMES[v["outcome"]]))]
+        said.append(words("Governing analysis: {name}.", name=title_of(words, lead["name"], lead["kind"])))
+        if v["ratio"] is not None:
+            said.append(words("Safety factor: {factor}.", factor=words.number(v["ratio"])))
+        return " ".join(said)
     if isinstance(r, Checked):
         return r.conclusion()
-    first, *rest = re.split(r"(?<=\.) (?=[A-Z])", str(lead["verdict"]["statement"]))
+    first, *rest = re.split(r"(?<=\.) (?=[A-Z])", str(v["statement"]))
     # the strategies one by one and their reasons follow in the table and behind the contents
     least = (
         [one for one in rest if one.startswith("The least critical scale factor")] if isinstance(r, Assess) else rest
@@ -80,29 +97,40 @@ def _conclusion(run: Stored, lead: dict[str, Any]) -> str:
     return " ".join([first, *least])
 
 
-def _comparison(run: Stored, lead: dict[str, Any]) -> Table:
+def title_of(words: Language, name: str, kind: str) -> str:
+    """An analysis by its kind in words, with its number where there are several: "moving-load-2" is the second."""
+    number = name.removeprefix(kind).removeprefix("-")
+    return f"{words(TITLES.get(kind, kind))}{f' {number}' if number.isdigit() else ''}"
+
+
+def _comparison(run: Stored, lead: dict[str, Any], words: Language) -> Table:
     """Demand, capacity and safety factor; of an assessment a row for each strategy."""
     r, v = run[lead["name"]], lead["verdict"]
 
     def number(value: float | None, unit: str) -> str:
         if value is None:
             return ""
-        return f"{value / 1e3:.3g} kN" if unit == "N" else f"{value:.3g} {unit}".strip()
+        return words.quantity(value, unit)
 
     if isinstance(r, Assess):
         rows = [
-            (s.label, OUTCOMES[s.outcome] if s.status == "ok" else s.status, number(s.demand, s.unit), number(s.capacity, s.unit), s.margin_told(""))
+            (s.label, words(OUTCOMES[s.outcome] if s.status == "ok" else s.status), number(s.demand, s.unit), number(s.capacity, s.unit), s.margin_told(""))
             for s in r.verdicts
         ]  # fmt: skip
-        return Table(("strategy", "verdict", "demand", "capacity", "margin"), rows, (2.4, 1.2, 1.2, 1.2, 1.2))
-    head: tuple[str, ...] = ("demand", "capacity", "safety factor")
+        return Table(
+            tuple(map(words, ("strategy", "verdict", "demand", "capacity", "margin"))), rows, (2.4, 1.2, 1.2, 1.2, 1.2)
+        )
+    head: tuple[str, ...] = tuple(map(words, ("demand", "capacity", "safety factor")))
     row: tuple[str, ...] = (number(v["demand"], v["unit"]), number(v["capacity"], v["unit"]), number(v["ratio"], ""))
     if isinstance(r, Checked) and r.clause:
-        head, row = (*head, "clause"), (*row, r.clause)
-    return Table(head, [row], (1.0, 1.0, 1.0, 4.0)[: len(head)])
+        head, row = (*head, words("clause")), (*row, r.clause)
+    if isinstance(r, Checked) and r.checks:
+        stated = {c.words for c in r.checks.values() if c.code and c.verdict != "not-applicable"}
+        head, row = (*head, words("limit state")), (*row, ", ".join(sorted(stated)))
+    return Table(head, [row], (1.0, 1.0, 1.0, 3.0, 2.0)[: len(head)])
 
 
-def _confidence(run: Stored, lead: dict[str, Any]) -> str:
+def _confidence(run: Stored, lead: dict[str, Any], words: Language) -> str:
     r, v = run[lead["name"]], lead["verdict"]
     said = []
     if isinstance(r, Assess):
@@ -110,60 +138,98 @@ def _confidence(run: Stored, lead: dict[str, Any]) -> str:
         groups: dict[str, int] = {}
         for s in judged:
             groups[OUTCOMES[s.outcome]] = groups.get(OUTCOMES[s.outcome], 0) + 1
-        told = ", ".join(f"{n} {word}" for word, n in groups.items()) or "none"
-        said.append(f"{len(judged)} of {len(r.verdicts)} strategies have a verdict: {told}.")
+        told = ", ".join(f"{n} {words(word)}" for word, n in groups.items()) or words("none")
         said.append(
-            f"Unexplained differences between strategies: {len(r.unexplained)}."
+            words(
+                "{judged} of {all} strategies have a verdict: {groups}.",
+                judged=len(judged),
+                all=len(r.verdicts),
+                groups=told,
+            )
+        )
+        said.append(
+            words("Unexplained differences between strategies: {count}.", count=len(r.unexplained))
             if r.unexplained
-            else "Every difference between strategies has a stated reason."
+            else words("Every difference between strategies has a stated reason.")
         )
         if r.not_done:
-            said.append(f"Steps not done: {len(r.not_done)}.")
+            said.append(words("Steps not done: {count}.", count=len(r.not_done)))
     if isinstance(r, Checked):
         if r.confidence_factor is not None:
-            said.append(f"Confidence factor {r.confidence_factor:.3g}.")
+            said.append(words("Confidence factor {factor}.", factor=words.number(r.confidence_factor)))
         if r.by_default:
-            said.append(f"The deck names no code; the report applies {r.code}.")
+            said.append(words("The deck names no code; the report applies {code}.", code=r.code))
         if "verify clause" in (r.clause or ""):
-            said.append("The clause was not verified against the standard. Compare it before use.")
+            said.append(words("The clause was not verified against the standard. Compare it before use."))
         open_parts = [
             a["name"] for a in run.analyses if isinstance(run[a["name"]], Checked) and a["verdict"]["ratio"] is None
         ]
         if open_parts:
-            said.append(f"No check decides for: {', '.join(open_parts)}.")
+            said.append(words("No check decides for: {parts}.", parts=", ".join(open_parts)))
     if v["bound"] in ("upper", "lower"):
-        said.append(f"The capacity is {'an upper' if v['bound'] == 'upper' else 'a lower'} bound.")
+        said.append(words(f"The capacity is {'an upper' if v['bound'] == 'upper' else 'a lower'} bound."))
     if v["violated"]:
-        said.append(f"Assumptions that do not hold: {len(v['violated'])}; the first: {v['violated'][0]}")
+        said.append(
+            f"{words('Assumptions that do not hold: {count}.', count=len(v['violated']))}{_first(words, v['violated'])}"
+        )
     warnings = sum(len(a["warnings"]) for a in run.analyses)
     if warnings:
-        said.append(f"Warnings in this report: {warnings}.")
-    return " ".join(said) or "No checked assumption is violated."
+        said.append(words("Warnings in this report: {count}.", count=warnings))
+    return " ".join(said) or words("No checked assumption is violated.")
 
 
-def _next_step(run: Stored, lead: dict[str, Any]) -> str:
+def _next_step(run: Stored, lead: dict[str, Any], words: Language) -> str:
     r, v = run[lead["name"]], lead["verdict"]
     outcome, factor = v["outcome"], v["ratio"]
     if outcome == "cannot-stand":
-        return "Check the geometry, the density and the supports of the deck. If they are right, prop the structure before anything else."
+        return words(
+            "Check the geometry, the density and the supports of the deck. If they are right, prop the structure before anything else."
+        )
     if outcome == "collapses":
-        sized = "Size the intervention with an analysis of kind strengthen." if "strengthen" in kinds.ANALYSES else (
-            "Add ties, thickness or a buttress to the deck, and run it again."
+        sized = words("Size the intervention with an analysis of kind strengthen.") if "strengthen" in kinds.ANALYSES else (
+            words("Add ties, thickness or a buttress to the deck, and run it again.")
         )  # fmt: skip
-        grown = f"The capacity must grow by a factor of {1.0 / factor:.3g}. " if factor else ""
+        grown = (
+            words("The capacity must grow by a factor of {factor}.", factor=words.number(1.0 / factor)) + " "
+            if factor
+            else ""
+        )
         return f"{grown}{sized}"
     if outcome == "open":
         if v["violated"]:
+            if words.code != "en":
+                return words("Resolve the first assumption that does not hold.")
             return f"Resolve the first assumption that does not hold: {v['violated'][0]}"
         if isinstance(r, Assess) and r.not_done:
-            return f"Finish the steps that the time limit cut off, with a larger budget: {r.not_done[0]}."
-        return "Compare the reasons below, and refine the model that decides: measured friction, thickness and restraints first."
+            return words(
+                "Finish the steps that the time limit cut off, with a larger budget: {step}.", step=r.not_done[0]
+            )
+        return words(
+            "Compare the reasons below, and refine the model that decides: measured friction, thickness and restraints first."
+        )
     if outcome == "stands":
         if factor is not None and factor < THIN:
-            return f"The safety factor of {factor:.3g} is small. Check its sensitivity to thickness, friction and strength (sensitivity = true)."
-        return "This result requires no intervention. It covers the stated mechanism and hazard only: check the other parts of the building too."
+            return words(
+                "The safety factor of {factor} is small. Check its sensitivity to thickness, friction and strength.",
+                factor=words.number(factor),
+            )
+        return words(
+            "This result requires no intervention. It covers the stated mechanism and hazard only: check the other parts of the building too."
+        )
     if isinstance(r, Strengthen):
-        return "Check the anchorage, assess the strengthened building by all strategies (assess = true), and check the mechanism that governs afterwards."
+        return words(
+            "Check the anchorage, assess the strengthened building by all strategies, and check the mechanism that governs afterwards."
+        )
     if isinstance(r, Checked) and any(c.verdict == "" for c in r.checks.values()):
-        return "Give the seismic action of the site in [code]."
-    return "No implemented rule covers this element. Use limit analysis and rocking dynamics (kind assess)."
+        return words("Give the seismic action of the site in [code].")
+    return (
+        words("No implemented rule covers this element. Use limit analysis and rocking dynamics (kind assess).")
+        if isinstance(r, Checked)
+        else words(
+            "The report gives a capacity without a demand. Give the action of the site, a motion or a load, and run the deck again."
+        )
+    )
+
+
+def _first(words: Language, violated: list[str]) -> str:
+    return f" The first: {violated[0]}" if words.code == "en" else ""

@@ -17,11 +17,14 @@ from extrados.show import html, typeset
 from extrados.show.building import draw_building
 from extrados.show.drawn import figures_of
 from extrados.show.forked import Lost, side_by_side
-from extrados.show.telling import told
+from extrados.show.language import Language
+from extrados.show.telling import annexed, told
+from extrados.show.template import Template, read_template
 
 #: Figures of an analysis with their captions
 Figures = list[tuple[str, str]]
-PRINTED = "report.pdf"
+#: The report on paper, its annex, and the source of both, which `typst compile` sets anew
+PRINTED, ANNEX, SOURCE, ANNEX_SOURCE = "report.pdf", "annex.pdf", "report.typ", "annex.typ"
 
 
 def draw(run: Stored, folder: Path) -> dict[str, Figures]:
@@ -73,15 +76,23 @@ def _drawn(tasks: list[tuple]) -> list[Figures]:
         raise StoreError(f"{tasks[0][0].folder}: figures could not be drawn: {error}; the results are kept") from None
 
 
-def write_report(folder: Path, printed: bool | None = None) -> tuple[Path, dict[str, Figures]]:
+def write_report(
+    folder: Path, printed: bool | None = None, template: Path | None = None, language: str | None = None
+) -> tuple[Path, dict[str, Figures]]:
     """Draw a stored run and write report.html: the report, and the figures with captions by analysis.
 
-    printed: also report.pdf; None: where the run holds an assessment and the typesetter is there. Drawn aside and put in
+    printed: also report.pdf, its annex and their sources; None: where the run holds an assessment and the typesetter is there.
+    template: the report.toml of an office; language: its code, in place of that of template and deck. Drawn aside and put in
     place when all is done. A figure or report that is there and was not written by extrados, or was changed since, stays:
     the new one is put beside it under another name, which is logged. StoreError where that is not possible.
     """
     folder = Path(folder)
     run = read(folder)
+    office = Template() if template is None else read_template(Path(template))
+    try:
+        words = Language(language or office.table.language or run.summary["deck"].get("language") or "en")
+    except ValueError as error:
+        raise StoreError(str(error)) from None
     within = Path(os.path.abspath(folder)).parent
     if printed is None:
         printed = any(a["kind"] == "assess" for a in run.analyses) and typeset.available()
@@ -90,15 +101,19 @@ def write_report(folder: Path, printed: bool | None = None) -> tuple[Path, dict[
             scratch = Path(place)
             drawn = draw(run, scratch)
             with _stored(folder, "the report"):
-                building = draw_building(run, scratch)
-                document = told(run, drawn, building, _written_on(folder))
-                page = html.page(document, scratch)
-                paper = typeset.pdf(document, scratch) if printed else b""
-            (scratch / REPORT).write_text(page, encoding="utf-8", errors="backslashreplace")
-            if printed:
-                (scratch / PRINTED).write_bytes(paper)
+                building = draw_building(run, scratch, words)
+                if office.logo:
+                    (scratch / f"figures/logo{office.suffix}").write_bytes(office.logo)
+                document = told(run, drawn, building, _written_on(folder), office, words)
+                made = {REPORT: html.page(document, scratch).encode(errors="backslashreplace")}
+                if printed:
+                    for name, source, part in ((PRINTED, SOURCE, document), (ANNEX, ANNEX_SOURCE, annexed(document))):
+                        made[source] = typeset.markup(part, scratch).encode(errors="replace")
+                        made[name] = typeset.pdf(made[source], scratch)
+            for name, content in made.items():
+                (scratch / name).write_bytes(content)
             with written.alone(within):
-                ours = (REPORT, PRINTED) if printed else (REPORT,)
+                ours = tuple(made)
                 names = written.put(scratch, folder, lambda name: name in ours or name.startswith("figures/"))
     except OSError as error:
         raise StoreError(f"{folder}: the report could not be written: {reason(error)}") from None

@@ -1,9 +1,12 @@
-"""What the report of a run says, in order: the answer, the building, the hazard, every strategy, its limits, and how to
-repeat it. From stored results only."""
+"""What the report of a run says, in order: the answer, the building, the hazard, every strategy, its factors and limits, its sources.
+The annex holds all numbers and how to repeat the run. From stored results only."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from extrados.results.assess import Assess
 from extrados.results.codes import Checked
@@ -12,47 +15,110 @@ from extrados.results.fields import ResultModel
 from extrados.results.store import STORE, SUMMARY, Stored
 from extrados.results.strengthen import size_told
 from extrados.results.validity import validity_of
+from extrados.show.building import name_of
 from extrados.show.document import Block, Code, Document, Figure, Heading, Table, Words
-from extrados.show.opening import OUTCOMES, governing_figure, opening
+from extrados.show.language import Language
+from extrados.show.opening import OUTCOMES, governing_figure, opening, title_of
+from extrados.show.sources import references
+from extrados.show.template import ENTRIES, Template
 
 Figures = list[tuple[str, str]]
 #: Values of a list that are shown, and rows of a list of tables
 MOST_SHOWN, MOST_ROWS = 12, 4
+#: Joints whose forces and stresses are printed; of a joint whose force stands nearer to its edge than this [m], a hinge, no stress
+MOST_JOINTS, EDGE = 6, 1e-3
+#: Tables of the deck and what they are called
+GROUPS = (
+    ("Geometry", ("structure",)), ("Materials and joints", ("material", "materials", "joints")),
+    ("Supports, ties and the state at the start", ("supports", "ties", "dampers", "hinges", "initial")), ("Code and site", ("code",)),
+)  # fmt: skip
+#: Of moving-load: keys of its partial factors
+FACTORS = {
+    "masonry": "weight of masonry", "fill": "weight of fill", "surfacing": "weight of surfacing", "live": "live load",
+    "dynamic": "dynamic factor", "strength": "compressive strength", "friction": "friction",
+}  # fmt: skip
 
 
-def told(run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | None, day: str) -> Document:
-    """The whole report; drawn: figures with captions by analysis; building: its drawing; day: of the results."""
+def told(
+    run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | None, day: str, office: Template | None = None,
+    words: Language | None = None,
+) -> Document:  # fmt: skip
+    """The whole report; drawn: figures with captions by analysis; building: its drawing; day: of the results; office: its template."""
+    office, words = office or Template(), words or Language()
     deck, made = run.summary["deck"], run.summary["extrados"]
     title = heading(deck)
-    facts = [("Building", kind)] if (kind := kind_of(deck)) else []
-    facts += [(label, deck[key]) for label, key in (("Project", "project"), ("Author", "author")) if deck.get(key)]
-    facts += [
-        ("Date", deck.get("date") or day),
-        ("Deck", f"{deck['path'] or 'from Python'} (sha256 {deck['sha256'][:16]})"),
-    ]
-    facts += [("Made by", f"extrados {made['version']} {made['commit']}".strip())]
+    entries = {key: deck.get(key) or getattr(office.table, key) for key in ENTRIES}
+    entries["date"] = entries["date"] or day
+    facts = [(words(label), entries[key]) for key, label in ENTRIES.items() if entries[key]]
+    facts += list(office.table.fields.items())
+    if kind := kind_of(deck):
+        facts.append((words("Building"), words(kind)))
     if code := _code_of(run):
-        facts.insert(len(facts) - 3, ("Code", code))
+        facts.append((words("Code"), code))
+    facts += [
+        (words("Deck"), f"{Path(deck['path']).name or 'Python'} (sha256 {deck['sha256'][:16]})"),
+        (words("Made by"), f"extrados {made['version']} {made['commit']}".strip()),
+    ]
     first = governing_figure(run, drawn, building)
-    blocks: list[Block] = []
-    if deck.get("note"):
-        blocks.append(Words(_flowing(deck["note"])))
-    blocks += _verdicts(run)
-    blocks += _building(
-        deck, building if building is None or first is None or first.name != f"figures/{building[0]}" else None
-    )
-    blocks += _hazard(run, deck)
-    hidden = {name for _, name, _ in _own_tables(run)}
+    shown = building if building is None or first is None or first.name != f"figures/{building[0]}" else None
     whole = any(a["kind"] == "assess" and a["results"] for a in run.analyses)
-    parts: list[Block] = []  # of an assessment: the strategies one by one, which paper does not hold
+    parts: list[
+        Block
+    ] = []  # the strategies of an assessment one by one, and the figures that the report has no room for
+    analyses: list[Block] = []
     for a in run.analyses:
         figures = [f for f in drawn.get(a["name"], []) if first is None or first.name != f"figures/{f[0]}"]
-        where = parts if whole and a["kind"] != "assess" else blocks
-        where += _analysis(run, a, figures)
-    blocks += _limits(run)
-    annex = [*parts, *_defaults(deck), *_numbers(run, hidden), *_repeat(run, deck, made)]
+        if whole and a["kind"] != "assess":
+            parts += _analysis(run, a, figures, words)
+            continue
+        most = len(figures) if a["kind"] == "assess" else office.table.figures
+        analyses += _analysis(run, a, figures[:most], words)
+        if figures[most:]:
+            parts.append(Heading(title_of(words, a["name"], a["kind"])))
+            parts += [Figure(f"figures/{name}", caption) for name, caption in figures[most:]]
+    note: list[Block] = [Words(_flowing(deck["note"]), lang=_foreign(words))] if deck.get("note") else []
+    if words.code != "en":
+        note.append(
+            Words(
+                words(
+                    "Sentences that the analyses write and captions of figures are printed in English, as the results hold them."
+                ),
+                "warn",
+            )
+        )
+    sections: dict[str, list[Block]] = {
+        "answer": _verdicts(run, words), "building": _building(run, deck, shown, words), "hazard": _hazard(run, deck, words),
+        "analyses": analyses, "factors": _factors(run, deck, words), "limits": _limits(run, words),
+        "bibliography": _bibliography(run, deck, words),
+    }  # fmt: skip
+    blocks = [*note, *(block for name in office.table.sections for block in sections[name])]
+    hidden = {name for _, name, _ in _own_tables(run, words)}
+    annex = [
+        *parts,
+        *_assumed(run, words),
+        *_defaults(deck, words),
+        *_numbers(run, hidden, words),
+        *_repeat(run, deck, made, words),
+    ]
     foot = f"{title}. extrados {made['version']} {made['commit']}, deck {deck['sha256'][:16]}"
-    return Document(title, facts, blocks, foot, opening(run, drawn, building), annex)
+    labels = office.table.signatures or [words("Author"), words("Reviewer")]
+    names = {words("Author"): entries["author"], words("Reviewer"): entries["reviewer"]}
+    return Document(
+        title, facts, blocks, foot, opening(run, drawn, building, words), annex,
+        tuple((label, names.get(label, "")) for label in labels), f"figures/logo{office.suffix}" if office.logo else "",
+        office.table.colour, words,
+    )  # fmt: skip
+
+
+def annexed(document: Document) -> Document:
+    """The annex of a report as a document of its own."""
+    title = f"{document.title}: {document.words('annex')}"
+    return replace(document, title=title, facts=[], opening=[], blocks=document.annex, annex=[], signatures=())
+
+
+def _foreign(words: Language) -> str:
+    """The mark of a text that stays English."""
+    return "" if words.code == "en" else "en"
 
 
 def _code_of(run: Stored) -> str:
@@ -68,7 +134,8 @@ def heading(deck: dict[str, Any]) -> str:
 def kind_of(deck: dict[str, Any]) -> str:
     """The kind of structure in words, "" of a deck without one."""
     structure = deck["resolved"].get("structure") or {}
-    return str(structure.get("kind", "")).replace("-", " ")
+    kind = str(structure.get("kind", "")).replace("-", " ")
+    return "assembly of blocks" if kind == "blocks" else kind
 
 
 def _flowing(text: str) -> str:
@@ -76,34 +143,32 @@ def _flowing(text: str) -> str:
     return "\n".join(" ".join(part.split()) for part in re.split(r"\n\s*\n", text))
 
 
-def _verdicts(run: Stored) -> list[Block]:
-    found: list[Block] = [Heading("Answer")]
+def _heads(words: Language, *heads: str) -> tuple[str, ...]:
+    return tuple(words(head) for head in heads)
+
+
+def _verdicts(run: Stored, words: Language) -> list[Block]:
+    found: list[Block] = [Heading(words("Answer"))]
     for a in run.analyses:
         if a["kind"] == "assess" and a["results"]:
-            found += _assessed(run, a["name"])
+            found += _assessed(run, a["name"], words)
             return found
     rows = []
     for a in run.analyses:
-        v = a["verdict"]
+        v, name = a["verdict"], title_of(words, a["name"], a["kind"])
         if v:
-            rows.append(
-                (
-                    a["name"],
-                    OUTCOMES[v["outcome"]],
-                    cell(v["demand"]),
-                    cell(v["capacity"]),
-                    v["unit"],
-                    cell(v["ratio"]),
-                    v["statement"],
-                )
+            demand, capacity = (
+                "" if v[key] is None else words.quantity(v[key], v["unit"]) for key in ("demand", "capacity")
             )
+            ratio = "" if v["ratio"] is None else words.number(v["ratio"])
+            rows.append((name, words(OUTCOMES[v["outcome"]]), demand, capacity, ratio))
         else:
-            rows.append((a["name"], a["status"], "", "", "", "", a["reason"]))
-    head = ("analysis", "verdict", "demand", "capacity", "unit", "ratio", "in words")
-    return [*found, Table(head, rows, (1.3, 0.9, 0.8, 0.8, 0.7, 0.7, 3.6))]
+            rows.append((name, words(a["status"]), "", "", ""))
+    head = _heads(words, "analysis", "verdict", "demand", "capacity", "capacity / demand")
+    return [*found, Table(head, rows, (2.6, 1.3, 1.2, 1.2, 1.0))]
 
 
-def _assessed(run: Stored, name: str) -> list[Block]:
+def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
     """The overall answer of an assessment: its table, its reasons."""
     r = run[name]
     rows = []
@@ -111,38 +176,49 @@ def _assessed(run: Stored, name: str) -> list[Block]:
         factor = v.margin_told("")
         if v.status == "ok":
             rows.append(
-                (v.label, OUTCOMES[v.outcome], cell(v.demand, ""), cell(v.capacity, ""), v.unit, factor, v.statement)
+                (
+                    v.label,
+                    words(OUTCOMES[v.outcome]),
+                    _value(words, v.demand, v.unit),
+                    _value(words, v.capacity, v.unit),
+                    factor,
+                    v.statement,
+                )
             )
         else:
-            rows.append((v.label, v.status, "", "", "", "", v.reason))
-    found: list[Block] = [Words(r.statement, "answer")]
+            rows.append((v.label, words(v.status), "", "", "", v.reason))
+    found: list[Block] = [Words(r.statement, "answer", _foreign(words))]
     found.append(
         Table(
-            ("strategy", "verdict", "demand", "capacity", "unit", "margin", "in words"),
+            _heads(words, "strategy", "verdict", "demand", "capacity", "margin", "in words"),
             rows,
-            (1.5, 0.9, 0.8, 0.85, 0.9, 0.9, 3.6),
+            (1.6, 0.9, 1.1, 1.1, 0.9, 3.6),
         )
     )
     found.append(
         Words(
-            "The margin is the critical scale factor of the hazard: below 1 the strategy gives collapse under the hazard itself."
+            words(
+                "The margin is the critical scale factor of the hazard: below 1 the strategy gives collapse under the hazard itself."
+            )
         )
     )
-    found += _advice(r)
+    found += _advice(r, words)
     if r.reasons:
-        found.append(Heading("Why they differ", 2))
+        found.append(Heading(words("Why they differ"), 2))
         labels = {v.strategy: v.label for v in r.verdicts}
         pairs = [
             (one.rule, one.text, "; ".join(f"{labels[a]} and {labels[b]}" for a, b in one.explains))
             for one in r.reasons
         ]
-        found.append(Table(("rule", "reason, with the numbers that show it", "explains"), pairs, (1.2, 4.6, 2.4)))
+        found.append(
+            Table(_heads(words, "rule", "reason, with the numbers that show it", "explains"), pairs, (1.2, 4.6, 2.4))
+        )
     if r.unexplained:
         labels = {v.strategy: v.label for v in r.verdicts}
         text = "; ".join(f"{labels[a]} and {labels[b]}" for a, b in r.unexplained)
         found.append(Words(f"No rule has found a reason why these differ: {text}.", "bad"))
     if r.sensitivity:
-        found.append(Heading("Sensitivity of the verdicts", 2))
+        found.append(Heading(words("Sensitivity of the verdicts"), 2))
         rows = [
             (m.key, f"{cell(m.base)} {m.unit}".strip(), f"{m.low:.4g} to {m.high:.4g}", _both(m.tilt_low, m.tilt_high), cell(m.tilt_turns, ""),
              _both(m.rocking_low, m.rocking_high), cell(m.rocking_turns, ""))
@@ -171,8 +247,8 @@ def _assessed(run: Stored, name: str) -> list[Block]:
             head = ("key", "value", "moved", "at the value", "varied", "rotates at")
             found.append(Table(head, shaken, (2.2, 1.2, 1.6, 1.0, 1.6, 1.0)))
     if r.probes:
-        found.append(Heading("Further runs", 2))
-        rows = [(p.strategy, p.changed, OUTCOMES[p.outcome], cell(p.value, "")) for p in r.probes]
+        found.append(Heading(words("Further runs"), 2))
+        rows = [(p.strategy, p.changed, words(OUTCOMES[p.outcome]), cell(p.value, "")) for p in r.probes]
         found.append(
             Table(
                 ("analysis", "difference from the deck", "verdict", "demand over capacity"), rows, (1.2, 4.0, 1.0, 1.2)
@@ -183,7 +259,7 @@ def _assessed(run: Stored, name: str) -> list[Block]:
     return found
 
 
-def _advice(r: Assess) -> list[Block]:
+def _advice(r: Assess, words: Language) -> list[Block]:
     """What to do: the interventions of an assessment side by side."""
     if r.advice is None:
         return []
@@ -193,106 +269,217 @@ def _advice(r: Assess) -> list[Block]:
         for one in r.advice.interventions
     ]  # fmt: skip
     head = ("intervention", "least size", "capacity after [g]", "then governs", "rocking under the hazard")
-    return [Heading("Strengthening", 2), Words(r.advice.statement), Table(head, rows, (1.4, 2.4, 0.8, 3.2, 1.2))]
+    return [Heading(words("Strengthening"), 2), Words(r.advice.statement), Table(head, rows, (1.4, 2.4, 0.8, 3.2, 1.2))]
 
 
 def _both(low: float | None, high: float | None) -> str:
     return f"{cell(low, '?')} to {cell(high, '?')}" if low is not None or high is not None else ""
 
 
-def _building(deck: dict[str, Any], drawing: tuple[str, str] | None) -> list[Block]:
-    properties = deck.get("properties", [])
-    given = any(p["from"] != "default" and p["table"] != "motion" for p in properties)
-    found: list[Block] = [Heading("Building")] if given or drawing else []
+def _value(words: Language, value: float | None, unit: str) -> str:
+    return "" if value is None else words.quantity(value, unit)
+
+
+def _building(run: Stored, deck: dict[str, Any], drawing: tuple[str, str] | None, words: Language) -> list[Block]:
+    """The drawing, its dimensions, and the properties that the analyses used."""
+    used = {key for a in run.analyses for key in a["assumptions"]}
+    rows = [p for p in deck.get("properties", []) if p["table"] != "motion" and _counts(p, used)]
+    found: list[Block] = [Heading(words("Building"))] if rows or drawing or deck.get("dimensions") else []
     if drawing:
-        found.append(Figure(f"figures/{drawing[0]}", drawing[1], 0.65))
+        found.append(Figure(f"figures/{drawing[0]}", drawing[1]))
     if deck.get("dimensions"):
-        found.append(
-            Table(
-                ("dimension", "length [m]"),
-                [(d["name"], f"{d['length_m']:.4g}") for d in deck["dimensions"]],
-                (3.0, 1.0),
-            )
-        )
-    for heading, tables in (
-        ("Geometry as the deck gives it", ("structure",)), ("Materials and joints", ("material", "materials", "joints")),
-        ("Supports, ties and the state at the start", ("supports", "ties", "dampers", "hinges", "initial")),
-        ("Code and site", ("code",)),
-    ):  # fmt: skip
-        rows = [p for p in properties if p["table"].split(".")[0] in tables and p["from"] != "default"]
-        if rows:
-            found += [Heading(heading, 2), _properties(rows)]
+        sizes = [(name_of(words, d["name"]), words.quantity(d["length_m"], "m")) for d in deck["dimensions"]]
+        found.append(Table(_heads(words, "dimension", "length"), sizes, (3.0, 1.0)))
+    for label, tables in GROUPS:
+        if own := [p for p in rows if p["table"].split(".")[0] in tables]:
+            found += [Heading(words(label), 2), _properties(own, words)]
     return found
 
 
-def _defaults(deck: dict[str, Any]) -> list[Block]:
+def _counts(p: dict[str, Any], used: set[str]) -> bool:
+    """Whether a property belongs into the report: what the deck gives, of material and joints only what an analysis used."""
+    table = p["table"].split(".")[0]
+    if (table, p["key"]) in (("structure", "kind"), ("structure", "block")):
+        return False
+    if table in ("material", "joints"):
+        return f"{table}.{p['key']}" in used or (p["key"] == "types" and p["from"] == "deck")
+    return bool(p["from"] != "default")
+
+
+def _defaults(deck: dict[str, Any], words: Language) -> list[Block]:
     """Properties of the building that the deck leaves at their defaults."""
     rows = [p for p in deck.get("properties", []) if p["from"] == "default" and p["table"] != "motion"]
-    return [Heading("Properties at their defaults"), _properties(rows)] if rows else []
+    return [Heading(words("Properties at their defaults")), _properties(rows, words)] if rows else []
 
 
-def _properties(rows: list[dict[str, Any]]) -> Table:
+def label_of(words: Language, table: str, key: str) -> str:
+    """A key of the deck in words: "compressive strength", "spans 2: clear span" where it stands within another table."""
+    parts = []
+    for part in table.split(".")[1:]:
+        name, _, number = part.partition(" ")
+        parts.append(f"{words(name.replace('_', ' '))} {number}".strip())
+    before = f"{' '.join(parts)}: " if parts else ""
+    return f"{before}{words(key.replace('_', ' '))}"
+
+
+def _properties(rows: list[dict[str, Any]], words: Language) -> Table:
+    """Label, value and origin of each; in English also what it means."""
+
+    def value(p: dict[str, Any]) -> str:
+        v = p["value"]
+        if isinstance(v, float) or (isinstance(v, int) and not isinstance(v, bool)):
+            return words.quantity(float(v), p["unit"], given=True)
+        if isinstance(v, list) and v and all(isinstance(x, float) for x in v):
+            return "; ".join(words.quantity(x, p["unit"], given=True) for x in v[:MOST_SHOWN])
+        return words(str(v).replace("-", " ")) if isinstance(v, str) and p["key"] != "file" else cell(v)
+
+    english = words.code == "en"
     told = [
-        (f"{p['table']}.{p['key']}", cell(p["value"]), p["unit"] if isinstance(p["value"], int | float) else "",
-         f"{p['about']}{f' ({p_source})' if (p_source := p['source']) else ''}", p["from"])
+        (label_of(words, p["table"], p["key"]), value(p), *((p["about"],) if english else ()), words(p["from"]))
         for p in rows
     ]  # fmt: skip
-    return Table(
-        ("key", "value", "unit", "meaning, and the source of its rule", "from"), told, (1.7, 1.6, 0.7, 3.6, 0.7)
-    )
+    head = _heads(words, "property", "value", *(("meaning",) if english else ()), "from")
+    return Table(head, told, (1.8, 1.4, 3.6, 0.7) if english else (2.6, 2.4, 1.0))
 
 
-def _hazard(run: Stored, deck: dict[str, Any]) -> list[Block]:
+def _hazard(run: Stored, deck: dict[str, Any], words: Language) -> list[Block]:
     rows = [p for p in deck.get("properties", []) if p["table"] == "motion"]
     if not rows:
         return []
-    found: list[Block] = [Heading("Hazard")]
+    found: list[Block] = [Heading(words("Hazard"))]
     for a in run.analyses:
         if a["kind"] == "assess" and a["results"]:
             h = run[a["name"]].hazard
             text = f"{h.told[:1].upper()}{h.told[1:]}. Strategies of a constant acceleration take {h.peak_ground_acceleration_g:.3g} g, {h.peak_told}."
             if h.pulse_amplitude_g is not None and h.pulse_period_s is not None:
                 text += f" The primary impulse has {h.pulse_amplitude_g:.3g} g over {h.pulse_period_s:.3g} s."
-            found.append(Words(text))
-    return [*found, _properties(rows)]
+            found.append(Words(text, lang=_foreign(words)))
+    return [*found, _properties(rows, words)]
 
 
-def _analysis(run: Stored, a: dict[str, Any], figures: Figures) -> list[Block]:
-    words = next(
+def _analysis(run: Stored, a: dict[str, Any], figures: Figures, words: Language) -> list[Block]:
+    """One analysis: its answer, warnings, figures, forces and stresses."""
+    how = next(
         (run[b["name"]].parts.get(a["name"], "") for b in run.analyses if b["kind"] == "assess" and b["results"]), ""
-    )
-    valid = validity_of(a["kind"])
-    assumes = valid.assumes if valid else ""
-    label, _, how = words.partition(": ")
-    named = (
-        f"{label[:1].upper()}{label[1:]}" + (f" ({a['name']})" if label != a["name"] else "") if label else a["name"]
-    )
-    heading = "Comparison of the strategies" if a["kind"] == "assess" else named
-    found: list[Block] = [Heading(heading)]
+    ).partition(": ")[2]
+    foreign = _foreign(words)
+    found: list[Block] = [Heading(title_of(words, a["name"], a["kind"]))]
     if how:
-        found.append(Words(f"Settings: {how}."))
-    if assumes:
-        found.append(Words(f"Assumptions: {assumes}"))
+        found.append(Words(f"{words('Settings')}: {how}."))
     if a["status"] != "ok":
-        found.append(Words(f"{a['status']}: {a['reason']}", "bad"))
+        found.append(Words(f"{a['status']}: {a['reason']}", "bad", foreign))
     if a["answer"] and a["kind"] != "assess":
-        found.append(Words(a["answer"], "answer"))
-    found += [Words(f"Warning: {w}", "warn") for w in a["warnings"]]
+        found.append(Words(_engineering(a["answer"]), "answer", foreign))
+    found += [Words(f"{words('Warning')}: {w}", "warn", foreign) for w in a["warnings"]]
     found += [Figure(f"figures/{name}", caption) for name, caption in figures]
-    found += [table for kind, name, table in _own_tables(run) if name == a["name"]]
-    if a["assumptions"]:
-        rows = [
-            (k, cell(s["value"]), s["unit"], s["from"] + (", some differ" if s["exceptions"] else ""))
-            for k, s in a["assumptions"].items()
-        ]
-        found += [
-            Heading("Assumptions of the building", 2),
-            Table(("key", "value", "unit", "from"), rows, (2.6, 1.6, 1.0, 1.2)),
-        ]
+    found += _stresses(run, a, words)
+    found += [table for kind, name, table in _own_tables(run, words) if name == a["name"]]
     return found
 
 
-def _own_tables(run: Stored) -> list[tuple[str, str, Table]]:
+def _engineering(answer: str) -> str:
+    """A sentence of an analysis with pressures in MPa: 8e+06 Pa is 8 MPa."""
+    answer = answer.replace("kg/m^3", "kg/m³")
+    return re.sub(
+        r"\b(\d[\d.]*e\+0*[4-9]|\d{5,}(?:\.\d+)?) Pa\b", lambda found: f"{float(found[1]) / 1e6:.3g} MPa", answer
+    )
+
+
+def _stresses(run: Stored, a: dict[str, Any], words: Language) -> list[Block]:
+    """Forces beside stresses: the joints of greatest compression, by the part of them that the force presses evenly."""
+    there = run.arrays.get(a["name"], {})
+    state = next((s for s in ("central", "collapse", "least") if f"{s}_point" in there and "joint_p" in there), "")
+    if not state or "joint_name" not in there:
+        return []
+    point, p, q = (run.array(a["name"], name) for name in (f"{state}_point", "joint_p", "joint_q"))
+    if f"{state}_normal" in there:
+        normal = run.array(a["name"], f"{state}_normal")
+    elif "envelope_normal" in there and np.isfinite(capacity := run.array(a["name"], "capacity")).any():
+        normal = run.array(a["name"], "envelope_normal")[int(np.nanargmin(capacity))]
+    else:
+        return []
+    depth = (run.summary["deck"].get("drawing") or {}).get("depth_m")
+    if depth is None or normal.ndim != 1 or len(normal) != len(p) or len(point) != len(p):
+        return []
+    names, rows = run.array(a["name"], "joint_name"), []
+    edges = np.minimum(np.hypot(*(point - p).T), np.hypot(*(point - q).T))
+    for j in np.argsort(-np.nan_to_num(normal / np.maximum(edges, EDGE)))[:MOST_JOINTS]:
+        edge = float(edges[j])
+        if not normal[j] > 0.0 or not np.isfinite(edge):
+            continue
+        stress = words("hinge") if edge < EDGE else words.quantity(float(normal[j]) / (2.0 * edge * depth), "Pa")
+        name = names[j].decode() if isinstance(names[j], bytes) else str(names[j])
+        place = f"{words.number(0.5 * float(p[j, 0] + q[j, 0]))}; {words.number(0.5 * float(p[j, 1] + q[j, 1]))}"
+        long = float(np.hypot(*(q[j] - p[j])))
+        rows.append(
+            (
+                name,
+                place,
+                words.quantity(long, "m"),
+                words.quantity(float(normal[j]), "N"),
+                "< 1 mm" if edge < EDGE else words.quantity(edge, "m"),
+                stress,
+            )
+        )
+    if not rows:
+        return []
+    head = _heads(words, "joint", "x; y [m]", "length", "compression", "distance to the edge", "mean stress")
+    said = {"central": "of the most central thrust line", "collapse": "at collapse", "least": "of the least thrust"}[
+        state
+    ]
+    return [
+        Heading(f"{words('Forces and stresses')} {words(said)}", 2),
+        Words(words("The joints of greatest stress. Mean stress: compression over twice its distance to the nearer edge, times the depth.")),
+        Table(head, rows, (2.0, 1.2, 0.9, 1.1, 1.2, 1.1)),
+    ]  # fmt: skip
+
+
+def _factors(run: Stored, deck: dict[str, Any], words: Language) -> list[Block]:
+    """Partial and confidence factors of all analyses, and a remark where all are 1."""
+    rows, values = [], []
+    for a, keys in zip(run.analyses, deck["resolved"].get("analysis", []), strict=False):
+        title, r = title_of(words, a["name"], a["kind"]), run[a["name"]]
+        for key, label in FACTORS.items():
+            if isinstance(found := (keys.get("factors") or {}).get(key), int | float):
+                rows.append((title, words(label), words.given(float(found))))
+                values.append(float(found))
+        for label, found in (
+            ("confidence factor", getattr(r, "confidence_factor", None)),
+            ("behaviour factor", getattr(r, "behaviour_factor", None)),
+        ):
+            if isinstance(found, int | float):
+                rows.append((title, words(label), words.given(float(found))))
+                values.append(float(found))
+    remark = words(
+        "All partial factors are 1: loads and strengths are characteristic. The result has no margin of a code."
+    )
+    told: list[Block] = [Heading(words("Partial and confidence factors"))]
+    if rows:
+        told.append(Table(_heads(words, "analysis", "factor", "value"), rows, (2.4, 2.4, 1.0)))
+    if all(value == 1.0 for value in values):
+        told.append(Words(remark, "warn"))
+    return told
+
+
+def _assumed(run: Stored, words: Language) -> list[Block]:
+    """Of each analysis the properties that its result rests on."""
+    found: list[Block] = []
+    for a in run.analyses:
+        rows = [
+            (label_of(words, k.rpartition(".")[0], k.rpartition(".")[2]),
+             words.quantity(float(s["value"]), s["unit"], given=True) if isinstance(s["value"], int | float) else cell(s["value"]),
+             words(s["from"]) + (f", {words('some differ')}" if s["exceptions"] else ""))
+            for k, s in a["assumptions"].items()
+        ]  # fmt: skip
+        if rows:
+            found += [
+                Heading(title_of(words, a["name"], a["kind"]), 2),
+                Table(_heads(words, "property", "value", "from"), rows, (2.6, 1.6, 1.2)),
+            ]
+    return [Heading(words("Properties that each result rests on")), *found] if found else []
+
+
+def _own_tables(run: Stored, words: Language) -> list[tuple[str, str, Table]]:
     """Results that are told as open tables beside their answer: the checks of codes."""
     found = []
     for a in run.analyses:
@@ -302,10 +489,9 @@ def _own_tables(run: Stored) -> list[tuple[str, str, Table]]:
             rows = [
                 (
                     n,
-                    cell(c.demand, ""),
-                    cell(c.capacity, ""),
-                    c.unit,
-                    c.verdict,
+                    _value(words, c.demand, c.unit),
+                    _value(words, c.capacity, c.unit),
+                    words(c.verdict) if c.verdict else "",
                     f"{f'Not applicable: {c.reason}. ' if c.reason else ''}{c.source}{f'. {c.note}' if c.note else ''}. For: {c.scope}",
                 )
                 for n, c in checks.items()
@@ -314,28 +500,55 @@ def _own_tables(run: Stored) -> list[tuple[str, str, Table]]:
                 (
                     "checks",
                     a["name"],
-                    Table(("check", "demand", "capacity", "unit", "", "clause"), rows, (1.8, 0.8, 0.8, 0.6, 0.7, 3.6)),
+                    Table(
+                        _heads(words, "check", "demand", "capacity", "verdict", "clause"),
+                        rows,
+                        (1.8, 1.0, 1.0, 0.8, 3.6),
+                    ),
                 )
             )
         if walls := getattr(r, "walls", None) if a["kind"] == "local-mechanism" else None:
-            head = ("wall", "rotates at the foot of storey", "alpha_0", "a_0* [g]", "d_0* [m]", "margin")
+            head = _heads(words, "wall", "rotates at the foot of storey", "alpha_0", "a_0*", "d_0*", "margin")
             rows = [
-                (w.wall, str(w.storey), f"{w.multiplier:.4g}", f"{w.activation_acceleration_g:.4g}",
-                 "none" if w.zero_displacement_m is None else f"{w.zero_displacement_m:.3g}", "" if w.margin is None else f"{w.margin:.3g}")
+                (w.wall, str(w.storey), words.number(w.multiplier), words.quantity(w.activation_acceleration_g, "g"),
+                 words("none") if w.zero_displacement_m is None else words.quantity(w.zero_displacement_m, "m"), _value(words, w.margin, ""))
                 for w in walls
             ]  # fmt: skip
             found.append(("walls", a["name"], Table(head, rows, (1.8, 1.6, 1.0, 1.0, 1.0, 1.0))))
     return found
 
 
-def _limits(run: Stored) -> list[Block]:
+def _limits(run: Stored, words: Language) -> list[Block]:
+    """Assumptions and limits of each kind of analysis."""
     seen = dict.fromkeys(a["kind"] for a in run.analyses)
-    rows = [(kind, valid.limits) for kind in seen if (valid := validity_of(kind))]
-    return [Heading("Limits of validity"), Table(("analysis", "limits of validity"), rows, (1.2, 5.0))] if rows else []
+    rows = [
+        (title_of(words, kind, kind), words(valid.assumes), words(valid.limits))
+        for kind in seen if (valid := validity_of(kind))
+    ]  # fmt: skip
+    if not rows:
+        return []
+    return [
+        Heading(words("Limits of validity")),
+        Table(_heads(words, "analysis", "assumptions", "limits of validity"), rows, (1.3, 2.6, 3.6)),
+    ]
 
 
-def _numbers(run: Stored, hidden: set[str]) -> list[Block]:
-    found: list[Block] = [Heading("All numbers")]
+def _bibliography(run: Stored, deck: dict[str, Any], words: Language) -> list[Block]:
+    """Standards with their clauses, and the publications of the methods."""
+    used = {key for a in run.analyses for key in a["assumptions"]}
+    sources = [
+        p["source"] for p in deck.get("properties", []) if p["source"] and (p["table"] == "motion" or _counts(p, used))
+    ]
+    for a in run.analyses:
+        checks = getattr(run[a["name"]], "checks", None)
+        sources += [c.source for c in checks.values() if c.source] if isinstance(checks, dict) else []
+    trains = [keys["train"] for keys in deck["resolved"].get("analysis", []) if isinstance(keys.get("train"), str)]
+    found = references([a["kind"] for a in run.analyses], sources, trains)
+    return [Heading(words("Bibliography")), *(Words(one) for one in found)] if found else []
+
+
+def _numbers(run: Stored, hidden: set[str], words: Language) -> list[Block]:
+    found: list[Block] = [Heading(words("All numbers"))]
     for a in run.analyses:
         rows = [
             (k, v, unit, about)
@@ -349,11 +562,14 @@ def _numbers(run: Stored, hidden: set[str]) -> list[Block]:
                 if row[0].split(".")[0] in ("overall", "hazard", "least_margin", "least_margin_strategy", "budget_s")
             ]
         if rows:
-            found += [Heading(a["name"], 2), Table(("key", "value", "unit", "meaning"), rows, (2.2, 1.8, 0.7, 3.2))]
+            found += [
+                Heading(a["name"], 2),
+                Table(_heads(words, "key", "value", "unit", "meaning"), rows, (2.2, 1.8, 0.7, 3.2)),
+            ]
     return found if len(found) > 1 else []
 
 
-def _repeat(run: Stored, deck: dict[str, Any], made: dict[str, Any]) -> list[Block]:
+def _repeat(run: Stored, deck: dict[str, Any], made: dict[str, Any], words: Language) -> list[Block]:
     lines = [f"extrados run {deck['path'] or 'deck.toml'}"]
     parts = [n for b in run.analyses if b["kind"] == "assess" and b["results"] for n in run[b["name"]].parts]
     lines += [f"extrados run {n}.toml        # of assess/, put beside the deck" for n in parts]
@@ -370,15 +586,15 @@ def _repeat(run: Stored, deck: dict[str, Any], made: dict[str, Any]) -> list[Blo
     }
     settings |= {a["name"]: keys for a, keys in zip(run.analyses, deck["resolved"].get("analysis", []), strict=False)}
     found: list[Block] = [
-        Heading("To repeat it"), Code("\n".join(lines)),
+        Heading(words("To repeat it")), Code("\n".join(lines)),
         Table((), [("version", f"{made['version']} {made['commit']}"), ("compiler", made["compiler"]), ("deck", f"{deck['path']}, sha256 {deck['sha256']}")], (1.0, 5.0)),
-        Words(f"Checksums (sha256) of the files beside this report, as {SUMMARY} restrains them:"),
+        Words(words("Checksums (sha256) of the files beside this report, as {file} gives them:", file=SUMMARY)),
         Table(("file", "sha256"), sums, (1.6, 5.0)),
     ]  # fmt: skip
     rows = flat(settings)
     if rows:
         found += [
-            Heading("Settings of the analyses, with their defaults, in SI", 2),
+            Heading(words("Settings of the analyses, with their defaults, in SI"), 2),
             Table(("key", "value"), rows, (2.4, 4.0)),
         ]
     return found

@@ -7,6 +7,7 @@ from typing import Any
 from extrados.results.store import StoreError
 from extrados.show.document import Block, Code, Document, Figure, Heading, Table, Words
 from extrados.show.html import LOOKS
+from extrados.show.language import Language
 
 #: A drawing of more bytes is taken as a picture of dots: a page would take seconds
 LARGEST = 1_500_000
@@ -24,9 +25,10 @@ HEAD = """#set document(title: {title}, date: none)
   #set text(7.5pt, fill: rgb("#666666"))
   #grid(columns: (1fr, auto), gutter: 6mm, align: (left, right), {foot}, counter(page).display("1 / 1", both: true))
 ])
-#set text(font: "Libertinus Serif", size: 10pt, lang: "en")
+#set text(font: "Libertinus Serif", size: 10pt, lang: {lang}, hyphenate: false)
 #set par(justify: false, leading: 0.6em)
 #set heading(numbering: "1.1")
+#show heading: set text(fill: rgb({colour}))
 #show heading.where(level: 1): it => block(above: 1.6em, below: 0.8em, it)
 #show heading.where(level: 2): set text(11pt)
 #show raw: set text(font: "DejaVu Sans Mono", size: 7.5pt)
@@ -34,10 +36,13 @@ HEAD = """#set document(title: {title}, date: none)
 #show table: set text(8pt)
 #show table: set par(leading: 0.45em)
 #show figure.caption: set text(8.5pt)
-#set figure(supplement: [Figure], placement: none)
+#set figure(supplement: {figure}, placement: none)
 #let box-of(fill, line, body) = block(width: 100%, fill: rgb(fill), stroke: (left: 3pt + rgb(line)), inset: 8pt, breakable: true, body)
-#align(left, text(18pt, weight: "bold", {title}))
 """
+#: Width of the text [mm], of a letter in a table and of what stands beside the letters of a cell
+PAGE, LETTER, BESIDE = 170.0, 1.55, 2.4
+#: Rows of a table that is kept on one page
+KEPT = 8
 
 
 def available() -> bool:
@@ -62,25 +67,42 @@ def _words(value: str) -> str:
 
 def markup(document: Document, folder: Path) -> str:
     """The document in the language of typst; pictures lie below the folder."""
-    lines = [HEAD.replace("{title}", text_of(document.title)).replace("{foot}", text_of(document.foot))]
+    words = document.words
+    fields = {
+        "{title}": text_of(document.title), "{foot}": text_of(document.foot), "{lang}": text_of(words.code),
+        "{colour}": text_of(document.colour), "{figure}": f"text({text_of(words('Figure'))})",
+    }  # fmt: skip
+    lines = [re.sub(r"\{(?:title|foot|lang|colour|figure)\}", lambda found: fields[found[0]], HEAD)]
+    title = f'text(18pt, weight: "bold", {text_of(document.title)})'
+    if document.logo:
+        logo = f"image({text_of(document.logo)}, height: 16mm, alt: {text_of(words('Logo'))})"
+        lines.append(f"#grid(columns: (1fr, auto), gutter: 6mm, align: (left + horizon, right), {title}, {logo})")
+    else:
+        lines.append(f"#align(left, {title})")
     if document.facts:
-        rows = ", ".join(f"strong({text_of(a)}), {_words(b)}" for a, b in document.facts)
-        lines.append(f"#table(columns: (auto, 1fr), {rows})")
-    lines += _set(document.opening, folder)
-    lines.append("#outline(depth: 1, title: [Contents])")
-    lines += _set(document.blocks, folder)
+        cells = ", ".join(f"strong({text_of(a)}), {_words(b)}" for a, b in document.facts)
+        cells += ", [], []" if len(document.facts) % 2 else ""
+        lines.append(
+            f"#table(columns: (auto, 1fr, auto, 1fr), stroke: 0.5pt + rgb({text_of(document.colour)}), {cells})"
+        )
+    lines += _set(document.opening, folder, words)
+    if document.signatures:
+        cells = ", ".join(f"[#{_words(label)} \\ #{_words(name)} #v(9mm)]" for label, name in document.signatures)
+        lines.append(
+            f"#table(columns: {len(document.signatures)} * (1fr,), stroke: 0.5pt + rgb({text_of(document.colour)}), {cells})"
+        )
+    if document.opening:
+        lines.append("#pagebreak(weak: true)")
+    lines.append(f"#outline(depth: 1, title: {_words(words('Contents'))})")
+    lines += _set(document.blocks, folder, words)
     if document.annex:
         lines.append(
-            _paragraph(
-                Words(
-                    "The annex is in report.html beside this file: each strategy by itself, all numbers, settings and checksums."
-                )
-            )
+            _paragraph(Words(words("The annex is a document of its own: all numbers, settings and checksums.")))
         )
     return "\n".join(lines)
 
 
-def _set(blocks: list[Block], folder: Path) -> list[str]:
+def _set(blocks: list[Block], folder: Path, words: Language) -> list[str]:
     """Blocks in the language of typst."""
     lines = []
     for block in blocks:
@@ -91,7 +113,7 @@ def _set(blocks: list[Block], folder: Path) -> list[str]:
         elif isinstance(block, Words):
             lines.append(_paragraph(block))
         elif isinstance(block, Table):
-            lines.append(_table(block))
+            lines.append(_table(block, words))
         elif isinstance(block, Figure):
             lines.append(_figure(block, folder))
         elif isinstance(block, Code):
@@ -104,17 +126,20 @@ def _set(blocks: list[Block], folder: Path) -> list[str]:
 def _paragraph(block: Words) -> str:
     body = ", linebreak(), ".join(f"text({text_of(line)})" for line in block.text.split("\n"))
     body = f"(({body},).join())"
+    if block.lang:
+        body = f"text(lang: {text_of(block.lang)}, {body})"
     if block.look in BOXES:
         fill, line = BOXES[block.look]
         return f"#box-of({text_of(fill)}, {text_of(line)}, {body})"
     return f"#par({body})"
 
 
-def _table(block: Table) -> str:
+def _table(block: Table, words: Language) -> str:
+    looks = {words(look): COLOURS[look] for look in LOOKS}
     columns = max([len(block.head), *(len(row) for row in block.rows)], default=0)
     if not columns or not block.rows:
         return ""
-    widths = ", ".join(f"{share:g}fr" for share in block.shares) if block.shares else ", ".join(["auto"] * columns)
+    widths = ", ".join(f"{share:.4g}fr" for share in _shares(block)) if block.shares else ", ".join(["auto"] * columns)
     cells = []
     if block.head:
         cells.append(f"table.header({', '.join(f'strong({_words(cell)})' for cell in block.head)})")
@@ -123,10 +148,25 @@ def _table(block: Table) -> str:
             body = _words(cell)
             if k == 0:
                 body = f"strong({body})"
-            elif cell in LOOKS:
-                body = f'text(fill: rgb("{COLOURS[cell]}"), weight: "bold", {text_of(cell)})'
+            elif cell in looks:
+                body = f'text(fill: rgb("{looks[cell]}"), weight: "bold", {text_of(cell)})'
             cells.append(body)
-    return f"#table(columns: ({widths},), {', '.join(cells)})"
+    table = f"table(columns: ({widths},), {', '.join(cells)})"
+    return f"#block(breakable: {'false' if len(block.rows) <= KEPT else 'true'}, {table})"
+
+
+def _shares(block: Table) -> list[float]:
+    """Widths of the columns [mm]: as asked, but none less than its longest word."""
+    every = [block.head, *block.rows] if block.head else block.rows
+    least = [
+        BESIDE + LETTER * max((len(word) for row in every for word in BREAKS.sub(lambda m: m[0] + " ", row[k]).split()), default=0)
+        for k in range(len(block.shares))
+    ]  # fmt: skip
+    asked = [PAGE * share / sum(block.shares) for share in block.shares]
+    lack = sum(max(0.0, need - have) for need, have in zip(least, asked, strict=True))
+    spare = sum(max(0.0, have - need) for need, have in zip(least, asked, strict=True))
+    part = min(1.0, lack / spare) if spare else 0.0
+    return [need if have < need else have - part * (have - need) for need, have in zip(least, asked, strict=True)]
 
 
 def _figure(block: Figure, folder: Path) -> str:
@@ -135,17 +175,20 @@ def _figure(block: Figure, folder: Path) -> str:
     size = re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', drawing.read_text(encoding="utf-8")[:2000])
     tall = float(size[2]) / float(size[1]) if size else 1.0
     width = 100.0 * block.width * min(1.0, TALLEST / tall)
-    return f"#figure(image({text_of('/' + name)}, width: {width:.3g}%), caption: {_words(block.caption)})"
+    return f"#figure(image({text_of(name)}, width: {width:.3g}%, alt: {text_of(block.caption)}), caption: {_words(block.caption)})"
 
 
-def pdf(document: Document, folder: Path) -> bytes:
-    """The printed report; StoreError where the typesetter is missing or cannot set it."""
+def pdf(source: bytes, folder: Path) -> bytes:
+    """A markup as PDF/UA-1: tags, alternative texts, title, language, fonts embedded. StoreError where the typesetter is missing or
+    cannot set it."""
     try:
         import typst
     except ImportError:
         raise StoreError("the report as PDF needs the package typst: pip install typst") from None
-    source: Any = markup(document, folder).encode(errors="replace")  # names of files may hold bytes that are no text
+    text: Any = source
     try:
-        return bytes(typst.compile(source, root=str(folder), format="pdf", ignore_system_fonts=True))
+        return bytes(
+            typst.compile(text, root=str(folder), format="pdf", ignore_system_fonts=True, pdf_standards=["ua-1"])
+        )
     except Exception as error:  # typst raises errors of its own and RuntimeError
         raise StoreError(f"the report could not be set as PDF: {error}") from None

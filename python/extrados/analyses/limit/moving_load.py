@@ -21,7 +21,7 @@ from extrados.analyses.limit.common import (
     zone_arrays,
 )
 from extrados.analyses.limit.tables import MovingLoad, PartialFactors
-from extrados.analyses.limit.trains import Train, fitting_train
+from extrados.analyses.limit.trains import Train, fitting_train, unverified
 from extrados.analyses.limit.variation import signature, spoken
 from extrados.limit.answer import cannot_stand
 from extrados.limit.errors import CannotStand, Immovable, NoAnswer
@@ -285,6 +285,8 @@ def run(context: Context, options: MovingLoad) -> Result:
     )
     result.results = r
     result.warnings += [f"{one} {MODEL}" for one in r.violated]
+    if source := unverified(options.train):
+        result.warnings.append(f"The axles of {train.name} were not read in the standard: compare them with {source}.")
     finite = np.where(np.isinf(capacity), np.nan, capacity)
     result.arrays = {
         **geometry_arrays(assembly),

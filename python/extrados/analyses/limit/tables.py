@@ -184,8 +184,13 @@ class MovingLoad(LimitAnalysisTable):
     chain: str | None = key(
         None, "the arch it crosses; default the first: arch, vault or nave; a bridge is crossed along its whole top"
     )
-    train: Literal["LM1", "LM71", "SW/0", "SW/2"] | None = key(
-        None, "load model of EN 1991-2, in place of axles and loads", source="EN 1991-2 4.3.2, 6.3.2, 6.3.3"
+    train: Literal["LM1", "LM71", "SW/0", "SW/2", "SV80", "SV100", "SV196"] | None = key(
+        None,
+        "load model of EN 1991-2, or a special vehicle of its UK annex, in place of axles and loads",
+        source="EN 1991-2 4.3.2, 6.3.2, 6.3.3; SV: UK National Annex to EN 1991-2 (verify clause)",
+    )
+    gap: Length | None = key(
+        None, "gap between the bogies of an SV vehicle: 1.2 (the default), 5 or 9 m", ge=1.2, le=9.0
     )
     axles: list[Length] = key([0.0], "places of the axles behind the first", max_length=200)
     shares: list[float] | None = key(None, "share of the load on each axle; default equal", max_length=200)
@@ -225,6 +230,10 @@ class MovingLoad(LimitAnalysisTable):
             raise ValueError("axles: expected one at least, or uniform loads")
         if self.lanes is not None and self.train != "LM1":
             raise ValueError("lanes belongs to the train LM1")
+        if self.gap is not None and not (self.train or "").startswith("SV"):
+            raise ValueError("gap belongs to the trains SV80, SV100 and SV196")
+        if self.gap not in (None, 1.2, 5.0, 9.0):
+            raise ValueError(f"gap: expected 1.2, 5 or 9 m, found {self.gap:g}")
         for one in self.uniform:
             if one.start is not None and one.stop is not None and one.stop <= one.start:
                 raise ValueError("uniform: expected stop behind start")

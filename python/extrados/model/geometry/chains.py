@@ -8,6 +8,9 @@ import numpy as np
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import GROUND, Assembly
 
+#: Degrees between neighbouring joints below which a survey tells no voussoirs from courses
+LEAST_STEP = 0.5
+
 
 def with_chains(assembly: Assembly) -> Assembly:
     """The assembly with its chains named, and their joints turned so that p lies on the intrados, q on the extrados.
@@ -79,6 +82,44 @@ def inner_stones(assembly: Assembly, joints: list[int]) -> set[int]:
 def is_stack(assembly: Assembly, joints: list[int]) -> bool:
     """True where the joints of a chain end at a stone that no other joint holds: no arch, but a stack."""
     return any(_end(assembly, joints, k) not in (GROUND, None) for k in (0, -1))
+
+
+def springings(assembly: Assembly, joints: list[int]) -> tuple[int, int]:
+    """Places in a chain of the joints at which its arch begins and ends: the beds of piers below are no part of the arch.
+
+    An arch begins at its skewback; one that springs level, at the last bed. A bed is a joint that is inclined by less than
+    half of what two neighbouring joints of the arch differ by.
+    """
+    along = assembly.q[joints] - assembly.p[joints]
+    inclined = np.degrees(np.arctan2(np.abs(along[:, 1]), np.abs(along[:, 0])))
+    steps = np.abs(np.diff(inclined))
+    step = float(np.median(steps[steps > LEAST_STEP])) if (steps > LEAST_STEP).any() else 0.0
+    turned = np.flatnonzero(inclined > 0.5 * step)
+    if not len(turned) or step == 0.0:
+        return 0, len(joints) - 1
+    first, last = int(turned[0]), int(turned[-1])
+    first -= first > 0 and _leans(assembly, joints[first - 1], joints[first], 0.25 * step)
+    last += last < len(joints) - 1 and _leans(assembly, joints[last + 1], joints[last], 0.25 * step)
+    return first, last
+
+
+def _leans(assembly: Assembly, low: int, high: int, least: float) -> bool:
+    """Whether the intrados between two joints leans by more than some degrees: upright, it is the face of a skewback."""
+    along = np.abs(assembly.p[high] - assembly.p[low])
+    long = np.hypot(*along) > 0.1 * min(assembly.length[[low, high]])
+    return bool(long and np.degrees(np.arctan2(along[0], along[1])) > least)
+
+
+def arch_of(assembly: Assembly, joints: list[int]) -> list[int]:
+    """The joints of a chain from springing to springing; empty where the chain stands upright or is a stack."""
+    if is_stack(assembly, joints):
+        return []
+    first, last = springings(assembly, joints)
+    arch = joints[first : last + 1]
+    (x0, y0), (x1, y1) = assembly.middle[[arch[0], arch[-1]]].tolist()
+    clear = abs(assembly.p[arch[-1], 0] - assembly.p[arch[0], 0])
+    upright = abs(x1 - x0) < 0.5 * abs(y1 - y0) or clear < 1e-3 * float(assembly.length[arch].max())
+    return [] if len(arch) < 3 or upright else arch
 
 
 def _end(assembly: Assembly, joints: list[int], k: int) -> int | None:

@@ -1,12 +1,14 @@
 """Arch bridges: spans of one or more rings on piers and abutments, with backing, fill and surfacing."""
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
+from scipy.interpolate import CubicSpline
 
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import GROUND, Assembly
@@ -17,6 +19,8 @@ from extrados.schema.quantities import Angle, Density, Length, Stress
 from extrados.schema.table import Table, key
 
 FINE = 20001  # points by which curves that are no arcs are measured
+#: Height to which the springings of a surveyed intrados must agree [m]
+LEVEL = 0.005
 #: Angle of the side arcs of a three-centred arch, Huygens' basket handle [rad]
 SIDE_ARC = np.pi / 3.0
 
@@ -24,9 +28,14 @@ SIDE_ARC = np.pi / 3.0
 class Span(Table):
     """One arch of a bridge, by its intrados."""
 
-    shape: Literal["segmental", "three-centred", "pointed", "elliptical", "parabolic"] = key(
-        "segmental", "curve of the intrados; a segmental one with a rise of half the span is a semicircle"
+    shape: Literal["segmental", "three-centred", "pointed", "elliptical", "parabolic", "surveyed"] = key(
+        "segmental",
+        "curve of the intrados; a segmental one with a rise of half the span is a semicircle; surveyed: `intrados`",
     )
+    intrados: list[list[Length]] | None = key(
+        None, "measured points [x, y] of the intrados from springing to springing, both at y = 0, for shape surveyed; span and rise "
+        "are then those of the points", min_length=4, max_length=2000,
+    )  # fmt: skip
     span: Length = key(about="clear span", gt=0)
     rise: Length = key(about="rise of the intrados", gt=0)
     thickness: Length = key(about="thickness of the arch at the crown, all rings together", gt=0)
@@ -38,6 +47,41 @@ class Span(Table):
     )
     rings: int = key(1, "number of rings of equal thickness, which can slide on each other and part", ge=1, le=10)
     voussoirs: int = key(40, "number of voussoirs of each ring; even for a pointed arch", ge=4, le=2000)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _measured(cls, given: Any) -> Any:
+        """Span and rise of a surveyed intrados, which its points give."""
+        if (
+            not isinstance(given, dict)
+            or given.get("shape") != "surveyed"
+            or not isinstance(given.get("intrados"), list)
+        ):
+            return given
+        if twice := [name for name in ("span", "rise") if name in given]:
+            raise ValueError(f"{twice[0]}: the points of intrados give it; leave it out")
+        points = [point for point in given["intrados"] if isinstance(point, list) and len(point) == 2]
+        if len(points) < len(given["intrados"]) or not all(
+            isinstance(v, int | float) for point in points for v in point
+        ):
+            raise ValueError("intrados: expected points [x, y] in metres")
+        if not points:
+            return given
+        x, y = [float(point[0]) for point in points], [float(point[1]) for point in points]
+        return {**given, "span": x[-1] - x[0], "rise": max(y)}
+
+    @model_validator(mode="after")
+    def _surveyed(self) -> "Span":
+        if (self.shape == "surveyed") != (self.intrados is not None):
+            raise ValueError("intrados: belongs to the shape surveyed, which needs it")
+        for before, after in itertools.pairwise(self.intrados or []):
+            if after[0] <= before[0]:
+                raise ValueError(
+                    f"intrados: expected x that grows from point to point, found {before[0]:g} before {after[0]:g}"
+                )
+        if self.intrados and (abs(self.intrados[0][1]) > LEVEL or abs(self.intrados[-1][1]) > LEVEL):
+            raise ValueError("intrados: expected both springings at y = 0: all springings of a bridge are at one level")
+        return self
 
     @model_validator(mode="after")
     def _shaped(self) -> "Span":
@@ -113,6 +157,8 @@ def intrados(span: Span) -> tuple[np.ndarray, np.ndarray]:
     """
     a, b, n = 0.5 * span.span, span.rise, span.voussoirs
     share = np.linspace(0.0, 1.0, n + 1)
+    if span.intrados is not None:
+        return _surveyed(np.array(span.intrados, dtype=float), share)
     if span.shape == "segmental":
         radius = (a * a + b * b) / (2.0 * b)
         turn = np.arctan2(a, radius - b) * (2.0 * share - 1.0)
@@ -146,6 +192,18 @@ def intrados(span: Span) -> tuple[np.ndarray, np.ndarray]:
         point = np.column_stack([x, b * (1.0 - (x / a) ** 2)])
         normal = np.column_stack([2.0 * b * x / a**2, np.ones(n + 1)])
     return point, normal / np.hypot(*normal.T)[:, None]
+
+
+def _surveyed(points: np.ndarray, share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A cubic spline through measured points, by the length along them; the joints are normal to it."""
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    curve = CubicSpline(along, points - (0.5 * (points[0, 0] + points[-1, 0]), 0.0))
+    fine = np.linspace(0.0, along[-1], FINE)
+    run = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(curve(fine), axis=0).T))])
+    at = np.interp(run[-1] * share, run, fine)
+    tangent = curve(at, 1)
+    normal = np.column_stack([-tangent[:, 1], tangent[:, 0]])
+    return curve(at), normal / np.hypot(*normal.T)[:, None]
 
 
 def _three_centred(a: float, b: float, side: float | None, share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
