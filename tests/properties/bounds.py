@@ -127,7 +127,7 @@ def dilatancy_helps(deck: Deck, within: float) -> None:
 @relation("tilt", decks(*SOLIDS), 1e-5)
 def bounds_of_solids(deck: Deck, within: float) -> None:
     """Bounds from within and around enclose the capacity, and its certificate is kept."""
-    answer = ask(deck, "tilt", direction=0.0, rose=4, pyramids=8)
+    answer = ask(deck, "tilt", direction=0.0, rose=4, starts=1, pyramids=8)
     ok(answer)
     r = answer.results
     at_most("lower bound", r.pyramids.lower_g or 0.0, r.collapse_acceleration_g, within)
