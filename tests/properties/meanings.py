@@ -1,13 +1,16 @@
 """What a field of a result means: fields that exist only with an outcome, senses of rotation, words that count a table."""
 
 import re
+import time
 
 import numpy as np
-from asking import Deck, ask, must
+from asking import Deck, ask, must, near, run
 from buildings import decks, number, pulses
 from hypothesis import reject
 from hypothesis import strategies as st
 from relations import RIGID, SLOW, ok, relation
+
+from extrados.model.geometry.contacts import nearest
 
 
 @relation("rocking dem", st.tuples(decks("block", "column", "stack", "arch"), pulses(0.2, 2.5)), 1e-9, share=2.0)
@@ -100,3 +103,34 @@ def snapshots_hold_together(deck: Deck, motion: Deck, within: float) -> None:
         ]
         worst = float(np.min(apart, axis=0).max())
         must(worst <= within * size, f"a joint parts at both ends by {worst} m")
+
+
+BOXES = st.lists(
+    st.tuples(number(0.0, 9.0), number(0.0, 9.0), number(0.1, 1.0), number(0.1, 1.0)), min_size=3, max_size=6
+)
+
+
+@relation("tilt", BOXES, 1e-9)
+def the_nearest_gap(boxes: list[tuple], within: float) -> None:
+    """The gap of a block is the least distance from it to any other: of upright rectangles the hypotenuse of both clearances."""
+    x, y, w, h = np.array(boxes).T
+    across = np.maximum(np.maximum(x[1:] - (x + w)[0], x[0] - (x + w)[1:]), 0.0)
+    up = np.maximum(np.maximum(y[1:] - (y + h)[0], y[0] - (y + h)[1:]), 0.0)
+    apart = np.hypot(across, up)
+    if apart.min() <= 0.0:
+        reject()
+    outlines = [np.array([[a, b], [a + c, b], [a + c, b + d], [a, b + d]]) for a, b, c, d in boxes]
+    found = nearest(outlines, np.zeros((0, 4)), 0)
+    must(found is not None and found.first == 0, f"{found}")
+    near("gap", found.depth, float(apart.min()), within)
+    near("gap to the block named", float(apart[found.second - 1]), float(apart.min()), within)
+
+
+@relation("tilt thrust", decks("block", "arch", "column"), 0.0)
+def seconds_lie_within_the_run(deck: Deck, within: float) -> None:
+    """The seconds of all analyses are those of the run at most."""
+    begin = time.perf_counter()
+    results = run({**deck, "analysis": [{"kind": "tilt"}, {"kind": "thrust"}]}).results
+    whole = time.perf_counter() - begin
+    took = [r.seconds for r in results]
+    must(min(took) >= 0.0 and sum(took) <= whole, f"{took} in {whole} s")
