@@ -242,8 +242,8 @@ def _restrained(free: Rocker, building: Masonry) -> Rocker | None:
     if wall is not None and building.supports.rebound is None:
         told += (
             f"the wall throws it back with {rebound[0 if sides[0] else 1]:.3f} times the rate, by three plastic impacts. Discrete "
-            "elements of 5 % of critical damping leave up to 1.25 times as much, critically damped ones less (docs/rocking.md). "
-            "Give [supports] rebound if it matters",
+            "elements of a facade of 0.6 x 3 m left 0.7 to 1.2 times as much at 5 % of critical damping, and less at critical damping "
+            "(docs/rocking.md). Give [supports] rebound if it matters",
         )
     return replace(
         free, body=body, restraints=held, warnings=told, critical=critical, start_rotation=ratio * critical[0 if ratio >= 0.0 else 1],
