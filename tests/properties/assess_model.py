@@ -1,5 +1,8 @@
 """Random rows, verdicts and results for the models of assess."""
 
+import re
+
+import numpy as np
 from hypothesis import HealthCheck, Phase, settings
 from hypothesis import strategies as st
 
@@ -7,7 +10,7 @@ from extrados.analyses.assess import strategies
 from extrados.analyses.assess.driver import _Work
 from extrados.analyses.context import Context
 from extrados.decks.reader import make_deck
-from extrados.results.assess import Assess, StrategyVerdict
+from extrados.results.assess import Assess, Reason, StrategyVerdict
 from extrados.results.codes import Check
 from extrados.results.model import Result
 from extrados.results.verdict import Verdict
@@ -100,6 +103,15 @@ def checks(draw: st.DrawFn) -> dict[str, Check]:
             source="", note="", code=code, quantity="", limit_state="", scope="", alternative=draw(st.sampled_from(["", "SLV"])), reason="",
         )  # fmt: skip
     return found
+
+
+def stated(found: Reason) -> None:
+    """Each number in the text of a reason is one of its numbers, as it is or in percent, or the size of a perturbation."""
+    given = [v * factor for v in found.numbers.values() if v is not None for factor in (1.0, 100.0)]
+    for word in re.findall(r"(?<![\w.^])\d+(?:\.\d+)?(?:e[+-]?\d+)?(?= (?:%|g\b|m\b|Pa\b|rad\b)|\.\d*$|$)", found.text):
+        value = float(word)
+        must = any(abs(value - v) <= 0.5 * 10.0 ** np.floor(np.log10(max(abs(v), 1e-9))) / 10.0 + 1e-9 for v in given)
+        assert must, f"{found.rule}: {word} in its text, not among {found.numbers}: {found.text}"
 
 
 def decided(verdict: Verdict, outcome: str, violated: list[str]) -> None:

@@ -107,7 +107,10 @@ def solids_hold_what_their_parts_do(deck: Deck, within: float) -> None:
 def barrels_and_their_sections(deck: Deck, within: float) -> None:
     """Along its span a barrel of any bond bears what its section bears; a skew one no more, for its joints bear sidewards too."""
     square, section = changed(deck, structure={"skew": 0.0}), changed(deck, structure={"skew": 0.0, "stones_across": 1})
-    plane, space, skew = ask(section, "tilt"), *(ask(d, "tilt", direction=0.0, rose=4) for d in (square, deck))
+    plane, space, skew = (
+        ask(section, "tilt"),
+        *(ask(d, "tilt", direction=0.0, rose=4, starts=1) for d in (square, deck)),
+    )
     same("in space", plane, space)
     ok(plane, space)
     near("in space", plane.capacity, space.capacity, within, 1e-3)

@@ -162,7 +162,10 @@ def turned_plan_pushed(deck: Deck, angle: float, within: float) -> None:
 @relation("tilt", st.tuples(decks(*SOLIDS), number(0.0, 180.0, 12)), 1e-5)
 def opposite_direction_of_solids(deck: Deck, angle: float, within: float) -> None:
     """What is borne along a direction is the opposite of what is borne against it."""
-    one, other = ask(deck, "tilt", direction=angle, rose=4), ask(deck, "tilt", direction=angle - 180.0, rose=4)
+    one, other = (
+        ask(deck, "tilt", direction=angle, rose=4, starts=1),
+        ask(deck, "tilt", direction=angle - 180.0, rose=4, starts=1),
+    )
     same("turned around", one, other)
     near("turned around", one.capacity, other.capacity[::-1], within, 1e-3)
 
@@ -171,7 +174,10 @@ def opposite_direction_of_solids(deck: Deck, angle: float, within: float) -> Non
 def a_dome_turned_by_a_lune(deck: Deck, within: float) -> None:
     """A dome is the same from every lune."""
     angle = 360.0 / deck["structure"]["lunes"]
-    one, other = ask(deck, "tilt", direction=0.0, rose=4), ask(deck, "tilt", direction=angle, rose=4)
+    one, other = (
+        ask(deck, "tilt", direction=0.0, rose=4, starts=1),
+        ask(deck, "tilt", direction=angle, rose=4, starts=1),
+    )
     same("turned", one, other)
     near("turned", one.capacity, other.capacity, within, 1e-3)
 

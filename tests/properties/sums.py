@@ -475,7 +475,7 @@ def units_and_scales_of_records(amplitude: float, frequency: float, scale: float
 def tilts_are_those_of_their_accelerations(deck: Deck, within: float) -> None:
     """A ground tilted by atan(a/g) pushes as a horizontal acceleration a does, to both sides, in the plane, in space and by elements."""
     kind = deck["structure"]["kind"]
-    found = [ask(deck, "tilt", **({"direction": 30.0, "rose": 4} if kind in SOLIDS else {}))]
+    found = [ask(deck, "tilt", **({"direction": 30.0, "rose": 4, "starts": 1} if kind in SOLIDS else {}))]
     if kind == "block":
         found.append(ask(deck, "dem", test="tilt", tilt_accuracy=0.05, time_step=0.004, **RIGID))
     ok(*found)

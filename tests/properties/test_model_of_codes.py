@@ -99,6 +99,10 @@ def test_what_the_codes_explain_follows_from_their_checks(
             check.capacity,
         )
         assert numbers["other_margin"] == (starts[0] if starts else decided[1][0])
+        turns = (numbers["other_margin"] > 1.0) != (
+            margin > 1.0
+        )  # a check that turns no verdict explains none that differ
+        assert turns or found.agreement["tilt"]["code-checks"] != "disagree"
     elif (
         found.agreement["tilt"]["code-checks"] == "disagree"
         and not name.startswith(by_multiplier)

@@ -1,7 +1,7 @@
 """A model of the reasons of assess: each follows from the results of its strategies, none names another number."""
 
 import numpy as np
-from assess_model import CONTEXT, FACTORS, QUICK, TABLES, concluded, rows
+from assess_model import CONTEXT, FACTORS, QUICK, TABLES, concluded, rows, stated
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -131,6 +131,7 @@ def test_each_reason_follows_from_its_probe(facts: Facts) -> None:
             for name, value in numbers.items():
                 assert found.numbers[name] == value, rule.__name__
             assert found.text[-1] in ".!" and found.rule in reasons.HEADLINES
+            stated(found)
 
     def alike(a: DemRun, b: DemRun) -> bool:
         far = sorted((a.peak_displacement_m, b.peak_displacement_m))
@@ -295,6 +296,7 @@ def test_each_reason_follows_from_the_results_of_its_strategies(facts: Facts) ->
         if found is not None:
             assert [tuple(p) for p in found.explains] == mine, rule.__name__
             assert {k: found.numbers[k] for k in numbers} == numbers, rule.__name__
+            stated(found)
 
     def weaker(p: tuple, name: str) -> bool:
         return name in p and facts.split(p)[0] == name

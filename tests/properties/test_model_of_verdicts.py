@@ -328,7 +328,8 @@ def test_shares_of_collapses_decide_where_all_agree(
         median=middle,
         intensity="PGA",
         intensity_unit="g",
-        collapse_probability=[share if share is not None else 0.5],
+        collapse_probability=[share if share is not None else 0.5, *([None] if None in shares else [])],
         conditions=conditions,
     ).judged(DEMANDED)
+    assert middle is not None or f"{100.0 * (0.5 if share is None else share):.3g} %" in levels.statement
     assert (levels.outcome, levels.capacity, levels.violated) == ("not-applicable", middle, conditions.violated)

@@ -41,6 +41,7 @@ CHAPTERS = (
     "definitions_statistics",
     "definitions_keys",
     "kernels",
+    "meanings",
     "outputs",
 )
 for chapter in CHAPTERS:

@@ -274,7 +274,7 @@ def test_wrong_dampers_and_hinges_are_told_with_their_line() -> None:
 def test_blows_at_one_corner_after_the_other_end_at_the_wall() -> None:
     """A blow without rebound at each corner that approaches, in turn: the far toe, the top at the wall, the near toe, again and
     again, until nothing moves. The default rebound takes the first two as they are, then Housner's back to the near toe, which
-    leaves more: an upper bound."""
+    leaves more than all of them."""
     structure = Block(kind="block", mass=5000.0, inertia=9000.0, centre_height=2.0, toe_right=0.4, toe_left=0.25)
     model = block_model(Building(structure))
     b = model.block

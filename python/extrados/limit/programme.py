@@ -274,7 +274,8 @@ class LimitAnalysis:
         if self.strength is None and self.certificate() is not None:
             raise NoEquilibrium("no admissible thrust line")
         problem = CoulombProblem(self.equations, self._mu, direction, self._crush)
-        found = problem.least(self.starts, 0.0) or self._neutral(problem)
+        # First: a stone that slides out at rest does so whatever the load and its sense, and no other state lies below.
+        found = self._neutral(problem) or problem.least(self.starts, 0.0)
         if found is None:
             self._refuse_immovable(direction)
             lower, upper = (

@@ -241,9 +241,9 @@ def _restrained(free: Rocker, building: Masonry) -> Rocker | None:
     told = free.warnings
     if wall is not None and building.supports.rebound is None:
         told += (
-            f"the wall throws it back with {rebound[0 if sides[0] else 1]:.3f} times the rate, by three impacts, which is an upper "
-            "bound: discrete elements leave less, and nothing if well damped (docs/rocking.md); give [supports] rebound if it "
-            "matters",
+            f"the wall throws it back with {rebound[0 if sides[0] else 1]:.3f} times the rate, by three plastic impacts. Discrete "
+            "elements of a facade of 0.6 x 3 m left 0.7 to 1.2 times as much at 5 % of critical damping, and less at critical damping "
+            "(docs/rocking.md). Give [supports] rebound if it matters",
         )
     return replace(
         free, body=body, restraints=held, warnings=told, critical=critical, start_rotation=ratio * critical[0 if ratio >= 0.0 else 1],
