@@ -99,6 +99,8 @@ def _bound(building: Building, options: Analysis) -> None:
             building.anchored()
     else:
         building.friction(stones)
+        if building.ties:
+            building.strands()
 
 
 def _refused(text: str, key: Key) -> Need:

@@ -3,7 +3,7 @@
 from math import inf
 
 from extrados.results.fields import ResultModel, fact, maybe
-from extrados.results.limit import LoadPath, judge_design, judge_dilatant
+from extrados.results.limit import LoadPath, TieForce, judge_design, judge_dilatant
 from extrados.results.limit import Tilt as SectionTilt
 from extrados.results.verdict import Demand, KindResults, Verdict, judge_acceleration
 
@@ -106,6 +106,7 @@ class SolidTilt(KindResults):
     collapse_acceleration_face_law_opposite_g: float = maybe("the same, pushed the opposite way", "g")
     face_law_spread_g: float = maybe("greatest range of the last solves of the face law, a fixed point", "g")
     face_law_reason: str = maybe("why the face law gives no value")
+    ties: list[TieForce] = maybe("ties, chains and hoops at the collapse acceleration; of bonded ones each segment")
     pyramids: Pyramids = maybe("bounds by another method and another solver")
 
     def judged(self, demand: Demand) -> Verdict:
