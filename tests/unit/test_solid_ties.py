@@ -171,6 +171,21 @@ def test_a_thin_dome_stands_by_its_hoop() -> None:
         assert isinstance(found, Programme if stands else Falls), force
 
 
+def test_a_barrel_in_bond_by_the_programme_of_the_forces() -> None:
+    """The barrel of cases/solid."""
+    structure = {
+        "kind": "arch",
+        "radius": 5.0,
+        "thickness": 0.8,
+        "embrace": 157.5,
+        "voussoirs": 14,
+        "depth": 3.0,
+        "stones_across": 3,
+    }
+    solids = make_deck({"structure": structure, "analysis": {"kind": "tilt"}}).building.solids()
+    assert pushed(SolidLimit(solids, 0.7)).gamma == pytest.approx(outside(solids, 0.7, 0.0, [], 0.0), abs=1e-6)
+
+
 def tied_corner(share: float) -> SolidLimit:
     """The corner of the reference with an anchor against the push along +y, which yields at a share of the weight."""
     solids = assemble(corner())

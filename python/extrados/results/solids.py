@@ -32,6 +32,16 @@ class Pyramids(ResultModel):
     )
 
 
+class BlockSize(ResultModel):
+    """The capacity of the same structure in blocks of another size or bond."""
+
+    change: str = fact("key of the structure that is changed, with its value")
+    blocks: int | None = fact("blocks then; null without such a partition")
+    collapse_acceleration_g: float | None = fact("upper bound along the direction; null without one", "g")
+    relative_change: float | None = fact("over that of the blocks of the deck, less one")
+    reason: str | None = fact("why there is no value")
+
+
 class SolidNonDilatant(ResultModel):
     """Collapse along one direction by sliding that does not dilate: an interval of certified states.
 
@@ -107,6 +117,9 @@ class SolidTilt(KindResults):
     face_law_spread_g: float = maybe("greatest range of the last solves of the face law, a fixed point", "g")
     face_law_reason: str = maybe("why the face law gives no value")
     ties: list[TieForce] = maybe("ties, chains and hoops at the collapse acceleration; of bonded ones each segment")
+    block_sizes: list[BlockSize] = maybe(
+        "upper bounds with blocks half as long in each direction, and with the other bond"
+    )
     pyramids: Pyramids = maybe("bounds by another method and another solver")
 
     def judged(self, demand: Demand) -> Verdict:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit import tables
-from extrados.analyses.limit.asked import deviation_of, refuse_still, sections_of, values_of
+from extrados.analyses.limit.asked import deviation_of, refuse_still, refuse_unruled, sections_of, values_of
 from extrados.analyses.needs import Need, stones_of
 from extrados.model.errors import BadGeometry, Key
 from extrados.model.geometry.assembly import Assembly
@@ -18,6 +18,8 @@ def needs(context: Context, options: tables.BuildingAnalysis) -> Iterator[Need]:
     try:
         if not isinstance(stones_of(building, options), Assembly):
             yield lambda: _refuse_of_sections(building, options)
+            if getattr(options, "block_size", None):
+                yield functools.partial(refuse_unruled, building)
             for k, load in enumerate(getattr(options, "load", [])):
                 yield functools.partial(_place, building, load, k)
             return  # solids have no chains and trains

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from extrados.analyses.context import Context
+from extrados.analyses.limit.block_size import by_block_size, in_words, warning_of
 from extrados.analyses.limit.common import named_places, spoken_ties
 from extrados.analyses.limit.paths import doubt
 from extrados.analyses.limit.solid_loads import solid_limit, strand_arrays, strand_rows
@@ -76,6 +77,10 @@ def run(context: Context, options: Tilt) -> Result:
             least = int(np.flatnonzero(capacity <= capacity.min() + SAME)[0])
     if options.face_law or (options.face_law is None and slides and len(assembly.a) <= MOST_BESIDE):
         sliding |= _by_faces(limit, [found_at[round(d, 9)] for d in (first, opposite)], (first, opposite), result)
+    if options.block_size and isinstance(sound := found_at[round(first, 9)], Programme):
+        sliding["block_sizes"] = sizes = by_block_size(context, options, first, sound.gamma)
+        if told := warning_of(sizes):
+            result.warnings.append(told)
     opens = _openings(assembly, there)
     speed = np.linalg.norm(there.motion[:, :3], axis=1)
     pose = _pose(assembly, there.motion)
@@ -331,7 +336,7 @@ def _words(word: str, r: out.SolidTilt, count: int) -> str:
     if r.dilating_contacts:
         text += f"Contacts slide: {DILATANT}. " + _told(r)
     text += f"The bounds from equilibrium and from the mechanism differ by {r.duality_gap:.1e} g."
-    text += spoken_ties(r.ties)
+    text += in_words(r.block_sizes) + spoken_ties(r.ties)
     if r.pyramids is not None:
         low, high = ("none" if g is None else f"{g:.4f} g" for g in (r.pyramids.lower_g, r.pyramids.upper_g))
         text += f" Friction pyramids of {r.pyramids.sides} sides bound it by {low} and {high}."

@@ -71,6 +71,9 @@ class Tilt(LimitAnalysisTable, Animated):
         None, "of solids: also the capacity with an even pressure on faces, which resists torsion less; default where up to 80 contacts "
         "slide", source="after Orduna and Lourenco 2005",
     )  # fmt: skip
+    block_size: bool | None = key(
+        None, "of solids: also the capacity with blocks half as long in each direction, and with the other bond"
+    )
     pyramids: int | None = key(
         None, "of solids: also bound the capacity by pyramids of so many sides, within and around the cones of friction", ge=3, le=64
     )  # fmt: skip
