@@ -76,11 +76,12 @@ contains
       call critical_step(run%model, step, status)
    end subroutine find_critical_step
 
-   subroutine advance_springs(run, count, status)
+   subroutine advance_springs(run, count, threads, status)
       class(block_simulation), intent(inout) :: run
       integer, intent(in) :: count
+      integer, intent(in) :: threads
       integer(c_int), intent(out) :: status
-      call advance_model(run%model, count, run%options%threads)
+      call advance_model(run%model, count, threads)
       status = status_ok
    end subroutine advance_springs
 

@@ -4,6 +4,7 @@ module dem_simulation
    use common_kinds, only : wp
    use common_lists, only : dem_energy_count, stop_end => dem_stop_end
    use common_status, only : status_ok, status_out_of_memory
+   use common_threads, only : choose_threads, learn_pace, thread_pace
    use dem_energy, only : energy_terms
    use dem_jointed, only : jointed_model
    use dem_rigid, only : suitable_step, wait_for_rest
@@ -65,6 +66,7 @@ module dem_simulation
    type, abstract :: simulation
       type(run_options) :: options
       type(run_record) :: record
+      type(thread_pace) :: pace
    contains
       procedure(model_of), deferred :: get_model         !! clock, laws of joints and rigid contacts
       procedure(search_pairs), deferred :: find_pairs    !! who is near whom
@@ -115,11 +117,12 @@ module dem_simulation
          integer(c_int), intent(out) :: status
       end subroutine critical
 
-      subroutine steps_on_springs(run, count, status)
+      subroutine steps_on_springs(run, count, threads, status)
          import :: simulation, c_int
          implicit none
          class(simulation), intent(inout) :: run
          integer, intent(in) :: count
+         integer, intent(in) :: threads
          integer(c_int), intent(out) :: status
       end subroutine steps_on_springs
 
@@ -245,9 +248,27 @@ contains
       if (model%rigid%setting%used) then
          call take_rigid_steps(run, model, count, status)
       else
-         call run%advance_springs(count, status)
+         call take_spring_steps(run, model, count, status)
       end if
    end subroutine take_steps
+
+   !> The same on springs, by as many threads as are fastest
+   subroutine take_spring_steps(run, model, count, status)
+      class(simulation), intent(inout) :: run
+      class(jointed_model), pointer, intent(in) :: model     !! of the run
+      integer, intent(in) :: count
+      integer(c_int), intent(out) :: status
+      integer :: first, before, threads, share
+      status = status_ok
+      first = model%steps
+      do while (model%steps - first < count)
+         before = model%steps
+         call choose_threads(run%pace, run%options%threads, count - (before - first), threads, share)
+         call run%advance_springs(share, threads, status)
+         call learn_pace(run%pace, run%options%threads, model%steps - before)
+         if (status /= status_ok .or. model%stale) return
+      end do
+   end subroutine take_spring_steps
 
    !> The same on contacts without springs, see dem_rigid
    subroutine take_rigid_steps(run, model, count, status)

@@ -81,11 +81,12 @@ contains
       call critical_step(run%model, step, status)
    end subroutine find_critical_step
 
-   subroutine advance_springs(run, count, status)
+   subroutine advance_springs(run, count, threads, status)
       class(solid_simulation), intent(inout) :: run
       integer, intent(in) :: count
+      integer, intent(in) :: threads
       integer(c_int), intent(out) :: status
-      call advance_model(run%model, count, run%options%threads)
+      call advance_model(run%model, count, threads)
       status = merge(status_out_of_memory, status_ok, any(run%model%pair(:run%model%pairs)%lacks_memory))
    end subroutine advance_springs
 

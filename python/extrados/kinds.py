@@ -75,6 +75,7 @@ BLOCKS, PIERS, RIGID = "views.blocks:make_blocks", "views.blocks:make_piers", "v
 ROCKER = "views.rockers.rocker:make_rocker"
 SECTION, SPATIAL = "views.solids.sections:solids_of_section", "views.solids.sections:solids_of_spatial"
 MESH_OF_STONES, RODS = "views.mesh.stones:make_stones", "views.mesh.rods:add_rods"
+STRANDS = "views.solids.strands:strands_of"
 MESH_OPTIONS, SHELL_OPTIONS = "views.mesh.options:MeshOptions", "views.shell.options:ShellOptions"
 NO_SECTION = Lacks("it is no plane section; `tilt` and `dem` analyse its solids")
 NO_STONES = Lacks("a mesh file holds elements, no stones: describe the wall as `panel` or `blocks`")

@@ -23,7 +23,7 @@ Need = Callable[[], Any]
 #: Share of the machine's memory that the numbers of one analysis may take
 SHARE = 0.8
 #: Keys that ask for solids
-SPATIAL = ("direction", "rose", "pyramids")
+SPATIAL = ("direction", "rose", "pyramids", "block_size")
 
 
 def complaints(context: Context, options: Analysis, building: Building) -> list[str]:
@@ -99,6 +99,8 @@ def _bound(building: Building, options: Analysis) -> None:
             building.anchored()
     else:
         building.friction(stones)
+        if building.ties:
+            building.strands()
 
 
 def _refused(text: str, key: Key) -> Need:

@@ -1,5 +1,6 @@
 """The certificate of a state of collapse without dilatancy, recomputed from its forces and velocities alone."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +9,7 @@ from extrados.limit.loads import Loads
 from extrados.limit.states import NO_WORK, Mechanism, State
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.model.geometry.solids.assembly import SolidAssembly
+from extrados.model.geometry.solids.strands import Strand
 
 ROUNDING, CLOSING, GAP = 1e-7, 1e-6, 1e-4  # of the total load, of the fastest joint, of gamma: more certifies nothing
 
@@ -94,12 +96,14 @@ def certify(
 
 
 def certify_solids(
-    assembly: SolidAssembly, friction: np.ndarray, dead: np.ndarray, live: np.ndarray, gamma: float, force: np.ndarray, keyed: np.ndarray, motion: np.ndarray
+    assembly: SolidAssembly, friction: np.ndarray, dead: np.ndarray, live: np.ndarray, gamma: float, force: np.ndarray, keyed: np.ndarray, motion: np.ndarray,
+    strands: Sequence[Strand] = (), tension: np.ndarray | None = None,
 ) -> Certificate:  # fmt: skip
     """The same of solids, from their geometry.
 
     friction (corners); dead, live (nb, 6): forces [N] and moments about the centroids [N m]; force (corners, 3): compression
-    and both shears [N]; keyed (keys, 2): shears of the dowels [N]; motion (nb, 6): velocities of the centroids and spins.
+    and both shears [N]; keyed (keys, 2): shears of the dowels [N]; motion (nb, 6): velocities of the centroids and spins; tension
+    (strands) [N].
     """
     joint, normal = assembly.corner_joint, assembly.normal
     frames = np.stack([normal, *assembly.tangents], axis=1)
@@ -130,6 +134,17 @@ def certify_solids(
         taken += float((strength[weak] * np.hypot(*relative[1][weak, 1:].T)).sum())
         beyond = float((np.hypot(*keyed.T) - strength).max(initial=0.0))
         stuck = np.append(stuck, np.hypot(*relative[1][~weak, 1:].T))
+    for strand, pull in zip(strands, np.zeros(len(strands)) if tension is None else tension, strict=True):
+        block, place, each = strand.forces()
+        wrench = np.concatenate([each, np.cross(place - assembly.centroid[block], each)], axis=1)
+        np.add.at(left, block, pull * wrench)
+        longer = strand.lengthening(assembly.centroid, motion)
+        bound = strand.high if longer > 0.0 else strand.low
+        if np.isfinite(bound):
+            taken += bound * longer
+        else:
+            stuck = np.append(stuck, abs(longer))
+        beyond = max(beyond, pull - strand.high, strand.low - pull)
     scale = float(np.abs(dead[:, :3]).sum())
     fastest = max(float(np.abs(rate).max()), 1e-300)
     power, weights = float((live * motion).sum()), float((dead * motion).sum())

@@ -103,6 +103,7 @@ class FaceLaw:
                 limit.matrix[:, 0 : 3 * corners : 3],
                 self._shears(centre, distance),
                 keyed,
+                limit.pulls,
                 sparse.csc_array(live[:, None]),
             ]
         )
@@ -125,6 +126,12 @@ class FaceLaw:
                 blocks += [sparse.csr_array((1, n)), -each[[own, own + 1]]]
                 right += [np.array([one.keys.strength[k] / limit.scale]), np.zeros(2)]
                 cones.append(clarabel.SecondOrderConeT(3))
+        if limit.strands:
+            own, bounds = each[n - 1 - len(limit.strands) : n - 1], limit.tension_bounds
+            low, high = np.isfinite(bounds)
+            blocks += [-own[low], own[high]]
+            right += [-bounds[0][low], bounds[1][high]]
+            cones.append(clarabel.NonnegativeConeT(int(low.sum() + high.sum())))
         cost = np.zeros(n)
         cost[-1] = -1.0
         settings = clarabel.DefaultSettings()

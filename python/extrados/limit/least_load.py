@@ -63,17 +63,16 @@ class LeastLoad:
 
     def descended(self, start: SlidingState) -> SlidingState:
         """The state to which the programmes lead from a state."""
-        best = start
+        best, forces = start, self._forces(start.motion, ROOMS[:1])
         for _ in range(ROUNDS):
-            forces = self._forces(best.motion, ROOMS[:1])
             if forces is None or forces[0] > best.gamma - FALLS * max(1.0, abs(best.gamma)):
                 break
             gamma, force, share, _ = forces
             best = SlidingState(gamma, force, share, best.motion)
             moved = self._cylinder(np.maximum(force[:, 0], 0.0))
-            if moved is None:
-                break
-            best = replace(best, motion=moved[0]) if self._forces(moved[0], ROOMS[:1]) is not None else best
+            forces = None if moved is None else self._forces(moved[0], ROOMS[:1])
+            if moved is not None and forces is not None:
+                best = replace(best, motion=moved[0])
         return best
 
     def guessed(self, draw: np.random.Generator) -> SlidingState | None:

@@ -24,6 +24,7 @@ from extrados.limit.contact_points import ContactPoints, SlidingState
 from extrados.limit.errors import Immovable, NoAnswer
 from extrados.model.geometry.assembly import GROUND
 from extrados.model.geometry.solids.assembly import SolidAssembly
+from extrados.model.geometry.solids.strands import Strand
 from extrados.schema.constants import GRAVITY
 
 Found = TypeVar("Found")
@@ -40,7 +41,7 @@ class Programme:
     """What one push of a structure gave.
 
     gamma: the multiplier borne [g]; upper: the bound of the motion's virtual work [g]. force (nv, 3): compression and both
-    shears at the corners, key_force (nk, 2): shears of the dowels [N]; motion (nb, 6): velocity of the centroids and spin,
+    shears at the corners, key_force (nk, 2): shears of the dowels [N]; tension (nt): of the strands [N]; motion (nb, 6): velocity of the centroids and spin,
     with a power of the push of one. equilibrium: greatest force or moment (over the size) left over at a block, over the
     total weight; cone: greatest excess of shear over friction or of tension, over the same; overlap: greatest rate of
     overlap (or of sliding without the dilatancy that goes with it) over the fastest rate of a contact.
@@ -50,6 +51,7 @@ class Programme:
     upper: float
     force: np.ndarray
     key_force: np.ndarray
+    tension: np.ndarray
     motion: np.ndarray
     equilibrium: float
     cone: float
@@ -73,10 +75,16 @@ class Falls:
 
 class SolidLimit:
     """The programmes of solid blocks with a coefficient of friction: one for all contacts, one each, or None, which
-    excludes sliding."""
+    excludes sliding. strands: ties, chains and hoops. resting (nb, 6): loads that do not sway, forces [N] and moments about
+    the centroids [N m]."""
 
-    def __init__(self, assembly: SolidAssembly, friction: float | np.ndarray | None):
+    def __init__(
+        self, assembly: SolidAssembly, friction: float | np.ndarray | None, strands: Sequence[Strand] = (),
+        resting: np.ndarray | None = None,
+    ):  # fmt: skip
         self.assembly = assembly
+        self.strands = tuple(strands)
+        self.resting = np.zeros((len(assembly.mass), 6)) if resting is None else resting
         joints = len(assembly.a)
         mu = np.full(joints, np.inf if friction is None else friction, dtype=float)
         self.mu = mu[assembly.corner_joint]
@@ -114,6 +122,22 @@ class SolidLimit:
         shape = (6 * len(one.mass), 3 * len(j) + (0 if one.keys is None else 2 * len(one.keys.joint)))
         where = (np.concatenate(rows), np.concatenate(cols))
         return sparse.csc_array((np.concatenate(values), where), shape=shape)
+
+    @cached_property
+    def pulls(self) -> sparse.csc_array:
+        """Forces and moments about the centroids, over the size (6 nb, nt), of unit tensions of the strands."""
+        one = self.assembly
+        found = np.zeros((len(one.mass), 6, len(self.strands)))
+        for k, strand in enumerate(self.strands):
+            block, place, force = strand.forces()
+            arm = (place - one.centroid[block]) / one.size
+            np.add.at(found[:, :, k], block, np.concatenate([force, np.cross(arm, force)], axis=1))
+        return sparse.csc_array(found.reshape(6 * len(one.mass), len(self.strands)))
+
+    @property
+    def tension_bounds(self) -> np.ndarray:
+        """Least and greatest tension of the strands (2, nt), over the scale."""
+        return np.array([[s.low for s in self.strands], [s.high for s in self.strands]]).reshape(2, -1) / self.scale
 
     def loads(self, way: np.ndarray) -> np.ndarray:
         """Forces and moments (6 nb), over the scale, of the weights turned into the direction `way` (3)."""
@@ -185,7 +209,7 @@ class SolidLimit:
         return ContactPoints(
             sparse.csr_array(matrix), dead, live, np.append(self.mu, np.zeros(dowels)),
             np.append(np.zeros(corners), [] if keys is None else keys.strength / self.scale),
-            np.append(area / area.mean(), np.zeros(dowels)), sparse.csr_array((len(dead), 0)), np.empty((2, 0)),
+            np.append(area / area.mean(), np.zeros(dowels)), sparse.csr_array(self.pulls), self.tension_bounds,
             float(self.weight.sum() + self.assembly.fill[:, 1].sum() * GRAVITY) / self.scale,
         )  # fmt: skip
 
@@ -196,15 +220,18 @@ class SolidLimit:
         motion = self._rates(state.motion)
         unit = self.scale * np.array([1.0, 1.0, 1.0, size, size, size])
         dead, live = (load.reshape(-1, 6) * unit for load in self.ways(direction))
-        proof = certify_solids(self.assembly, self.mu, dead, live, state.gamma, force, keyed, motion)
+        tension = state.share * self.scale
+        proof = certify_solids(
+            self.assembly, self.mu, dead, live, state.gamma, force, keyed, motion, self.strands, tension
+        )
         upper = state.gamma + proof.zero_gap
         return Programme(
-            state.gamma, upper, force, keyed, motion, proof.equilibrium, max(proof.friction, proof.tension), proof.closing
+            state.gamma, upper, force, keyed, tension, motion, proof.equilibrium, max(proof.friction, proof.tension), proof.closing
         ), proof  # fmt: skip
 
     def falls(self) -> Falls | None:
         """The proof that it cannot stand without a push; None where no motion proves that."""
-        dead = self.loads(np.array([0.0, 0.0, -1.0]))
+        dead = self.at_rest
         for method in METHODS:
             solution, _ = self._solved(dead, None, method)
             motion = np.array(solution.x)[: len(dead)]
@@ -218,7 +245,13 @@ class SolidLimit:
     def ways(self, direction: float) -> tuple[np.ndarray, np.ndarray]:
         """The loads of the weights at rest and turned along a direction [deg]."""
         turn = np.radians(direction)
-        return self.loads(np.array([0.0, 0.0, -1.0])), self.loads(np.array([np.cos(turn), np.sin(turn), 0.0]))
+        return self.at_rest, self.loads(np.array([np.cos(turn), np.sin(turn), 0.0]))
+
+    @property
+    def at_rest(self) -> np.ndarray:
+        """Forces and moments (6 nb), over the scale, of the weights and the loads that do not sway."""
+        unit = self.scale * np.array([1.0, 1.0, 1.0, *[self.assembly.size] * 3])
+        return self.loads(np.array([0.0, 0.0, -1.0])) + (self.resting / unit).ravel()
 
     def _pushed(self, dead: np.ndarray, live: np.ndarray, method: str) -> Programme | Falls:
         solution, lines = self._solved(dead, live, method)
@@ -239,13 +272,14 @@ class SolidLimit:
         force, keys = forces[: 3 * corners].reshape(-1, 3), forces[3 * corners :].reshape(-1, 2)
         slides = (self.mu > 0.0) & np.isfinite(self.mu)
         force[slides, 0] /= self.mu[slides]
-        rest = self.matrix @ forces + gamma * live + dead
+        tension = self._tensions(z[len(z) - len(self._limits[0]) :])
+        rest = self.matrix @ forces + self.pulls @ tension + gamma * live + dead
         overlap, spent = self._hindered(motion)
         # the scale is a stone's weight times the root of their number: over the weight of all it is one over that root
         part = 1.0 / np.sqrt(len(self.weight))
         found = Programme(
-            gamma, float(-dead @ motion) + spent, force * self.scale, keys * self.scale, self._rates(motion),
-            float(np.abs(rest).max()) * part, self._excess(force, keys) * part, overlap,
+            gamma, float(-dead @ motion) + spent, force * self.scale, keys * self.scale, tension * self.scale,
+            self._rates(motion), float(np.abs(rest).max()) * part, self._excess(force, keys, tension) * part, overlap,
         )  # fmt: skip
         if max(found.equilibrium, found.cone, found.overlap) > LOOSE or found.gap > LOOSE * max(1.0, abs(gamma)):
             raise NoAnswer(
@@ -263,6 +297,7 @@ class SolidLimit:
         Without a push the motion is bounded instead, each rate by one: then it is the one by which the weights fall most.
         It has a sixth of the unknowns of the programme of the forces, whose dual it is. Returns the solution, and the column
         of the matrix that each row after the first is the rate of, -1 for a bound; a sliding corner's opening is over mu.
+        The last rows are the limits of the strands, see _limits.
         """
         corners, rates = len(self.mu), self.matrix.T.tocsr()
         slides = np.flatnonzero((self.mu > 0.0) & np.isfinite(self.mu))
@@ -310,6 +345,25 @@ class SolidLimit:
             lines = np.concatenate([lines, np.full(2 * len(dead), -1)])
         else:
             right[0] = 1.0
+        strand, sense, most = self._limits
+        if len(strand):  # what each lengthens beyond an unknown that costs its strength is nothing
+            yields = np.flatnonzero(np.isfinite(most))
+            bound = sparse.csr_array(
+                (np.ones(len(yields)), (yields, np.arange(len(yields)))), shape=(len(strand), len(yields))
+            )
+            slack = sparse.hstack([sparse.csr_array((len(yields), len(cost))), -sparse.eye_array(len(yields))])
+            rate = sparse.hstack(
+                [
+                    sparse.diags_array(sense) @ self.pulls.T.tocsr()[strand],
+                    sparse.csr_array((len(strand), len(cost) - len(dead))),
+                ]
+            )
+            matrix = sparse.hstack([matrix, sparse.csr_array((matrix.shape[0], len(yields)))])
+            matrix = sparse.vstack([matrix, slack, sparse.hstack([-rate, -bound])])
+            cones.append(clarabel.NonnegativeConeT(len(yields) + len(strand)))
+            cost = np.concatenate([cost, most[yields]])
+            right = np.concatenate([right, np.zeros(len(yields) + len(strand))])
+            lines = np.concatenate([lines, np.full(len(yields) + len(strand), -1)])
         settings = clarabel.DefaultSettings()
         settings.verbose = False
         settings.max_iter = 200
@@ -321,6 +375,19 @@ class SolidLimit:
         solver = clarabel.DefaultSolver(nothing, cost, matrix.tocsc(), right, cones, settings)
         return _waited(solver.solve)[0], lines
 
+    @cached_property
+    def _limits(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Strand, sense (1 tension, -1 compression) and greatest force over the scale of each way in which a strand acts."""
+        low, high = self.tension_bounds
+        pulled, pressed = np.flatnonzero(high > 0.0), np.flatnonzero(low < 0.0)
+        sense = np.concatenate([np.ones(len(pulled)), -np.ones(len(pressed))])
+        return np.concatenate([pulled, pressed]), sense, np.concatenate([high[pulled], -low[pressed]])
+
+    def _tensions(self, forces: np.ndarray) -> np.ndarray:
+        """Tensions of the strands, over the scale, of the forces of all ways in which they act."""
+        strand, sense, _ = self._limits
+        return np.bincount(strand, sense * forces, len(self.strands))
+
     def _rates(self, motion: np.ndarray) -> np.ndarray:
         """Velocities and spins (nb, 6) of a motion of the programme, whose moments are over the size."""
         rates = motion.reshape(-1, 6).copy()
@@ -328,7 +395,8 @@ class SolidLimit:
         return rates
 
     def _hindered(self, motion: np.ndarray) -> tuple[float, float]:
-        """By how much a motion violates the contacts, over the fastest rate of one, and the power that dowels take."""
+        """By how much a motion violates the contacts and strands, over the fastest rate of one, and the power that dowels and
+        strands take."""
         rate = self.matrix.T @ motion
         corners = len(self.mu)
         at = rate[: 3 * corners].reshape(-1, 3)
@@ -344,17 +412,24 @@ class SolidLimit:
             strong = ~np.isfinite(self.assembly.keys.strength)
             wrong = max(wrong, float(keyed[strong].max(initial=0.0)))
             spent = float((self.assembly.keys.strength[~strong] / self.scale * keyed[~strong]).sum())
+        strand, sense, most = self._limits
+        if len(strand):
+            longer = np.maximum(-sense * (self.pulls.T @ motion)[strand], 0.0)
+            yields = np.isfinite(most)
+            wrong = max(wrong, float(longer[~yields].max(initial=0.0)))
+            spent += float(most[yields] @ longer[yields])
         return wrong / fastest, spent
 
-    def _excess(self, force: np.ndarray, keys: np.ndarray) -> float:
-        """Greatest excess of shear over friction, of tension, or of a dowel's shear over its strength."""
+    def _excess(self, force: np.ndarray, keys: np.ndarray, tension: np.ndarray) -> float:
+        """Greatest excess of shear over friction, of tension, or of a dowel or strand over its strength."""
         shear = np.hypot(force[:, 1], force[:, 2])
         with np.errstate(invalid="ignore"):
             most = np.where(np.isfinite(self.mu), self.mu * force[:, 0], np.inf)
         found = max(float((shear - most).max(initial=0.0)), float(-force[:, 0].min(initial=0.0)))
         if self.assembly.keys is not None:
             found = max(found, float((np.hypot(*keys.T) - self.assembly.keys.strength / self.scale).max(initial=0.0)))
-        return found
+        low, high = self.tension_bounds
+        return max(found, float(np.maximum(low - tension, tension - high).max(initial=0.0)))
 
     def _proven(self, motion: np.ndarray, dead: np.ndarray) -> Falls:
         """A motion held to virtual work; NoAnswer where it proves nothing."""
@@ -403,6 +478,9 @@ class SolidLimit:
             columns += [keyed[:, 2 * hold], keyed[:, 2 * hold + 1]]
             low += [np.full(len(hold), -np.inf)] * 2
             high += [np.full(len(hold), np.inf)] * 2
+        columns.append(self.pulls)
+        for bounds, own in zip((low, high), self.tension_bounds, strict=True):
+            bounds.append(own)
         matrix = sparse.hstack([*columns, sparse.csc_array(live[:, None])]).tocsc()
         return _most(matrix, -dead, np.concatenate([*low, [-np.inf]]), np.concatenate([*high, [np.inf]]))
 

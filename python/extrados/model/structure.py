@@ -22,6 +22,7 @@ class Structure(Table):
     rocks_as: its stones by the mechanism that limit analysis finds, all of it as one block, its piers, as a frame, or as two stacked blocks.
     crossed: where a moving load goes unless a deck names a chain, over the first arch or along the whole top.
     starter_analysis: the analysis of the deck that `new` writes.
+    halved: keys of the size of its blocks, with the factor by which blocks are half as long; bonds: keys of their bond, with its values.
     """
 
     kind: str
@@ -29,6 +30,8 @@ class Structure(Table):
     rocks_as: ClassVar[RocksAs] = "mechanism"
     crossed: ClassVar[Crossed] = "arch"
     starter_analysis: ClassVar[str] = "tilt"
+    halved: ClassVar[dict[str, float]] = {}
+    bonds: ClassVar[dict[str, tuple[str, ...]]] = {}
 
     def assembly(self, density: float, folder: Path) -> Assembly:
         """Stones and joints, of a density [kg/m^3]; `folder` is where its files are looked for.

@@ -4,19 +4,36 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from extrados.model.errors import BadGeometry
 from extrados.schema.quantities import AxialStiffness, Force, Length
 from extrados.schema.table import Table, key
 
 Point = Annotated[list[Length], Field(min_length=2, max_length=2)]
+#: [x, y] in a plane section, [x, y, z] among blocks in space
+Place = Annotated[list[Length], Field(min_length=2, max_length=3)]
 
 
 class Tie(Table):
-    """A straight tie, strut or spring between two stones, or from a stone to the ground: [[ties]]."""
+    """A straight tie, strut or spring between two stones, or from a stone to the ground; in space also a chain or a hoop:
+    [[ties]]."""
 
     name: str | None = key(None, "name in results; default tie 1, tie 2 and so on", max_length=80)
-    start: Point = key(about="[x, y] of the anchorage in a stone")
-    end: Point | None = key(None, "[x, y] of the anchorage in another stone; or give `ground`")
-    ground: Point | None = key(None, "[x, y] of the anchorage in the ground, which does not move with the supports")
+    start: Place = key(
+        about="[x, y], in space [x, y, z], of the anchorage in a stone; of a hoop any point at its height"
+    )
+    end: Place | None = key(None, "the anchorage in another stone; or give `ground`")
+    ground: Place | None = key(None, "the anchorage in the ground, which does not move with the supports")
+    via: list[Place] = key(
+        [], "in space: points of stones over which a chain runs from start to end, in order", max_length=1000
+    )
+    hoop: bool = key(
+        False,
+        "in space: closed around the convex outline of the structure at the height z of `start`, as a chain of a dome",
+    )
+    bonded: bool = key(
+        False, "of a chain or hoop: anchored at every point, so that each segment has a force of its own; else it runs over them without "
+        "friction",
+    )  # fmt: skip
     start_stone: str | None = key(
         None, "name of the stone at `start`; needed if that point lies between two stones or in none", max_length=80
     )
@@ -38,8 +55,17 @@ class Tie(Table):
 
     @model_validator(mode="after")
     def _whole(self) -> "Tie":
-        if (self.end is None) == (self.ground is None):
+        if self.hoop:
+            if self.end is not None or self.ground is not None or self.via or self.start_stone or self.end_stone:
+                raise ValueError("hoop: a closed hoop has no end, ground, via or stones; `start` gives its height")
+            if len(self.start) != 3:
+                raise ValueError("start: expected [x, y, z] of a hoop, whose height is z")
+        elif (self.end is None) == (self.ground is None):
             raise ValueError("expected either end, in another stone, or ground")
+        if len({len(point) for point in (self.start, *self.via, *([] if self.hoop else [self.far]))}) != 1:
+            raise ValueError("start: expected as many coordinates at all points of a tie")
+        if self.bonded and not self.hoop and not self.via:
+            raise ValueError("bonded: belongs to a hoop, or to a chain with `via`")
         if self.start == self.far:
             raise ValueError("start: both ends are at one point")
         if self.ground is not None and self.end_stone is not None:
@@ -49,6 +75,14 @@ class Tie(Table):
                 f"prestress: {self.prestress:g} N is more than it can carry, {self.least:g} to {self.most:g} N (tension positive)"
             )
         return self
+
+    def flat(self) -> list[list[float]]:
+        """Both ends in a plane section [m]; BadGeometry of a tie in space."""
+        if len(self.start) != 2 or self.via:
+            raise BadGeometry(
+                f"{self.name}: this analysis takes a plane section, where a tie is straight and its points are [x, y]"
+            )
+        return [self.start, self.far]
 
     @property
     def far(self) -> list[float]:

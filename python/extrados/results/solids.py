@@ -3,7 +3,7 @@
 from math import inf
 
 from extrados.results.fields import ResultModel, fact, maybe
-from extrados.results.limit import LoadPath, judge_design, judge_dilatant
+from extrados.results.limit import LoadPath, TieForce, judge_design, judge_dilatant
 from extrados.results.limit import Tilt as SectionTilt
 from extrados.results.verdict import Demand, KindResults, Verdict, judge_acceleration
 
@@ -28,6 +28,16 @@ class Pyramids(ResultModel):
     upper_g: float | None = fact(
         "with pyramids around the cones: a bound from above; null without a collapse mechanism", "g"
     )
+
+
+class BlockSize(ResultModel):
+    """The capacity of the same structure in blocks of another size or bond."""
+
+    change: str = fact("key of the structure that is changed, with its value")
+    blocks: int | None = fact("blocks then; null without such a partition")
+    collapse_acceleration_g: float | None = fact("upper bound along the direction; null without one", "g")
+    relative_change: float | None = fact("over that of the blocks of the deck, less one")
+    reason: str | None = fact("why there is no value")
 
 
 class SolidNonDilatant(ResultModel):
@@ -104,6 +114,10 @@ class SolidTilt(KindResults):
     collapse_acceleration_face_law_opposite_g: float = maybe("the same, pushed the opposite way", "g")
     face_law_spread_g: float = maybe("greatest range of the last solves of the face law, a fixed point", "g")
     face_law_reason: str = maybe("why the face law gives no value")
+    ties: list[TieForce] = maybe("ties, chains and hoops at the collapse acceleration; of bonded ones each segment")
+    block_sizes: list[BlockSize] = maybe(
+        "upper bounds with blocks half as long in each direction, and with the other bond"
+    )
     pyramids: Pyramids = maybe("bounds by another method and another solver")
 
     def judged(self, demand: Demand) -> Verdict:

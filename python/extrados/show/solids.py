@@ -14,6 +14,7 @@ from extrados.results.solids import SolidTilt
 from extrados.results.store import Stored
 from extrados.show import film, scene, style
 from extrados.show.limit import tilt
+from extrados.show.limit.section import TIE
 
 VIEW = scene.View()
 LONGEST, FAINT = 0.16, 0.01  # length of the greatest force, of the picture; the least that is drawn, of the greatest
@@ -63,12 +64,15 @@ def _draw_solids(run: Stored, name: str, folder: Path, r: SolidTilt) -> list[tup
     frame = scene.frame_of(both, VIEW)
     wide = (frame[1] - frame[0]) / (frame[3] - frame[2])
     height = float(np.clip(4.6 / wide + 1.6, 3.8, 7.0))
+    strands = _strands(run, name)
     plain = np.tile(to_rgb(style.STONE), (len(pose), 1))
     with style.figure(10.5, height, columns=2) as (fig, axes):
         for ax, solids, colours in ((axes[0], stones, plain), (axes[1], moved, SPEED(speed)[:, :3])):
             scene.show(ax, scene.picture(solids, VIEW, frame, colours), frame)
             scene.ground(ax, stones.vertices, VIEW)
             scene.compass(ax, stones.vertices, VIEW, r.load_direction_deg if ax is axes[1] else None)
+            if ax is axes[0] and len(strands):
+                ax.add_collection(LineCollection(strands, colors=TIE, linewidths=1.6, zorder=3))
         x, y, z = np.ptp(stones.vertices, axis=0)
         axes[0].set_title(f"{r.blocks} stones, {r.contacts} contacts; {x:.3g} x {y:.3g} x {z:.3g} m")
         axes[1].set_title(_title(r))
@@ -87,6 +91,13 @@ def _draw_solids(run: Stored, name: str, folder: Path, r: SolidTilt) -> list[tup
         found.append(_draw_rose(folder, name, r, angles, capacity))
     _film(run, name, folder, r, frame, SPEED(speed)[:, :3])
     return found
+
+
+def _strands(run: Stored, name: str) -> np.ndarray:
+    """Segments (n, 2, 2) of ties, chains and hoops in the picture."""
+    if "strand_segment" not in run.arrays[name]:
+        return np.empty((0, 2, 2))
+    return run.array(name, "strand_segment") @ VIEW.axes[:2].T
 
 
 def _draw_forces(run: Stored, name: str, folder: Path, r: SolidTilt, stones: scene.Faces) -> tuple[str, str]:

@@ -149,7 +149,7 @@ class Masonry(Description):
         assembly = self.blocks()
         block, point = np.full((len(self.ties), 2), GROUND), np.zeros((len(self.ties), 2, 2))
         for k, tie in enumerate(self.ties):
-            point[k] = tie.start, tie.far
+            point[k] = tie.flat()
             block[k, 0] = stone_at(assembly, point[k, 0], tie.start_stone, f"{tie.name}, start", ("ties", k), "start")
             if tie.ground is None:
                 block[k, 1] = stone_at(assembly, point[k, 1], tie.end_stone, f"{tie.name}, end", ("ties", k), "end")

@@ -8,6 +8,7 @@ from extrados.views.blocks import Masonry, maker_of
 
 if TYPE_CHECKING:  # a view is loaded when it is asked for
     from extrados.model.geometry.solids.assembly import SolidAssembly
+    from extrados.model.geometry.solids.strands import Strand
     from extrados.views.mesh.mesh import Mesh
     from extrados.views.mesh.options import MeshOptions
     from extrados.views.rigid import RigidBodies
@@ -24,6 +25,11 @@ class Building(Masonry):
     def solids(self) -> "SolidAssembly":
         """Blocks in space and the polygons along which they touch."""
         return self.made("solids", self._stones, lambda: maker_of(self.kind.solids)(self))
+
+    def strands(self) -> "tuple[Strand, ...]":
+        """Its ties, chains and hoops in space; BadGeometry where an end is in no block, or in several."""
+        found: tuple[Strand, ...] = kinds.load(kinds.STRANDS)(self)
+        return found
 
     def rigid(self, groups: tuple[tuple[int, ...], ...] = (), floor: float | None = None) -> "RigidBodies":
         """Rigid bodies of convex parts on supports; `groups` of stones move as one, a floor at a height [m] catches

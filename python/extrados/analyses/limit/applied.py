@@ -6,9 +6,11 @@ import numpy as np
 
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.tables import AppliedLoad
-from extrados.model.errors import WHOLE
+from extrados.model.errors import WHOLE, BadGeometry
 from extrados.model.geometry.anchors import stones_at
 from extrados.model.geometry.assembly import Assembly
+from extrados.model.geometry.solids.assembly import SolidAssembly
+from extrados.model.geometry.solids.strands import solid_at
 
 
 def chain_of(assembly: Assembly, name: str | None) -> str | None:
@@ -73,3 +75,32 @@ def pieces(assembly: Assembly, load: AppliedLoad, number: int) -> list[tuple[int
         block, y = place(x)
         found.append((block, np.array([x, y]), (right - left) / (load.x_end - load.x)))
     return found
+
+
+def place_of(assembly: SolidAssembly, load: AppliedLoad, number: int) -> tuple[int, np.ndarray]:
+    """Block and point (3) [m] of a load: at its height, or on the highest surface below."""
+    key = ("analysis", "load", number)
+    if load.x_end is not None or load.y is None:
+        raise Refused(
+            "a load on blocks in space acts at a point: give x, y in plan and, if it does not act on top, z", key
+        )
+    if load.z is not None:
+        point = np.array([load.x, load.y, load.z])
+        try:
+            return solid_at(assembly, point, None, f"load {number + 1}", key, "z"), point
+        except BadGeometry as error:
+            raise Refused(str(error).replace("; name it by z_stone", "; move it"), key) from None
+    best, top = -1, -np.inf
+    for part, block in zip(assembly.parts, assembly.owner.tolist(), strict=True):
+        first = part.vertices[[face[0] for face in part.faces]]
+        away = ((np.array([load.x, load.y, 0.0]) - first) * part.normals).sum(axis=1)
+        up = part.normals[:, 2]
+        above, below = up > 1e-9, up < -1e-9
+        if (away[~above & ~below] > 1e-9 * assembly.size).any():
+            continue
+        high, low = (-away[above] / up[above]).min(), (-away[below] / up[below]).max()
+        if high >= low and high > top:
+            best, top = block, float(high)
+    if best < 0:
+        raise Refused(f"a load at x = {load.x:.4g}, y = {load.y:.4g} m acts beside the blocks", key)
+    return best, np.array([load.x, load.y, top])

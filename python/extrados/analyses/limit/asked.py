@@ -169,3 +169,25 @@ def movements_of(building: Building) -> np.ndarray:
     if not movement.any():
         raise Refused("initial.movements: nothing moves", ("initial", "movements"))
     return movement
+
+
+def partitions_of(building: Building) -> list[dict[str, Any]]:
+    """Keys of the structure with which its blocks are half as long in one direction, or in another bond."""
+    structure = building.structure
+    assert structure is not None
+    given = {name: getattr(structure, name) for name in (*structure.halved, *structure.bonds)}
+    changes = [
+        {name: type(given[name])(factor * given[name])}
+        for name, factor in structure.halved.items()
+        if given[name] is not None
+    ]
+    return changes + [{name: bond} for name, bonds in structure.bonds.items() for bond in bonds if bond != given[name]]
+
+
+def refuse_unruled(building: Building) -> None:
+    """Refused where no rule makes the blocks."""
+    if not partitions_of(building):
+        raise Refused(
+            "block_size: the blocks of this structure have no key of their size; divide them in the file, and compare both capacities",
+            ("analysis", "block_size"),
+        )

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit import tables
-from extrados.analyses.limit.asked import deviation_of, refuse_still, sections_of, values_of
+from extrados.analyses.limit.asked import deviation_of, refuse_still, refuse_unruled, sections_of, values_of
 from extrados.analyses.needs import Need, stones_of
 from extrados.model.errors import BadGeometry, Key
 from extrados.model.geometry.assembly import Assembly
@@ -18,13 +18,19 @@ def needs(context: Context, options: tables.BuildingAnalysis) -> Iterator[Need]:
     try:
         if not isinstance(stones_of(building, options), Assembly):
             yield lambda: _refuse_of_sections(building, options)
-            return  # solids have no loads, chains and trains
+            if getattr(options, "block_size", None):
+                yield functools.partial(refuse_unruled, building)
+            for k, load in enumerate(getattr(options, "load", [])):
+                yield functools.partial(_place, building, load, k)
+            return  # solids have no chains and trains
     except BadGeometry:
         return  # told already
     if loads := getattr(options, "load", []):
         from extrados.analyses.limit.applied import pieces
 
         for k, load in enumerate(loads):
+            if load.z is not None:
+                yield functools.partial(_refuse_height, k)
             yield lambda k=k, load=load: pieces(building.blocks(), load, k)
     if getattr(options, "fracture", False):
         yield functools.partial(refuse_fracture, building, options)
@@ -53,14 +59,24 @@ def _refuse_of_sections(building: Building, options: tables.BuildingAnalysis) ->
     """Refused where a deck asks of solids what is known in a plane section alone."""
     assert isinstance(options, tables.Tilt)  # the others take sections alone
     asked: dict[str, tuple[bool, Key]] = {
-        "[[ties]]": (bool(building.ties), ("ties", 0)),
-        "loads": (bool(options.load), ("analysis", "load", 0)),
         "fracture": (options.fracture, ("analysis", "fracture")),
         "crushing": (building.material.compressive_strength is not None, ("material", "compressive_strength")),
     }
     for what, (there, key) in asked.items():
         if there:
             raise Refused(f"tilt of solids cannot take {what} into account: remove it, or analyse a plane section", key)
+
+
+def _place(building: Building, load: tables.AppliedLoad, number: int) -> None:
+    from extrados.analyses.limit.applied import place_of
+
+    place_of(building.solids(), load, number)
+
+
+def _refuse_height(number: int) -> None:
+    raise Refused(
+        "z: belongs to blocks in space; y is the height in a plane section", ("analysis", "load", number, "z")
+    )
 
 
 def _refuse_alone(building: Building) -> None:

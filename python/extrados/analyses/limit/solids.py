@@ -5,8 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from extrados.analyses.context import Context
-from extrados.analyses.limit.common import named_places
+from extrados.analyses.limit.block_size import by_block_size, in_words, warning_of
+from extrados.analyses.limit.common import named_places, spoken_ties
 from extrados.analyses.limit.paths import doubt
+from extrados.analyses.limit.solid_loads import solid_limit, strand_arrays, strand_rows
 from extrados.analyses.limit.solid_sliding import slide
 from extrados.analyses.limit.tables import Tilt
 from extrados.limit.errors import CannotStand, Immovable, NoAnswer
@@ -35,8 +37,8 @@ OPEN = 1e-6  # of the fastest: less is no opening
 def run(context: Context, options: Tilt) -> Result:
     """Capacity along a direction and back, the mechanism, the rose of capacities, what certifies them."""
     building = context.building
-    assembly = building.solids()
-    limit = SolidLimit(assembly, building.friction(assembly))
+    limit = solid_limit(building, options)
+    assembly = limit.assembly
     word = building.structure.word  # type: ignore[union-attr]
     first, opposite = _ends(options)
     count = options.rose or (DIRECTIONS if len(assembly.mass) <= FEW else 0)
@@ -75,6 +77,10 @@ def run(context: Context, options: Tilt) -> Result:
             least = int(np.flatnonzero(capacity <= capacity.min() + SAME)[0])
     if options.face_law or (options.face_law is None and slides and len(assembly.a) <= MOST_BESIDE):
         sliding |= _by_faces(limit, [found_at[round(d, 9)] for d in (first, opposite)], (first, opposite), result)
+    if options.block_size and isinstance(sound := found_at[round(first, 9)], Programme):
+        sliding["block_sizes"] = sizes = by_block_size(context, options, first, sound.gamma)
+        if told := warning_of(sizes):
+            result.warnings.append(told)
     opens = _openings(assembly, there)
     speed = np.linalg.norm(there.motion[:, :3], axis=1)
     pose = _pose(assembly, there.motion)
@@ -88,6 +94,7 @@ def run(context: Context, options: Tilt) -> Result:
         duality_gap=max(there.gap, back.gap), equilibrium_residual=max(there.equilibrium, back.equilibrium),
         friction_residual=max(there.cone, back.cone), overlap_residual=max(there.overlap, back.overlap),
         dilating_contacts=slides, **sliding,
+        **({"ties": strand_rows(building, limit, there.tension)} if limit.strands else {}),
         **({} if options.pyramids is None else {"pyramids": _pyramids(limit, first, options.pyramids)}),
     )  # fmt: skip
     result.results = found
@@ -104,6 +111,7 @@ def run(context: Context, options: Tilt) -> Result:
         "rose_direction": Array(angles, ("direction",), "deg", "directions of the rose"),
         "rose_capacity": Array(capacity, ("direction",), "g", "capacity along them"),
     }  # fmt: skip
+    result.arrays |= strand_arrays(limit, there.tension)
     result.files |= scene_files(assembly.parts, assembly.owner, assembly.centroid, assembly.block_names, pose)
     result.answer = _words(word, found, count)
     return result
@@ -328,6 +336,7 @@ def _words(word: str, r: out.SolidTilt, count: int) -> str:
     if r.dilating_contacts:
         text += f"Contacts slide: {DILATANT}. " + _told(r)
     text += f"The bounds from equilibrium and from the mechanism differ by {r.duality_gap:.1e} g."
+    text += in_words(r.block_sizes) + spoken_ties(r.ties)
     if r.pyramids is not None:
         low, high = ("none" if g is None else f"{g:.4f} g" for g in (r.pyramids.lower_g, r.pyramids.upper_g))
         text += f" Friction pyramids of {r.pyramids.sides} sides bound it by {low} and {high}."

@@ -22,7 +22,10 @@ class AppliedLoad(Table):
     force: Force = key(0.0, "its weight, downward; of a spread load all of it")
     horizontal: Force = key(0.0, "its part to +x; of a spread load all of it")
     x_end: Length | None = key(None, "end of a spread load, even per length of plan, which starts at x")
-    y: Length | None = key(None, "height at which it acts; default the surface below")
+    y: Length | None = key(
+        None, "height at which it acts; default the surface below; in space the other coordinate of the place in plan"
+    )
+    z: Length | None = key(None, "in space: height at which it acts; default the surface below")
     sways: bool = key(False, "whether its weight is accelerated with the ground, as a floor's or a roof's is")
 
     @model_validator(mode="after")
@@ -68,6 +71,9 @@ class Tilt(LimitAnalysisTable, Animated):
         None, "of solids: also the capacity with an even pressure on faces, which resists torsion less; default where up to 80 contacts "
         "slide", source="after Orduna and Lourenco 2005",
     )  # fmt: skip
+    block_size: bool | None = key(
+        None, "of solids: also the capacity with blocks half as long in each direction, and with the other bond"
+    )
     pyramids: int | None = key(
         None, "of solids: also bound the capacity by pyramids of so many sides, within and around the cones of friction", ge=3, le=64
     )  # fmt: skip

@@ -23,6 +23,7 @@ from extrados.analyses.limit.common import (
 )  # fmt: skip
 from extrados.analyses.limit.paths import doubt, follow_paths
 from extrados.analyses.limit.tables import Tilt
+from extrados.analyses.needs import SPATIAL
 from extrados.limit.answer import CENTRAL, Answer
 from extrados.limit.certificate import Certificate, certify
 from extrados.limit.finite_motion import finite_motion
@@ -55,7 +56,7 @@ def degrees(gamma: float) -> float:
 
 def looks_at_solids(building: Building, options: Tilt) -> bool:
     """Whether a deck asks for solids: by a direction or a rose, or since there is no plane section."""
-    if options.direction is not None or options.rose is not None or options.pyramids is not None:
+    if any(getattr(options, name) is not None for name in SPATIAL):
         return True
     try:
         building.blocks()

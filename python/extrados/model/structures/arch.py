@@ -93,6 +93,7 @@ class Arch(Structure):
 
     word: ClassVar = "arch"
     kind: Literal["arch"]
+    halved: ClassVar = {"voussoirs": 2, "stones_across": 2}
     radius: Length = key(about="radius of the centre line, R_A", ge=1e-3, le=1e4)
     thickness: Length = key(about="thickness of the ring, t_A", gt=0, le=1e4)
     embrace: Angle = key(about="angle of embrace, beta_A, from springing to springing", ge=20, le=270)

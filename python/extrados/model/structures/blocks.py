@@ -147,6 +147,9 @@ class Blocks(Structure):
     unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(
         None, "unit of a file that does not say (DXF without $INSUNITS, COMPAS, OBJ, STL)"
     )
+    up: Literal["y", "z"] | None = key(
+        None, "axis of a file of solids that points up; default z. With y the x axis stays and the file's z becomes -y"
+    )
     layers: list[str] | None = key(None, "layers of the drawing to read as stones; default all", max_length=200)
     layer: list[LayerTable] = key(
         [], "layers of the drawing with a material or another role, [[structure.layer]]", max_length=200
@@ -190,6 +193,8 @@ class Blocks(Structure):
 
     def _drawing(self, folder: Path) -> tuple[Drawing, float | None]:
         """What the file or the deck says, and the depth where the file has one."""
+        if self.up is not None:
+            raise NoView("up is of a file of solids, which are no plane section", ("structure", "up"))
         if self.file is None:
             polygons = [
                 Polygon(b.name or f"block {i + 1}", np.array(b.points), b.density)

@@ -49,6 +49,7 @@ class Chimney(Spatial):
 
     word: ClassVar = "chimney"
     kind: Literal["chimney"]
+    halved: ClassVar = {"rings": 2, "blocks": 2}
     starter: ClassVar = {"height": "12.0", "width": "2.0", "thickness": "0.4", "rings": "6"}
     height: Length = key(about="height", gt=0, le=1e4)
     width: Length = key(about="outer diameter at the base, over the corners of the polygon", gt=0, le=1e4)

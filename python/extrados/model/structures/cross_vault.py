@@ -95,6 +95,7 @@ class CrossVault(Spatial):
 
     word: ClassVar = "cross-vault"
     kind: Literal["cross-vault"]
+    halved: ClassVar = {"voussoirs": 2, "stone_length": 0.5}
     starter: ClassVar = {"radius": "3.0", "thickness": "0.4", "embrace": "140", "voussoirs": "16"}
     radius: Length = key(about="radius of the centre line of the barrels", gt=0, le=1e4)
     thickness: Length = key(about="thickness of the webs", gt=0, le=1e4)

@@ -64,6 +64,8 @@ class Dome(Spatial):
 
     word: ClassVar = "dome"
     kind: Literal["dome"]
+    halved: ClassVar = {"rings": 2, "lunes": 2}
+    bonds: ClassVar = {"bond": ("lunes", "running")}
     starter: ClassVar = {"radius": "5.0", "thickness": "0.5", "rings": "8", "lunes": "16"}
     radius: Length = key(about="radius of the middle surface", gt=0, le=1e4)
     thickness: Length = key(about="thickness of the shell", gt=0, le=1e4)

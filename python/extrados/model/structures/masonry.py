@@ -59,6 +59,7 @@ class Column(Structure):
 
     word: ClassVar = "column"
     kind: Literal["column"]
+    halved: ClassVar = {"drums": 2}
     rocks_as: ClassVar[RocksAs] = "block"
     starter: ClassVar = {"height": "4.0"}
     width: Length = key(about="width at the base; of round drums the diameter, over the corners or arrises", gt=0)

@@ -133,6 +133,8 @@ class Wall(Spatial):
 
     word: ClassVar = "wall"
     kind: Literal["wall"]
+    halved: ClassVar = {"unit_length": 0.5, "unit_height": 0.5}
+    bonds: ClassVar = {"begins": ("whole", "half")}
     starter: ClassVar = {
         "unit_length": '"40 cm"', "unit_height": '"20 cm"', "thickness": '"20 cm"', "height": "2.4",
         "legs": "[{ length = 3.0 }, { length = 2.0 }]",

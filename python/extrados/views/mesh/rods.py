@@ -162,5 +162,5 @@ def add_rods(building: Masonry, mesh: Mesh) -> Mesh:
             if mesh.has_joints and not grounded:
                 elements = np.flatnonzero(inside(building.blocks().outlines[block], corners.middle))
             among.append(None if grounded else elements)
-        found.append((tie, anchored(corners, np.array([tie.start, tie.far], dtype=float), among)))
+        found.append((tie, anchored(corners, np.array(tie.flat(), dtype=float), among)))
     return replace(mesh, rods=found)

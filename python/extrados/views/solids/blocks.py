@@ -1,5 +1,7 @@
 """The blocks of a file in space."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from extrados.model.errors import BadGeometry, NoView
@@ -7,10 +9,13 @@ from extrados.model.files import LARGEST_FILE, read
 from extrados.model.geometry.compas import is_compas, read_compas
 from extrados.model.geometry.drawing import UNITS, parsed
 from extrados.model.geometry.solids.assembly import SolidAssembly, assemble
-from extrados.model.geometry.solids.meshes import read_meshes, read_solids, stones_of
+from extrados.model.geometry.solids.meshes import read_meshes, read_solids, stones_of, without_doubles
 from extrados.model.structures.blocks import SMALL, SOLID, Blocks
 from extrados.views.blocks import Masonry
 from extrados.views.solids.sections import solids_of_section
+
+#: Axes of a file whose y points up
+Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 
 def solids_of_blocks(building: Masonry) -> SolidAssembly:
@@ -23,6 +28,8 @@ def solids_of_blocks(building: Masonry) -> SolidAssembly:
     if file is not None and sort == ".json":
         value = parsed(file)
     if file is None or not (sort in SOLID or is_compas(value)):
+        if drawing.up is not None:
+            raise BadGeometry("up belongs to files of solids (OBJ, STL, COMPAS JSON)", ("structure", "up"))
         return solids_of_section(building)
     name = file.path.name
     if drawing.layers is not None or drawing.layer or drawing.ground is not None or drawing.origin is not None:
@@ -30,6 +37,8 @@ def solids_of_blocks(building: Masonry) -> SolidAssembly:
             f"{name}: layers, ground and origin belong to plane drawings; solids rest on foundation_levels"
         )
     meshes = read_meshes(file) if sort in (".obj", ".stl") else read_solids(value, name)
+    if drawing.up == "y":
+        meshes = [replace(mesh, points=mesh.points @ Y_UP.T) for mesh in meshes]
     tolerance = drawing.contact_tolerance
     if "contact_tolerance" not in drawing.model_fields_set:
         points = np.concatenate([mesh.points for mesh in meshes])
@@ -44,4 +53,6 @@ def solids_of_blocks(building: Masonry) -> SolidAssembly:
         if not whole:
             raise error from None
         return solids_of_section(building)
-    return assemble(stones, tolerance, drawing.foundation_levels, name)
+    single, remarks = without_doubles(stones, tolerance)
+    made = assemble(single, tolerance, drawing.foundation_levels, name)
+    return replace(made, remarks=(*remarks, *made.remarks))

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.compas import FARTHEST, mesh_of, nodes_of
@@ -95,7 +96,7 @@ def read_obj(text: str, name: str) -> list[Mesh]:
     xyz = np.array(points).reshape(-1, 3)
     found: list[Mesh] = []
     for (stone, part), faces in rows.items():
-        for piece in _pieces(faces):
+        for piece in _shells(faces):
             title = stone or part or f"block {len(found) + 1}"
             found.append(Mesh(part or title, *_alone(xyz, piece), stone or part))
     if all(not m.stone for m in found):
@@ -117,7 +118,7 @@ def read_stl(content: bytes, name: str) -> list[Mesh]:
             np.round(corners / (MERGED * size)), axis=0, return_index=True, return_inverse=True
         )
         faces = [f for f in inverse.reshape(-1, 3).tolist() if len(set(f)) == 3]
-        pieces = _pieces(faces)
+        pieces = _shells(faces)
         for piece in pieces:
             own = title if title and len(pieces) == 1 else f"block {len(found) + 1}"
             found.append(Mesh(own, *_alone(corners[first], piece), own))
@@ -131,7 +132,7 @@ def read_solids(value: Any, name: str) -> list[Mesh]:
     found = []
     for key, node in nodes.items():
         points, faces = mesh_of(node, f"{name}: block {key}")
-        title, pieces = f"block {key}", _pieces(faces)
+        title, pieces = f"block {key}", _shells(faces)
         for k, piece in enumerate(pieces, start=1):
             own = title if len(pieces) == 1 else f"part {k} of {title}"
             found.append(Mesh(own, *_alone(points, piece), title, bool(node.get("is_support"))))
@@ -172,6 +173,28 @@ def stones_of(
     return [Stone(title, parts, density, grounds[title]) for title, parts in stones.items()]
 
 
+def without_doubles(stones: Sequence[Stone], tolerance: float) -> tuple[list[Stone], tuple[str, ...]]:
+    """The stones, of those drawn twice the first, and a remark on them. Two are one where each corner of either lies within the
+    tolerance [m], or rounding, of a corner of the other."""
+    points = [np.concatenate([part.vertices for part in stone.parts]) for stone in stones]
+    middle = np.array([0.5 * (p.min(axis=0) + p.max(axis=0)) for p in points])
+    size = float(np.ptp(np.concatenate(points), axis=0).max())
+    near = max(tolerance, MERGED * size)
+    doubled: dict[int, int] = {}
+    for i, j in sorted(KDTree(middle).query_pairs(2.0 * near)):
+        if i in doubled or j in doubled:
+            continue
+        both = KDTree(points[i]).query(points[j])[0].max(), KDTree(points[j]).query(points[i])[0].max()
+        if max(both) <= near:
+            doubled[j] = i
+    if not doubled:
+        return list(stones), ()
+    told = ", ".join(f"{stones[j].name} as {stones[i].name}" for j, i in list(doubled.items())[:MOST_TOLD])
+    more = f" and {len(doubled) - MOST_TOLD} more" if len(doubled) > MOST_TOLD else ""
+    kept = [stone for k, stone in enumerate(stones) if k not in doubled]
+    return kept, (f"{len(doubled)} blocks are drawn twice and count once: {told}{more}",)
+
+
 def _within_itself(title: str, parts: Sequence[Polyhedron], tolerance: float) -> str:
     """The fault of a stone whose parts overlap by more than a tolerance [m] and so would weigh twice; else nothing."""
     if len(parts) < 2:
@@ -194,7 +217,10 @@ def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]], within: floa
             around_edge.setdefault((min(i, j), max(i, j)), []).append(k)
     open_edges = sum(len(there) != 2 for there in around_edge.values())
     if open_edges:
-        raise ValueError(f"is not closed: {open_edges} edges do not have a face on either side")
+        raise ValueError(
+            f"is not closed: {open_edges} edges do not have a face on either side; close its surface, or write blocks that share corners "
+            "as objects `o` of an OBJ"
+        )
     turned = _turned(faces, around_edge)
     triangles = np.array([(f[0], b, c) for f in turned for b, c in itertools.pairwise(f[1:])])
     if not np.ptp(points, axis=0).all():
@@ -251,6 +277,22 @@ def _turned(faces: Sequence[Sequence[int]], around: dict[tuple[int, int], list[i
                     found[other] = face[::-1] if (i, j) in _edges(face) else face
                     waiting.append(other)
     return [found[k] for k in range(len(faces))]
+
+
+def _shells(faces: list[list[int]]) -> list[list[list[int]]]:
+    """Faces by closed surface, in their order. Stones that touch may share corners in a file that writes one after the other: a
+    surface ends where all of its edges have met twice."""
+    found: list[list[list[int]]] = []
+    for piece in _pieces(faces):
+        shells: list[list[list[int]]] = [[]]
+        single: set[tuple[int, int]] = set()
+        for face in piece:
+            shells[-1].append(face)
+            single ^= {(min(i, j), max(i, j)) for i, j in _edges(face)}
+            if not single:
+                shells.append([])
+        found += [piece] if shells[-1] else shells[:-1]
+    return found
 
 
 def _pieces(faces: list[list[int]]) -> list[list[list[int]]]:

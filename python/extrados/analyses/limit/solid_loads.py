@@ -1,0 +1,56 @@
+"""Ties, chains, hoops and loads of a deck on blocks in space, and the programmes of the blocks with them."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from extrados.analyses.limit.applied import place_of
+from extrados.analyses.limit.common import SLACK
+from extrados.analyses.limit.tables import Tilt
+from extrados.limit.solids import SolidLimit
+from extrados.results.limit import TieForce
+from extrados.results.model import Array
+from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
+
+
+def solid_limit(building: Building, options: Tilt) -> SolidLimit:
+    """The programmes of a building's blocks with its ties and the loads of an analysis; loads that sway rest on the blocks
+    as fill does."""
+    assembly = building.solids()
+    fill, resting = [assembly.fill], np.zeros((len(assembly.mass), 6))
+    for k, load in enumerate(options.load):
+        block, point = place_of(assembly, load, k)
+        force = np.array([load.horizontal, 0.0, 0.0 if load.sways else -load.force])
+        resting[block] += np.concatenate([force, np.cross(point - assembly.centroid[block], force)])
+        if load.sways:
+            fill.append(np.array([[block, load.force / GRAVITY, *point]]))
+    loaded = replace(assembly, fill=np.concatenate(fill))
+    return SolidLimit(loaded, building.friction(assembly), building.strands(), resting)
+
+
+def strand_rows(building: Building, limit: SolidLimit, tension: np.ndarray) -> list[TieForce]:
+    """What a state asks of each strand [N]; the segments of a bonded chain are numbered."""
+    rows = []
+    for k, (strand, force) in enumerate(zip(limit.strands, tension.tolist(), strict=True)):
+        name = building.ties[strand.tie].name or ""
+        segments = [n for n, other in enumerate(limit.strands) if other.tie == strand.tie]
+        whole = max(b for b in (strand.high, -strand.low, 0.0) if np.isfinite(b)) or float(limit.weight.sum())
+        yields = force > strand.high - SLACK * whole or force < strand.low + SLACK * whole
+        state = "slack" if abs(force) < SLACK * whole else "yields" if yields else "carries"
+        if len(segments) > 1:
+            name += f", segment {segments.index(k) + 1}"
+        rows.append(TieForce(name=name, force_N=force, state=state))
+    return rows
+
+
+def strand_arrays(limit: SolidLimit, tension: np.ndarray) -> dict[str, Array]:
+    """The strands as figures show them, segment by segment, with their tensions; nothing without any."""
+    if not limit.strands:
+        return {}
+    ends = [s.point[[k, n]] for s in limit.strands for k, n in s.segments]
+    of = [i for i, s in enumerate(limit.strands) for _ in s.segments]
+    return {
+        "strand_segment": Array(np.array(ends), ("segment", "tie_end", "axis3"), "m", "both ends of the segments of ties and chains"),
+        "strand_tension": Array(tension[of], ("segment",), "N", "tension in them at collapse"),
+    }  # fmt: skip
