@@ -9,6 +9,7 @@ from extrados.results.codes import Checked, LocalMechanism
 from extrados.results.store import Stored
 from extrados.results.strengthen import Strengthen
 from extrados.show.document import Block, Figure, Table, Words
+from extrados.show.verification import COLUMNS, WIDTHS, rows_of
 
 Figures = list[tuple[str, str]]
 #: Outcomes of verdicts in words, the gravest first
@@ -95,6 +96,9 @@ def _comparison(run: Stored, lead: dict[str, Any]) -> Table:
             for s in r.verdicts
         ]  # fmt: skip
         return Table(("strategy", "verdict", "demand", "capacity", "margin"), rows, (2.4, 1.2, 1.2, 1.2, 1.2))
+    verified = getattr(r, "verification", None)
+    if verified is not None and verified.checks:
+        return Table(COLUMNS, rows_of(verified), WIDTHS)
     head: tuple[str, ...] = ("demand", "capacity", "safety factor")
     row: tuple[str, ...] = (number(v["demand"], v["unit"]), number(v["capacity"], v["unit"]), number(v["ratio"], ""))
     if isinstance(r, Checked) and r.clause:
@@ -131,6 +135,16 @@ def _confidence(run: Stored, lead: dict[str, Any]) -> str:
         ]
         if open_parts:
             said.append(f"No check decides for: {', '.join(open_parts)}.")
+    verified = getattr(r, "verification", None)
+    if verified is not None:
+        if verified.confidence_factor is not None:
+            said.append(f"Strengths are divided by the confidence factor {verified.confidence_factor:.3g}.")
+        if verified.by_default:
+            said.append(f"The deck names no code; the report applies {verified.code}.")
+        clauses = {c.clause for c in verified.checks}
+        said.append(f"Clauses: {'; '.join(sorted(clauses))}.")
+        if any("verify clause" in clause for clause in clauses):
+            said.append("Clauses so marked were not verified against the standard. Compare them before use.")
     if v["bound"] in ("upper", "lower"):
         said.append(f"The capacity is {'an upper' if v['bound'] == 'upper' else 'a lower'} bound.")
     if v["violated"]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from extrados.analyses.codes.code_rules import Line
-from extrados.analyses.codes.tables import CodeChecks, LocalMechanism
+from extrados.analyses.codes.tables import CodeChecks, LocalMechanism, Verification
 from extrados.analyses.context import Context, Refused
 from extrados.core import motion as core_motion
 from extrados.motions.code_spectra import damping_factor
@@ -47,7 +47,7 @@ def code_of(context: Context) -> Code:
     return context.deck.code or NATIVE
 
 
-def actions(context: Context, options: CodeChecks | LocalMechanism) -> list[Action]:
+def actions(context: Context, options: CodeChecks | LocalMechanism | Verification) -> list[Action]:
     """The action of each limit state; what the analysis gives by itself is that of the concluding one (SLV, SD, LS, ULS)."""
     code, found = code_of(context), {}
 
@@ -121,7 +121,7 @@ def fits(code: Code | None, model: CodeSpectrum) -> bool:
     return code is None or code.jurisdiction == "none" or model.code in (*OWN[code.jurisdiction], "table")
 
 
-def refuse_mixed(context: Context, options: CodeChecks | LocalMechanism) -> None:
+def refuse_mixed(context: Context, options: CodeChecks | LocalMechanism | Verification) -> None:
     """Refused where the spectrum of the analysis is of another code than [code]."""
     code = context.deck.code
     for name in ("spectrum", "collapse_spectrum"):

@@ -236,12 +236,10 @@ def greatest_factor(demand: Callable[[float], float | None], capacity: float) ->
 
 
 def return_period(acceleration: float, known: Mapping[float, float]) -> float | None:
-    """Return period [years] of an acceleration [m/s^2] by straight lines of the logarithms between those of the limit states,
-    continued beyond the last; None with fewer than two. known: return period [years] -> acceleration [m/s^2]."""
+    """Return period [years] of an acceleration [m/s^2] by straight lines of the logarithms between those of the limit states;
+    None outside them. known: return period [years] -> acceleration [m/s^2]."""
     points = sorted((a, years) for years, a in known.items())
-    if len({a for a, _ in points}) < 2:
+    if len(points) < 2 or not points[0][0] <= acceleration <= points[-1][0]:
         return None
     a, years = (np.log(np.array(column)) for column in zip(*points, strict=True))
-    k = int(np.clip(np.searchsorted(a, np.log(acceleration)) - 1, 0, len(a) - 2))
-    slope = (years[k + 1] - years[k]) / (a[k + 1] - a[k])
-    return float(np.exp(years[k] + slope * (np.log(acceleration) - a[k])))
+    return float(np.exp(np.interp(np.log(acceleration), a, years)))
