@@ -167,3 +167,31 @@ def test_spectrum_of_another_code_is_refused():
     _, record = pushed(deck(code={}, verification={"spectrum": other}))
     assert record["status"] == "refused"
     assert "EN1998-1" in record["reason"]
+
+
+def panel(**more):
+    return {
+        "structure": {"kind": "panel", "width": 0.6, "height": 6.0, "thickness": 0.3},
+        "material": {**MASONRY, "tensile_strength": 1e5, "fracture_energy": 20}, "code": CODE,
+        "analysis": [{"kind": "sla", "mesh": {"size": 0.15}, "ripple": 0.2, "stop_fraction": 0.7, "events": 800, **more}],
+    }  # fmt: skip
+
+
+def test_participating_mass_of_a_slender_wall_is_that_of_a_cantilever_under_its_masses():
+    """phi (x^4 - 4 x^3 + 6 x^2)/3 of a cantilever of uniform mass: the mean displacement is 0.4, that of its square 0.2568 of
+    the tip's, so that m* is the whole mass and m* Gamma 0.16/0.2568 of it (without shear)."""
+    run = extrados.run(panel(), threads=1)
+    found = run["sla"].verification
+    (curve,) = found.curves
+    mass = 0.6 * 6.0 * 0.3 * 1900.0
+    assert curve.equivalent_mass_kg == pytest.approx(mass, rel=1e-2)
+    assert curve.mass_ratio == pytest.approx(0.16 / 0.25679, rel=1e-2)
+    assert [c.limit_state for c in found.checks] == ["SLD", "SLV", "SLC"]
+    assert run.analysis("sla")["verdict"]["unit"] == "g"
+
+
+def test_a_load_without_mass_opens_the_verdict():
+    """A floor of 50 kN on the wall, whose mass does not push it."""
+    loads = [{"kind": "gravity"}, {"kind": "spread", "edge": "top", "fy": -50e3}]
+    found = extrados.run(panel(constant=loads), threads=1)["sla"].verification
+    assert "50 kN" in found.violated[0]

@@ -39,10 +39,10 @@ class DisplacementCheck(ResultModel):
     )
     demand_pga_g: float | None = fact("peak ground acceleration of the action, a_g S", "g")
     capacity_pga_g: float | None = fact("the same times the factor (alpha_PGA is their ratio)", "g")
-    return_period_years: float | None = fact("return period of the action; null where not known", "years")
+    return_period_years: float | None = fact("return period of the action; null where not known", "year")
     capacity_return_period_years: float | None = fact(
         "return period of the action that is carried, between those of the limit states of [code]; null outside them",
-        "years",
+        "year",
     )
     verdict: Literal["holds", "fails", ""] = fact("verdict of the check; empty without a demand or a capacity")
     clause: str = fact("clauses of demand and capacity")
