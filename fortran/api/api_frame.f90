@@ -108,13 +108,13 @@ contains
    end subroutine at_rest
 
    !> Push by a growing multiple of a pattern, see push_frame
-   subroutine push(handle, n, count, most, pattern, control, target, steps, drop, states, stop, curve, displacement, &
+   subroutine push(handle, n, count, most, pattern, control, target, steps, drop, states, ended, curve, displacement, &
       force, drift, state, status)
       use common_handles, only : handle_leave
       use common_status, only : status_invalid_argument
       use frame_handle, only : frame_take
       use frame_model, only : frame
-      use frame_push, only : push_frame, push_path
+      use frame_push, only : push_frame, push_path, push_path_new
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: n
       integer(c_int), intent(in) :: count                    !! elements
@@ -125,7 +125,7 @@ contains
       integer(c_int), intent(in) :: steps
       real(c_double), intent(in) :: drop                     !! share of the greatest multiple at which it ends
       integer(c_int), intent(out) :: states
-      integer(c_int), intent(out) :: stop                    !! list frame_stop
+      integer(c_int), intent(out) :: ended                    !! list frame_stop
       real(c_double), intent(out) :: curve(2, most)          !! control displacement, multiple
       real(c_double), intent(out) :: displacement(n, most)
       real(c_double), intent(out) :: force(3, count, most)   !! N, moments at both ends
@@ -136,7 +136,7 @@ contains
       type(push_path) :: path
       !f2py threadsafe
       states = 0
-      stop = 0
+      ended = 0
       curve = 0.0_c_double
       displacement = 0.0_c_double
       force = 0.0_c_double
@@ -147,8 +147,11 @@ contains
       if (count /= size(model%element) .or. steps < 1 .or. .not. target > 0.0_c_double) then
          if (status == 0) status = status_invalid_argument
       else if (status == 0) then
-         path = push_path(0, curve, displacement, force, drift, state)
-         call push_frame(model, pattern, control, target, int(steps), drop, path, stop, status)
+         call push_path_new(n, count, most, path, status)
+         if (status == 0) call push_frame(model, pattern, control, target, int(steps), drop, &
+            path, ended, status)
+      end if
+      if (status == 0) then
          states = path%count
          curve(:, :) = path%curve
          displacement(:, :) = path%displacement
@@ -160,13 +163,13 @@ contains
    end subroutine push
 
    !> Motion relative to the ground, see move_frame
-   subroutine move(handle, n, count, most, unit, acceleration, time_step, damping, states, stop, displacement, shear, &
+   subroutine move(handle, n, count, most, unit, acceleration, time_step, damping, states, ended, displacement, shear, &
       force, drift, state, status)
       use common_handles, only : handle_leave
       use common_status, only : status_invalid_argument
       use frame_handle, only : frame_take
       use frame_model, only : frame
-      use frame_push, only : move_frame, push_path
+      use frame_push, only : move_frame, push_path, push_path_new
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: n
       integer(c_int), intent(in) :: count                    !! elements
@@ -176,7 +179,7 @@ contains
       real(c_double), intent(in) :: time_step                !! [s]
       real(c_double), intent(in) :: damping(2)               !! of the mass [1/s], of the stiffness [s]
       integer(c_int), intent(out) :: states
-      integer(c_int), intent(out) :: stop                    !! list frame_stop
+      integer(c_int), intent(out) :: ended                    !! list frame_stop
       real(c_double), intent(out) :: displacement(n, most)   !! [m]
       real(c_double), intent(out) :: shear(most)             !! internal base shear [N]
       real(c_double), intent(out) :: force(3, count, most)   !! N, moments at both ends
@@ -187,7 +190,7 @@ contains
       type(push_path) :: path
       !f2py threadsafe
       states = 0
-      stop = 0
+      ended = 0
       displacement = 0.0_c_double
       shear = 0.0_c_double
       force = 0.0_c_double
@@ -198,12 +201,10 @@ contains
       if (count /= size(model%element) .or. .not. time_step > 0.0_c_double) then
          if (status == 0) status = status_invalid_argument
       else if (status == 0) then
-         allocate (path%curve(2, most), source=0.0_c_double)
-         path%displacement = displacement
-         path%force = force
-         path%drift = drift
-         path%state = state
-         call move_frame(model, unit, acceleration, time_step, damping, path, shear, stop, status)
+         call push_path_new(n, count, most, path, status)
+         if (status == 0) call move_frame(model, unit, acceleration, time_step, damping, path, shear, ended, status)
+      end if
+      if (status == 0) then
          states = path%count
          displacement(:, :) = path%displacement
          force(:, :, :) = path%force

@@ -7,7 +7,7 @@ module frame_handle
       status_not_ready, status_out_of_memory
    use frame_element, only : macro_element
    use frame_laws, only : masonry_section, shear_law
-   use frame_model, only : frame
+   use frame_model, only : frame, frame_link
    use, intrinsic :: iso_c_binding, only : c_f_pointer, c_funloc, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
    implicit none
    private
@@ -72,7 +72,8 @@ contains
       integer(c_int), intent(in) :: freedom(:, :)   !! (6, elements) u, w, rotation of both nodes, 1-based; 0 is held
       !> (24, elements) offsets along the wall and upward of both ends; deformable length; of the section length,
       !> thickness, modulus, strength, residual share; shear stiffness, cohesion, friction, diagonal strength,
-      !> slenderness, compliance, softening, slip at the peak; drift limits in flexure and shear, kept share; beam: E I, E A, moment
+      !> slenderness, compliance, softening, slip at the peak; drift limits in flexure and shear, kept share;
+      !> beam: E I, E A, moment
       real(wp), intent(in) :: property(:, :)
       integer(c_int), intent(out) :: status
       type(macro_element), allocatable :: element(:)
@@ -124,15 +125,18 @@ contains
       real(wp), intent(in) :: part(:, :)            !! (4, links) of each displacement in the deformation
       real(wp), intent(in) :: property(:, :)        !! (4, links) stiffness, strengths against - and +, prestress
       integer(c_int), intent(out) :: status
-      integer :: k
+      type(frame_link), allocatable :: link(:)
+      integer :: k, failed
       status = status_bad_index
       if (any(freedom < 0) .or. any(freedom > model%n)) return
       status = status_not_finite
       if (.not. all(abs(property) <= huge(1.0_wp)) .or. .not. all(abs(part) <= huge(1.0_wp))) return
       status = status_invalid_argument
       if (any(property(1, :) <= 0.0_wp) .or. any(property(2:3, :) < 0.0_wp)) return
-      deallocate (model%link)
-      allocate (model%link(size(property, 2)))
+      allocate (link(size(property, 2)), stat=failed)
+      status = status_out_of_memory
+      if (failed /= 0) return
+      call move_alloc(link, model%link)
       do k = 1, size(model%link)
          model%link(k)%freedom = freedom(:, k)
          model%link(k)%part = part(:, k)
@@ -150,12 +154,18 @@ contains
       real(wp), intent(in) :: weight(:)             !! (n) [N]
       real(wp), intent(in) :: mass(:, :)            !! (n, n) [kg]
       integer(c_int), intent(out) :: status
+      integer :: failed
       status = status_not_finite
       if (.not. all(abs(linear) <= huge(1.0_wp)) .or. .not. all(abs(weight) <= huge(1.0_wp)) .or. &
          .not. all(abs(mass) <= huge(1.0_wp))) return
-      model%linear = linear
-      model%weight = weight
-      model%mass = mass
+      if (.not. allocated(model%linear)) then
+         allocate (model%linear(model%n, model%n), model%weight(model%n), model%mass(model%n, model%n), stat=failed)
+         status = status_out_of_memory
+         if (failed /= 0) return
+      end if
+      model%linear(:, :) = linear
+      model%weight(:) = weight
+      model%mass(:, :) = mass
       status = status_ok
    end subroutine set_loads
 

@@ -6,7 +6,7 @@ module frame_model
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: frame, frame_link, frame_state, frame_state_new, assemble, equilibrate, commit, solve
+   public :: frame, frame_link, frame_state, frame_state_new, take_over, assemble, equilibrate, commit, solve
 
    !> An elastic, perfectly plastic link: its deformation is a sum of displacements of a few freedoms
    type :: frame_link
@@ -63,6 +63,17 @@ contains
       state%tangent(:, :) = 0.0_wp
       state%plastic(:) = 0.0_wp
    end subroutine frame_state_new
+
+   !> Make a state what another one is
+   pure subroutine take_over(from, to)
+      type(frame_state), intent(in) :: from
+      type(frame_state), intent(inout) :: to     !! with room
+      to%d(:) = from%d
+      to%force(:) = from%force
+      to%tangent(:, :) = from%tangent
+      to%element(:) = from%element
+      to%plastic(:) = from%plastic
+   end subroutine take_over
 
    !> Internal forces and tangent at the displacements of `now`
    pure subroutine assemble(model, past, now, status)
@@ -131,11 +142,12 @@ contains
       end do
    end subroutine add_link
 
-   !> Equilibrium under the constant loads and a multiple of `pattern`.
+   !> Equilibrium under a share of the constant loads and a multiple of `pattern`.
    !>
    !> With `controlled` the multiple is sought at which control . d has the value; else it is kept.
-   subroutine equilibrate(model, past, pattern, control, value, controlled, now, multiple, status)
+   subroutine equilibrate(model, weighed, past, pattern, control, value, controlled, now, multiple, status)
       type(frame), intent(in) :: model
+      real(wp), intent(in) :: weighed            !! share of the constant loads
       type(frame_state), intent(in) :: past
       real(wp), intent(in) :: pattern(:)         !! (n)
       real(wp), intent(in) :: control(:)         !! (n)
@@ -150,7 +162,7 @@ contains
       do iteration = 1, most_iterations
          call assemble(model, past, now, status)
          if (status /= status_ok) return
-         right(:, 1) = model%weight + multiple * pattern - now%force
+         right(:, 1) = weighed * model%weight + multiple * pattern - now%force
          right(:, 2) = pattern
          if (.not. maxval(abs(right(:, 1))) <= huge(1.0_wp)) exit
          scale = tolerance * max(sum(abs(model%weight)), sum(abs(multiple * pattern)), sum(abs(model%link%force)), &

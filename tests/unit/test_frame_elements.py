@@ -147,7 +147,7 @@ def test_shear_of_the_damage_law():
         friction=mu,
         damage=(ct / g, beta),
     )
-    path = push(frame, 0.018, 2000)
+    path = push(frame, 0.019, 2000)
     slip = path.control - path.multiple * (1.0 / stiff + 3.0**3 / (E_RIGID * T * L**3))
     for s, expected in ((0.225e-3, 232.0), (1.8e-3, 272.0), (3.6e-3, 255.50), (14.4e-3, 232.0)):
         assert np.interp(s, slip, path.multiple) == pytest.approx(expected, rel=1e-3)

@@ -158,7 +158,7 @@ class Frame(Owner):
         count, stop, curve, displacement, force, drift, state, status = long_call(
             _core.api_frame.push, self.handle, self.count, most, *own, float(target), int(steps), float(drop)
         )
-        check(status, "push of a frame")
+        check(status, "pushover of a frame")
         kept = slice(0, int(count))
         return Path(
             STOPS[int(stop)], displacement.T[kept], force.T[kept], drift.T[kept], state.T[kept], curve[0, kept], curve[1, kept]
