@@ -43,8 +43,8 @@ contains
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: n
       integer(c_int), intent(in) :: count
-      integer(c_int), intent(in) :: freedom(4, count)
-      real(c_double), intent(in) :: part(4, count)
+      integer(c_int), intent(in) :: freedom(8, count)
+      real(c_double), intent(in) :: part(8, count)
       real(c_double), intent(in) :: property(4, count)
       integer(c_int), intent(out) :: status
       type(frame), pointer :: model

@@ -45,6 +45,7 @@ module frame_element
       type(crushing) :: crushed(most_sections)
       integer(c_int) :: state = frame_state_sound
       real(wp) :: fading(2) = 0.0_wp         !! moments when it failed [N m]
+      real(wp) :: pressed(2) = 0.0_wp        !! N and shortening when it failed
       real(wp) :: left = 1.0_wp              !! share of `fading` that is still there
    end type element_state
 
@@ -405,19 +406,18 @@ contains
       type(element_state), intent(inout) :: state
       real(wp), intent(out) :: stiffness(3, 3)
       integer(c_int), intent(out) :: status
-      real(wp) :: axial
+      real(wp) :: axial, normal
       status = status_ok
       stiffness = 0.0_wp
-      if (element%pier) then
-         associate (section => element%section)
-            axial = section%young * section%length * section%thickness / element%length
-            if (v(1) < 0.0_wp) axial = section%residual * axial
-         end associate
-      else
-         axial = element%axial_stiffness / element%length
+      axial = element%axial_stiffness / element%length
+      if (element%pier) axial = element%section%young * element%section%length * element%section%thickness / element%length
+      normal = state%pressed(1) + axial * (v(1) - state%pressed(2))
+      if (element%pier .and. normal < 0.0_wp) then
+         axial = element%section%residual * axial
+         normal = element%section%residual * normal
       end if
       stiffness(1, 1) = axial
-      state%force = [axial * v(1), state%left * state%fading]
+      state%force = [normal, state%left * state%fading]
    end subroutine failed_forces
 
    !> Keep what a step in equilibrium has made of an element
@@ -450,6 +450,7 @@ contains
       end if
       failed = .true.
       state%fading = state%force(2:3)
+      state%pressed = [state%force(1), state%deformation(1)]
       state%left = 1.0_wp
    end subroutine element_failed
 

@@ -121,8 +121,8 @@ contains
    !> Links in place of those before
    subroutine set_links(model, freedom, part, property, status)
       type(frame), intent(inout) :: model
-      integer(c_int), intent(in) :: freedom(:, :)   !! (4, links) 1-based; 0 is held
-      real(wp), intent(in) :: part(:, :)            !! (4, links) of each displacement in the deformation
+      integer(c_int), intent(in) :: freedom(:, :)   !! (8, links) 1-based; 0 is held
+      real(wp), intent(in) :: part(:, :)            !! (8, links) of each displacement in the deformation
       real(wp), intent(in) :: property(:, :)        !! (4, links) stiffness, strengths against - and +, prestress
       integer(c_int), intent(out) :: status
       type(frame_link), allocatable :: link(:)

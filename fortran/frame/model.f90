@@ -10,8 +10,8 @@ module frame_model
 
    !> An elastic, perfectly plastic link: its deformation is a sum of displacements of a few freedoms
    type :: frame_link
-      integer(c_int) :: freedom(4) = 0            !! 0 is held
-      real(wp) :: part(4) = 0.0_wp
+      integer(c_int) :: freedom(8) = 0            !! 0 is held
+      real(wp) :: part(8) = 0.0_wp
       real(wp) :: stiffness = 0.0_wp              !! [N/m]
       real(wp) :: strength(2) = 0.0_wp            !! against negative and positive deformation, both not negative [N]
       real(wp) :: force = 0.0_wp                  !! before it deforms: a prestress [N]
@@ -122,7 +122,7 @@ contains
       real(wp) :: deformation, force, stiffness
       integer :: i, j
       deformation = 0.0_wp
-      do i = 1, 4
+      do i = 1, 8
          if (link%freedom(i) > 0) deformation = deformation + link%part(i) * now%d(link%freedom(i))
       end do
       force = link%force + link%stiffness * (deformation - past)
@@ -132,10 +132,10 @@ contains
          force = max(-link%strength(1), min(link%strength(2), force))
       end if
       plastic = deformation - (force - link%force) / link%stiffness
-      do j = 1, 4
+      do j = 1, 8
          if (link%freedom(j) == 0) cycle
          now%force(link%freedom(j)) = now%force(link%freedom(j)) + link%part(j) * force
-         do i = 1, 4
+         do i = 1, 8
             if (link%freedom(i) > 0) now%tangent(link%freedom(i), link%freedom(j)) = &
                now%tangent(link%freedom(i), link%freedom(j)) + link%part(i) * link%part(j) * stiffness
          end do

@@ -76,7 +76,7 @@ class MacroElement:
 
 @dataclass(frozen=True)
 class Link:
-    """An elastic, perfectly plastic link: freedoms (at most 4, 0-based) and their parts in its deformation; stiffness [N/m],
+    """An elastic, perfectly plastic link: freedoms (at most 8, 0-based) and their parts in its deformation; stiffness [N/m],
     strengths against negative and positive deformation [N], prestress [N]."""
 
     freedoms: tuple[int, ...]
@@ -132,10 +132,10 @@ class Frame(Owner):
         values = real("elements", np.array([e.properties for e in elements]).reshape(-1, 24).T, (24, None))
         check(_core.api_frame.elements(handle, self.n, choice, freedom - np.int32(1), values), "elements of a frame")
         if links:
-            where, parts = np.full((4, len(links)), -1), np.zeros((4, len(links)), order="F")
+            where, parts = np.full((8, len(links)), -1), np.zeros((8, len(links)), order="F")
             for k, link in enumerate(links):
                 where[: len(link.freedoms), k], parts[: len(link.parts), k] = link.freedoms, link.parts
-            found = indices("freedoms of links", where + 1, self.n + 1, (4, None)) - np.int32(1)
+            found = indices("freedoms of links", where + 1, self.n + 1, (8, None)) - np.int32(1)
             laws = real("links", np.array([[k.stiffness, *k.strengths, k.prestress] for k in links]).T, (4, None))
             check(_core.api_frame.links(handle, self.n, found, parts, laws), "links of a frame")
         n = self.n
