@@ -10,10 +10,11 @@ from extrados import _core
 from extrados.core.calls import indices, long_call, real, room_for
 from extrados.core.errors import check
 from extrados.core.handles import Owner
-from extrados.core.lists import numbers, words
+from extrados.core.lists import entries, numbers, words
 
 SHEAR = numbers("frame_shear")
-STATE = numbers("frame_state")
+#: Name -> number
+STATE = {entry.name: entry.number for entry in entries("frame_state")}
 #: Number -> word in results
 STATES, STOPS = words("frame_state"), words("frame_stop")
 #: A drift limit that is never reached, a strength that is never exceeded
@@ -59,8 +60,8 @@ class MacroElement:
     @property
     def choices(self) -> list[int]:
         """As the core takes them."""
-        word = {word: number for number, word in words("frame_shear").items()}[self.shear]
-        return [int(self.pier), int(self.upright), word, self.sections, int(self.second_order), int(self.by_shear)]
+        law = SHEAR[self.shear]
+        return [int(self.pier), int(self.upright), law, self.sections, int(self.second_order), int(self.by_shear)]
 
     @property
     def properties(self) -> list[float]:

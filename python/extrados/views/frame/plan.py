@@ -83,7 +83,7 @@ class PointMass:
 
 @dataclass
 class EquivalentFrame:
-    """Piers first, then spandrels: `strips` goes with `elements`. `remarks` states what is neglected."""
+    """`strips` goes with `elements`. `remarks` states what is neglected."""
 
     plan: Plan
     nodes: list[Node]
@@ -99,7 +99,12 @@ class EquivalentFrame:
     @property
     def piers(self) -> int:
         """How many of the elements are piers."""
-        return sum(e.pier for e in self.elements)
+        return len(self.piers_at)
+
+    @property
+    def piers_at(self) -> list[int]:
+        """Their numbers among the elements."""
+        return [k for k, e in enumerate(self.elements) if e.pier]
 
     @property
     def mass(self) -> np.ndarray:
