@@ -195,3 +195,62 @@ def test_a_load_without_mass_opens_the_verdict():
     loads = [{"kind": "gravity"}, {"kind": "spread", "edge": "top", "fy": -50e3}]
     found = extrados.run(panel(constant=loads), threads=1)["sla"].verification
     assert "50 kN" in found.violated[0]
+
+
+def framed(code=None, material=None, **more):
+    made = deck(
+        material={"compressive_strength": 3e6, "tensile_strength": 1e5, "fracture_energy": 20, **(material or {})},
+        code=code,
+    )
+    made["joints"] = {"cohesion": 1e5, "friction": 0.6}
+    made["analysis"] = [
+        {"kind": "frame-pushover", "directions": [0.0], "eccentricities": [0.0], "patterns": ["uniform"], **more}, {"kind": "frame-modes"},
+    ]  # fmt: skip
+    return made
+
+
+@pytest.fixture(scope="module")
+def frame():
+    return extrados.run(framed(code={}), threads=1)
+
+
+def test_period_of_a_frame_is_that_of_its_mode(frame):
+    """With one mass on one level phi is 1 there: m* is that mass, and T* of the secant is not below the period at rest."""
+    found = frame["frame-pushover"].verification
+    period = next(m.period_s for m in frame["frame-modes"].modes if m.mass_ratio_x > 0.5)
+    for curve in found.curves:
+        assert 0.98 * period < curve.period_s < 1.6 * period
+        assert 0.9 < curve.mass_ratio <= 1.0 + 1e-9
+    mode = extrados.run(framed(code={}, verification={"shape": "mode"}), threads=1)
+    for one, other in zip(found.curves, mode["frame-pushover"].verification.curves, strict=True):
+        assert other.period_s == pytest.approx(one.period_s, rel=0.03)
+
+
+def test_least_factor_of_all_pushes_governs(frame):
+    found, verdict = frame["frame-pushover"].verification, frame.analysis("frame-pushover")["verdict"]
+    assert [c.push for c in found.curves] == ["+x uniform", "-x uniform"]
+    assert len(found.checks) == 2 * 3
+    assert verdict["ratio"] == pytest.approx(min(c.factor for c in found.checks))
+    assert found.confidence_factor == 1.35
+
+
+def test_strengths_of_a_frame_are_divided_by_the_confidence_factor(frame):
+    by_hand = framed(
+        code={"knowledge_level": "LC3"}, material={"compressive_strength": 3e6 / 1.35, "tensile_strength": 1e5 / 1.35}
+    )  # fmt: skip
+    by_hand["joints"]["cohesion"] = 1e5 / 1.35
+    other = extrados.run(by_hand, threads=1)["frame-pushover"]
+    peaks = [[row.peak_base_shear_N for row in one.runs] for one in (frame["frame-pushover"], other)]
+    assert peaks[0] == pytest.approx(peaks[1], rel=1e-6)
+
+
+def test_sliding_of_a_storey_by_hand():
+    """Without cohesion the house slides at 0.1 of its weight, far below its piers' strength."""
+    slippery = framed(code={"knowledge_level": "LC3"})
+    slippery["joints"] = {"cohesion": 0.0, "friction": 0.1}
+    slippery["analysis"][0]["frame"] = {"cohesion": 1e5}
+    run = extrados.run(slippery, threads=1)
+    found = run["frame-pushover"]
+    limit = 0.1 * found.weight_N / 1e3
+    assert f"{limit:.3g} kN" in found.verification.violated[0]
+    assert run.analysis("frame-pushover")["verdict"]["outcome"] in ("open", "collapses")

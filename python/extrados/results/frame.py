@@ -4,6 +4,7 @@ from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.verdict import Demand, KindResults, Verdict, capacity_alone, judge
+from extrados.results.verification import Verification
 
 
 class FrameMode(ResultModel):
@@ -91,13 +92,16 @@ class FramePushover(KindResults):
     piers: int = fact("piers")
     spandrels: int = fact("spandrels")
     remarks: list[str] = fact("what the frame neglects of the building")
+    verification: Verification = maybe("verification by displacement: all runs at the limit states of the code")
 
     def judged(self, demand: Demand) -> Verdict:
-        """The least base shear, without an outcome: base shear is not compared with the PGA."""
+        """The verification by displacement; without one the least base shear, without an outcome."""
         lost = [
             row.name for row in self.runs if row.stop.startswith("no equilibrium") and row.drop_displacement_m is None
         ]
         text = f"The frame carries a base shear of {self.base_shear_N / 1e3:.3g} kN ({self.governing})."
+        if self.verification is not None and self.verification.decides:
+            return self.verification.judged(text)
         if lost:
             text += f" {len(lost)} of {len(self.runs)} curves end before a drop of 20 %."
         return capacity_alone(text, self.base_shear_N, "N", "lower" if self.governing in lost else None)

@@ -107,7 +107,7 @@ class Verification(ResultModel):
         ):
             ratio = f" (limited by q*: {check.strength_ratio:.3g}, at most {limit:g})"
         return (
-            f"{self.code} at {check.limit_state}: the displacement check {check.verdict} (push to {check.push}, {self.method}). "
+            f"{self.code} at {check.limit_state}: the displacement check {check.verdict} (push {check.push}, {self.method}). "
             f"Demand {demand}, capacity {1e3 * check.capacity_m:.3g} mm; {index} {value}{ratio}; peak ground acceleration "
             f"{check.demand_pga_g:.3g} g, capacity {check.capacity_pga_g:.3g} g."
         )
@@ -116,7 +116,7 @@ class Verification(ResultModel):
         """Why no check decides."""
         if self.jurisdiction == "ASCE41":
             known = [c for c in self.checks if c.demand_m is not None]
-            told = ", ".join(f"{1e3 * (c.demand_m or 0.0):.3g} mm at {c.limit_state} to {c.push}" for c in known)
+            told = ", ".join(f"{1e3 * (c.demand_m or 0.0):.3g} mm at {c.limit_state}, push {c.push}" for c in known)
             return (
                 "ASCE 41 accepts piers by their own drifts (Table 11-4), which could not be read: no verdict."
                 f"{f' Target displacement {told}.' if told else ''}"

@@ -7,6 +7,7 @@ from matplotlib.patches import Patch, Rectangle
 
 from extrados.results.store import Stored
 from extrados.show import style
+from extrados.show.verification import draw_verification
 
 #: Colours of the states of elements, by their numbers
 COLOURS = ("#e8e2d4", "#cfe3d6", "#f2c28b", "#e08b5a", "#b3261e", "#6d1a36")
@@ -19,7 +20,7 @@ def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
     """Base shear over control displacement of all runs, and the walls of the governing run at its last state."""
     r = run[name]
     angles = sorted({row.direction_deg for row in r.runs})
-    made = []
+    made = draw_verification(run, name, folder)
     with style.figure(7.2, 3.4, 1, len(angles), sharey=True) as (fig, axes):
         for ax, angle in zip(axes, angles, strict=True):
             seen = set()

@@ -50,7 +50,7 @@ def draw_verification(run: Stored, name: str, folder: Path) -> list[tuple[str, s
         np.array([0.0, 1.0, 1.0]) * idea.yield_load_N,
     )
     with style.figure(9.6, 4.0, columns=2) as (fig, (left, right)):
-        left.plot(1e3 * d, 1e-3 * p, color=style.THRUST, label=f"push to {idea.push}")
+        left.plot(1e3 * d, 1e-3 * p, color=style.THRUST, label=f"push {idea.push}")
         left.plot(1e3 * law[0], 1e-3 * law[1], color=style.EDGE, linestyle="--", label="bilinear curve of equal area")
         for row, shade in zip([c for c in found.checks if c.push == idea.push], STATES, strict=False):
             if row.demand_m is not None:

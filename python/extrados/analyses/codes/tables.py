@@ -109,6 +109,12 @@ class Verification(Table):
         le=1,
         source="Circ. 7/2019 [C7.3.10]",
     )
+    shape: Literal["displaced", "mode"] = key(
+        "displaced",
+        "phi of the equivalent mass: elastic displacement under the pushing forces, or the mode of greatest participating mass in "
+        "the direction, which with flexible floors may have little of it",
+        source="Circ. 7/2019 C7.3.4.2: first mode",
+    )
     spectrum: CodeSpectrum | None = key(
         None, "elastic spectrum of the concluding limit state; default that of [code], or of a `compatible` motion"
     )

@@ -55,11 +55,17 @@ def demands(context: Context, options: Verification) -> list[Action]:
     return [a for a in actions(context, options) if a.spectrum is not None]
 
 
+def confidence_factor(context: Context, options: Verification) -> float:
+    """Factor by which strengths are divided (NTC 2018 C8.5.4, nonlinear analysis: mean values over FC); 1 where the deck has no
+    action to verify against."""
+    code = code_of(context)
+    return code.factor if code.jurisdiction != "none" and demands(context, options) else 1.0
+
+
 def with_design_strengths(context: Context, options: Verification) -> Context:
-    """The context with strengths over the confidence factor (NTC 2018 C8.5.4, nonlinear analysis: mean values over FC),
-    where the deck has an action to verify against; else the same."""
-    factor = code_of(context).factor
-    if factor == 1.0 or code_of(context).jurisdiction == "none" or not demands(context, options):
+    """The context with strengths over the confidence factor, where that is not 1."""
+    factor = confidence_factor(context, options)
+    if factor == 1.0:
         return context
     context.warnings.append(
         f"Strengths are the values of the deck divided by the confidence factor {factor:.3g}, as the verification requires."
@@ -98,8 +104,11 @@ def displaced_shape(
     return shape, float(pushed[free[:, :axes]].sum() / pushed.sum())
 
 
-def verify(context: Context, options: Verification, pushes: list[Push], violated: list[str]) -> out.Verification | None:
-    """The verification of all pushes; None where no code is applied."""
+def verify(
+    context: Context, options: Verification, pushes: list[Push], violated: list[str], factor: float | None = None
+) -> out.Verification | None:
+    """The verification of all pushes; None where no code is applied. factor: by which strengths were divided, by default that of
+    the code."""
     code = code_of(context)
     if code.jurisdiction == "none":
         return None
@@ -135,7 +144,7 @@ def verify(context: Context, options: Verification, pushes: list[Push], violated
         more["nbs_percent"] = 100.0 * found
     return out.Verification(
         jurisdiction=code.jurisdiction, code=code.name, by_default=code is NATIVE, method=method,
-        confidence_factor=code.factor if given else None, curves=curves, checks=checks,
+        confidence_factor=(code.factor if factor is None else factor) if given else None, curves=curves, checks=checks,
         zeta_E=least("SLV") if code.jurisdiction == "NTC" else None, violated=violated, **more,
     )  # fmt: skip
 

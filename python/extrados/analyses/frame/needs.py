@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from extrados.analyses.codes.actions import refuse_mixed
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.frame.tables import FrameAnalysis, FrameHistory, FramePushover
 from extrados.analyses.needs import Need
@@ -13,6 +14,8 @@ def needs(context: Context, options: FrameAnalysis) -> Iterator[Need]:
     yield lambda: building.frame(options.frame)
     if isinstance(options, FrameHistory):
         yield context.refuse_motion
+    if isinstance(options, FramePushover):
+        yield lambda: refuse_mixed(context, options.verification)
     if isinstance(options, FramePushover) and options.control_level is not None:
         yield lambda: _control(context, options)
 

@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from extrados.analyses.codes.verification import confidence_factor
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.frame.modes import Mode, modes_of, rest_of
 from extrados.analyses.frame.tables import FramePushover
+from extrados.analyses.frame.verified import verify_frame
 from extrados.core.calls import interruptible
 from extrados.core.frame import STATE, STATES, Path
 from extrados.results import frame as out
@@ -81,6 +83,9 @@ def pushes_of(frame: EquivalentFrame, options: FramePushover, modes: Sequence[Mo
 def run(context: Context, options: FramePushover) -> Result:
     """All curves, their limit events, and the least of them."""
     result = Result("frame-pushover")
+    if "confidence_factor" not in options.frame.model_fields_set:
+        divided = {"confidence_factor": confidence_factor(context, options.verification)}
+        options = options.model_copy(update={"frame": options.frame.model_copy(update=divided)})
     frame = context.building.frame(options.frame)
     context.warnings += frame.remarks
     level = options.control_level or max(one.level for one in frame.masses)
@@ -109,6 +114,9 @@ def run(context: Context, options: FramePushover) -> Result:
         governing=runs[least]["name"], failed=runs[least]["failed"], piers=frame.piers,
         spandrels=len(frame.elements) - frame.piers, remarks=frame.remarks,
     )  # fmt: skip
+    verified = verify_frame(context, result, frame, rest.tangent, options, pushes, paths)
+    if verified is not None:
+        result.results = result.results.model_copy(update={"verification": verified})
     _arrays(result, frame, paths)
     interrupted = any(path.stop == "interrupted" for path in paths)
     if interrupted:

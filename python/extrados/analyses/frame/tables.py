@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from extrados import kinds
+from extrados.analyses.codes.tables import Verification
 from extrados.analyses.table import BuildingAnalysis
 from extrados.schema.quantities import Angle, Time
 from extrados.schema.table import key
@@ -67,6 +68,7 @@ class FramePushover(FrameAnalysis):
         "accidental eccentricities of the forces, over the length of the building across the direction",
         min_length=1, max_length=9, source="EN 1998-1, 4.3.2",
     )  # fmt: skip
+    verification: Verification = key(Verification(), "verification by displacement, [analysis.verification]")
     control_level: int | None = key(
         None,
         "storey whose mean displacement, weighted by the masses on its top, is followed; default the highest with masses",

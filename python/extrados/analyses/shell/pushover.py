@@ -390,6 +390,10 @@ def _verify(
         shape, through = displaced_shape(
             core_model, model.reference, model.control, model.along, model.freedoms.equation >= 0
         )
+    if options.verification.shape == "mode":
+        shape, *_ = first_mode(model, options, mass)
+        c = model.control
+        shape = shape / float((c.share * model.along[c.direction]) @ shape[c.node])
     drifts_of_piers = DRIFTS.get(code_of(context).jurisdiction)
     pushes, violated = [], []
     for curve in curves:

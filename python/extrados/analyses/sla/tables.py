@@ -372,6 +372,8 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
             raise ValueError("an incremental solution has no events: without_equilibrium and states belong to events")
         if self.verification.model_fields_set and not self.by_inertia:
             raise ValueError("verification: needs one horizontal push by masses alone, without stages")
+        if self.verification.shape == "mode":
+            raise ValueError('verification: shape = "mode" is of buildings: remove it')
         return self
 
     @property

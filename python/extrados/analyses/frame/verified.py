@@ -1,0 +1,78 @@
+"""Verification by displacement of a frame of macro-elements: all pushes, and the sliding of its storeys."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from extrados.analyses.codes.capacity_curve import CapacityCurve
+from extrados.analyses.codes.verification import Push as Verified
+from extrados.analyses.codes.verification import curve_arrays, verify
+from extrados.analyses.context import Context
+from extrados.analyses.frame.tables import FramePushover
+from extrados.analyses.sla.curve import envelope
+from extrados.core.frame import Path
+from extrados.results.model import Result
+from extrados.results.verification import Verification
+from extrados.schema.constants import GRAVITY
+from extrados.views.building import Building
+from extrados.views.frame.plan import EquivalentFrame
+
+if TYPE_CHECKING:
+    from extrados.analyses.frame.pushover import Push
+
+
+def verify_frame(
+    context: Context, result: Result, frame: EquivalentFrame, tangent: np.ndarray, options: FramePushover,
+    pushes: Sequence["Push"], paths: Sequence[Path],
+) -> Verification | None:  # fmt: skip
+    """Displacement demand and capacity of all pushes. tangent: stiffness (n, n) under the weight [N/m]."""
+    mass = frame.mass
+    total = sum(one.mass for one in frame.masses)
+    rows, violated = [], []
+    for push, path, row in zip(pushes, paths, result.results.runs, strict=True):
+        if not path.multiple.max() > 0.0:
+            continue
+        if options.verification.shape == "mode":
+            shape = push.mode.shape
+        else:
+            shape = np.linalg.solve(0.5 * (tangent + tangent.T), push.forces)
+        shape = shape / float(push.control @ shape)
+        own, square = float(shape @ mass @ frame.unit(push.way)), float(shape @ mass @ shape)
+        limits = {
+            name: min(reached)
+            for name, key in (("drift", "all_at_limit_m"), ("strength", "all_at_strength_m"))
+            if (reached := [s[key] for s in row.storeys if s[key] is not None])
+        }
+        d, p = envelope(path.control, path.multiple, float(path.control[0]))
+        # one mass and one displacement that have the same sums of m phi and of m phi^2
+        curve = CapacityCurve(d - d[0], p, np.array([own**2 / square]), np.array([square / own]), limits)
+        rows.append(Verified(push.name, curve, total))
+        limit, storey = sliding_limit(frame, context.building, push, options.frame.confidence_factor)
+        if path.multiple.max() > limit:
+            violated.append(
+                f"Push {push.name}: by Coulomb's law storey {storey} slides at a base shear of {limit / 1e3:.3g} kN, below the "
+                f"{path.multiple.max() / 1e3:.3g} kN of the curve."
+            )
+    result.arrays |= curve_arrays(context, options.verification, rows)
+    return verify(context, options.verification, rows, violated, options.frame.confidence_factor)
+
+
+def sliding_limit(frame: EquivalentFrame, building: Building, push: "Push", factor: float = 1.0) -> tuple[float, int]:
+    """Least base shear [N] under which a storey slides on its base, friction times the weight above and cohesion times the area of
+    the piers, and that storey; infinite where friction excludes sliding. factor: divides the cohesion."""
+    friction, cohesion = building.joints.coefficient, building.joints.cohesion / factor
+    if friction is None:
+        return np.inf, 0
+    unit = frame.unit(push.way)
+    found = []
+    for storey in range(1, len(frame.plan.storeys) + 1):
+        above = [one.mass for one in frame.masses if one.level >= storey]
+        weight = frame.total_weight if storey == 1 else GRAVITY * sum(above)
+        area = sum(
+            (s.masonry[1] - s.masonry[0]) * s.thickness for s in frame.strips if s.kind == "pier" and s.storey == storey
+        )
+        share = sum(float(unit[n] * push.forces[n]) for (_, level), n in frame.along.items() if level >= storey)
+        if share > 0.0:
+            found.append(((friction * weight + cohesion * area) / share, storey))
+    return min(found, default=(np.inf, 0))
