@@ -21,6 +21,7 @@ FIGURES: dict[str, tuple[str, str, str, tuple[int, ...], int]] = {
     "strip-house": ("building/two-rooms", "pushover", "pushover-space", (1, 2), 560),
     "arch": ("arch/readme", "tilt", "tilt-collapse", (0, 1), 900),
     "house": ("building/two-rooms", "pushover", "pushover-space", (), 900),
+    "verification": ("building/verification", "pushover", "pushover-verification", (), 900),
     "bridge": ("bridge/road", "moving-load", "", (), 900),
     "corner": ("solid/corner", "tilt", "", (), 800),
     "survey": ("limit/church", "tilt", "tilt-collapse", (), 900),
