@@ -6,7 +6,7 @@ import re
 QUANTITIES: dict[str, tuple[str, ...]] = {
     "size of a strengthening": (r"^strengthen\S*\.",),
     "start of sliding": (r"hand_over\.time_s$", r"\.handed_over$"),
-    "code check": (r"(?:local-mechanism|code-checks)\S*\.", r"checks\."),
+    "code check": (r"(?:local-mechanism|code-checks)\S*\.", r"checks(?:\[\d+\])?\.", r"verification\."),
     "ground motion and spectrum": (r"^motion", r"^shake-table"),
     "displacement": (r"dowel", r"slip_m$", r"displacement_m$", r"permanent_elongation"),
     "tail of a load curve": (r"measured\.tail_ratios", r"\.last_load_N$"),
