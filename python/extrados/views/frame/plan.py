@@ -209,13 +209,13 @@ class _Maker:
             groups = _groups([p[:2] for p in below], [p[:2] for p in above])
             if level and any(len(g) > 2 for g in groups):
                 self.remarks.append(
-                    f"Wall '{wall.name}', level {level}: openings do not stand above each other; piers that overlap share one rigid node."
+                    f"Wall '{wall.name}', level {level}: piers above and below do not match; those that overlap share one rigid node."
                 )
             for group in groups:
                 if level and not any(side == 0 for side, _ in group):
-                    s = [above[k][:2] for _, k in group]
+                    ends = [above[k][:2] for _, k in group]
                     self.remarks.append(
-                        f"Wall '{wall.name}', level {level}: the pier at {s[0][0]:.3g} to {s[0][1]:.3g} m stands above an opening; "
+                        f"Wall '{wall.name}', level {level}: the pier at {ends[0][0]:.3g} to {ends[0][1]:.3g} m stands above an opening; "
                         "only spandrels carry it."
                     )
                 ends = [(below, above)[side][k][:2] for side, k in group]
