@@ -61,10 +61,11 @@ module frame_element
 contains
 
    !> Forces of an element on its freedoms, and their tangent, for displacements of these
-   pure subroutine element_forces(element, past, d, state, force, tangent, status)
+   pure subroutine element_forces(element, past, d, lagged, state, force, tangent, status)
       type(macro_element), intent(in) :: element
       type(element_state), intent(in) :: past
       real(wp), intent(in) :: d(6)                 !! u, w, rotation of both nodes
+      logical, intent(in) :: lagged                !! shear strength by the forces of `past`
       type(element_state), intent(inout) :: state  !! first guess of strains in; what these displacements make of it out
       real(wp), intent(out) :: force(6)
       real(wp), intent(out) :: tangent(6, 6)
@@ -110,7 +111,7 @@ contains
       if (state%state >= frame_state_failed_flexure) then
          call failed_forces(element, v, state, kb, status)
       else if (element%pier) then
-         call pier_forces(element, past, v, state, kb, status)
+         call pier_forces(element, past, v, lagged, state, kb, status)
       else
          call beam_forces(element, past, v, state, kb)
          status = status_ok
@@ -169,10 +170,11 @@ contains
    !>
    !> Strains are eliminated: F dq + a ds = what is missing of the deformation, F the flexibility. The strains minimise
    !> a convex energy, so a step goes back until it no longer overshoots.
-   pure subroutine pier_forces(element, past, v, state, stiffness, status)
+   pure subroutine pier_forces(element, past, v, lagged, state, stiffness, status)
       type(macro_element), intent(in) :: element
       type(element_state), intent(in) :: past
       real(wp), intent(in) :: v(3)
+      logical, intent(in) :: lagged
       type(element_state), intent(inout) :: state
       real(wp), intent(out) :: stiffness(3, 3)
       integer(c_int), intent(out) :: status
@@ -227,7 +229,12 @@ contains
             resistance = huge(1.0_wp)
             if (element%shear%kind /= frame_shear_none) then
                end = merge(2, 3, abs(q(2)) >= abs(q(3)))
-               call shear_resistance(element%shear, q(1), abs(q(end)), resistance, by)
+               if (lagged) then
+                  call shear_resistance(element%shear, past%force(1), maxval(abs(past%force(2:3))), resistance, by)
+                  by = 0.0_wp
+               else
+                  call shear_resistance(element%shear, q(1), abs(q(end)), resistance, by)
+               end if
                call back_stress(element%shear, state%slip, past%damage, back, by_slip)
                resisted = dot_product(a, q) - back
                if (slides .and. (state%slip - past%slip) * sense < 0.0_wp) then   ! it does not slide that way
@@ -410,7 +417,9 @@ contains
       status = status_ok
       stiffness = 0.0_wp
       axial = element%axial_stiffness / element%length
-      if (element%pier) axial = element%section%young * element%section%length * element%section%thickness / element%length
+      associate (section => element%section)
+         if (element%pier) axial = section%young * section%length * section%thickness / element%length
+      end associate
       normal = state%pressed(1) + axial * (v(1) - state%pressed(2))
       if (element%pier .and. normal < 0.0_wp) then
          axial = element%section%residual * axial
