@@ -83,7 +83,8 @@ class PointMass:
 
 @dataclass
 class EquivalentFrame:
-    """`strips` goes with `elements`. `remarks` states what is neglected."""
+    """`strips` goes with `elements`. inertia (n): masses of the nodes that move up and down, and turn; `remarks` states what is
+    neglected."""
 
     plan: Plan
     nodes: list[Node]
@@ -93,6 +94,7 @@ class EquivalentFrame:
     linear: np.ndarray
     weight: np.ndarray
     masses: list[PointMass]
+    inertia: np.ndarray
     total_weight: float
     remarks: list[str] = field(default_factory=list)
 
@@ -108,7 +110,7 @@ class EquivalentFrame:
 
     @property
     def mass(self) -> np.ndarray:
-        """Masses (n, n) [kg] by the freedoms."""
+        """Masses (n, n) [kg] that move horizontally, by the freedoms."""
         total = np.zeros_like(self.linear)
         for one in self.masses:
             total += one.mass * one.rows.T @ one.rows
@@ -126,7 +128,7 @@ class EquivalentFrame:
 
     def core(self) -> Frame:
         """The frame in the core."""
-        return Frame(self.elements, self.links, self.linear, self.weight, self.mass)
+        return Frame(self.elements, self.links, self.linear, self.weight, self.mass + np.diag(self.inertia))
 
     def control(self, direction: np.ndarray, level: int) -> np.ndarray:
         """Row (n) that gives the displacement along a direction of the masses on a level, their mean."""
@@ -170,6 +172,7 @@ class _Maker:
         n = self._number()
         self.linear, self.weight = np.zeros((n, n)), np.zeros(n)
         self.masses: list[PointMass] = []
+        self.inertia = np.zeros(n)
         self.total = 0.0
         for strip in self.strips:
             self._weigh(strip)
@@ -189,7 +192,7 @@ class _Maker:
             self._ground(plan.foundation_stiffness)
         elements = [self._element(strip) for strip in self.strips]
         return EquivalentFrame(
-            plan, self.nodes, self.strips, elements, [*self._corners(), *self._rods()], self.linear, self.weight, self.masses,
+            plan, self.nodes, self.strips, elements, [*self._corners(), *self._rods()], self.linear, self.weight, self.masses, self.inertia,
             self.total, self.remarks, self.along,
         )  # fmt: skip
 
@@ -345,6 +348,9 @@ class _Maker:
             if node.freedoms[0] >= 0:
                 self.weight[node.freedoms[0]] -= share
                 self.weight[node.freedoms[1]] -= share * (s - node.s)
+                if massive:
+                    self.inertia[node.freedoms[0]] += share / GRAVITY
+                    self.inertia[node.freedoms[1]] += share / GRAVITY * ((s - node.s) ** 2 + (b - a) ** 2 / 12.0)
             if level and massive:
                 x, y = np.asarray(self.plan.walls[w].start) + s * self.plan.walls[w].direction
                 self.masses.append(
