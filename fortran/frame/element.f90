@@ -27,7 +27,7 @@ module frame_element
       real(wp) :: shear_stiffness = 0.0_wp   !! force by relative displacement of the ends [N/m]
       integer :: sections = most_sections    !! 3 or 5
       real(wp) :: drift(2) = huge(1.0_wp)    !! limits: in flexure, in shear
-      real(wp) :: kept = 0.0_wp              !! share of the moments that is left beyond a limit
+      real(wp) :: kept = 0.0_wp              !! beam: share of its strength that is left beyond a limit
       logical :: second_order = .true.       !! P-Delta
       real(wp) :: inertia_stiffness = 0.0_wp !! beam: E I [N m^2]
       real(wp) :: axial_stiffness = 0.0_wp   !! beam: E A [N]
@@ -44,9 +44,9 @@ module frame_element
       real(wp) :: hinge(2) = 0.0_wp          !! plastic rotations of a beam
       type(crushing) :: crushed(most_sections)
       integer(c_int) :: state = frame_state_sound
-      real(wp) :: fading(2) = 0.0_wp         !! moments when it failed [N m]
-      real(wp) :: pressed(2) = 0.0_wp        !! N and shortening when it failed
-      real(wp) :: left = 1.0_wp              !! share of `fading` that is still there
+      !> As it failed: N, shortening, mean of the end moments, half their difference, difference of the rotations
+      real(wp) :: failed(5) = 0.0_wp
+      real(wp) :: left = 1.0_wp              !! share of the strength in shear that is still there
    end type element_state
 
    real(wp), parameter :: place3(3) = [0.0_wp, 0.5_wp, 1.0_wp]
@@ -61,10 +61,11 @@ module frame_element
 contains
 
    !> Forces of an element on its freedoms, and their tangent, for displacements of these
-   pure subroutine element_forces(element, past, d, state, force, tangent, status)
+   pure subroutine element_forces(element, past, d, lagged, state, force, tangent, status)
       type(macro_element), intent(in) :: element
       type(element_state), intent(in) :: past
       real(wp), intent(in) :: d(6)                 !! u, w, rotation of both nodes
+      logical, intent(in) :: lagged                !! shear strength by the forces of `past`
       type(element_state), intent(inout) :: state  !! first guess of strains in; what these displacements make of it out
       real(wp), intent(out) :: force(6)
       real(wp), intent(out) :: tangent(6, 6)
@@ -107,10 +108,11 @@ contains
             b(1, [1, 4]) = [across, -across] / h
          end if
       end associate
-      if (state%state >= frame_state_failed_flexure) then
-         call failed_forces(element, v, state, kb, status)
+      if (element%pier .and. state%state >= frame_state_failed_flexure) then
+         call failed_forces(element, v, state, kb)
+         status = status_ok
       else if (element%pier) then
-         call pier_forces(element, past, v, state, kb, status)
+         call pier_forces(element, past, v, lagged, state, kb, status)
       else
          call beam_forces(element, past, v, state, kb)
          status = status_ok
@@ -169,10 +171,11 @@ contains
    !>
    !> Strains are eliminated: F dq + a ds = what is missing of the deformation, F the flexibility. The strains minimise
    !> a convex energy, so a step goes back until it no longer overshoots.
-   pure subroutine pier_forces(element, past, v, state, stiffness, status)
+   pure subroutine pier_forces(element, past, v, lagged, state, stiffness, status)
       type(macro_element), intent(in) :: element
       type(element_state), intent(in) :: past
       real(wp), intent(in) :: v(3)
+      logical, intent(in) :: lagged
       type(element_state), intent(inout) :: state
       real(wp), intent(out) :: stiffness(3, 3)
       integer(c_int), intent(out) :: status
@@ -227,7 +230,12 @@ contains
             resistance = huge(1.0_wp)
             if (element%shear%kind /= frame_shear_none) then
                end = merge(2, 3, abs(q(2)) >= abs(q(3)))
-               call shear_resistance(element%shear, q(1), abs(q(end)), resistance, by)
+               if (lagged) then
+                  call shear_resistance(element%shear, past%force(1), maxval(abs(past%force(2:3))), resistance, by)
+                  by = 0.0_wp
+               else
+                  call shear_resistance(element%shear, q(1), abs(q(end)), resistance, by)
+               end if
                call back_stress(element%shear, state%slip, past%damage, back, by_slip)
                resisted = dot_product(a, q) - back
                if (slides .and. (state%slip - past%slip) * sense < 0.0_wp) then   ! it does not slide that way
@@ -362,9 +370,10 @@ contains
       real(wp), intent(in) :: v(3)
       type(element_state), intent(inout) :: state
       real(wp), intent(out) :: stiffness(3, 3)
-      real(wp) :: flexible(2, 2), k(2, 2), m(2), trial(2), over
+      real(wp) :: flexible(2, 2), k(2, 2), m(2), trial(2), over, strength
       logical :: yields(2)
       integer :: i, j
+      strength = past%left * element%moment
       associate (h => element%length, stiff => element%inertia_stiffness)
          flexible = h / (6.0_wp * stiff) * reshape([2.0_wp, -1.0_wp, -1.0_wp, 2.0_wp], [2, 2]) &
             + 1.0_wp / (element%shear_stiffness * h**2)
@@ -373,15 +382,15 @@ contains
          trial = matmul(k, v(2:3) - past%hinge)
          m = trial
          yields = .false.
-         if (any(abs(trial) > element%moment)) then
+         if (any(abs(trial) > strength)) then
             i = merge(1, 2, abs(trial(1)) >= abs(trial(2)))
             j = 3 - i
             yields(i) = .true.
-            m(i) = sign(element%moment, trial(i))
+            m(i) = sign(strength, trial(i))
             m(j) = trial(j) + k(j, i) / k(i, i) * (m(i) - trial(i))
-            if (abs(m(j)) > element%moment) then
+            if (abs(m(j)) > strength) then
                yields(j) = .true.
-               m(j) = sign(element%moment, m(j))
+               m(j) = sign(strength, m(j))
             end if
          end if
          state%hinge = v(2:3) - matmul(flexible, m)
@@ -399,25 +408,38 @@ contains
       end associate
    end subroutine beam_forces
 
-   !> Forces beyond a drift limit: pressure is still carried; the moments fade to what is kept of them
-   pure subroutine failed_forces(element, v, state, stiffness, status)
+   !> Forces of a pier beyond a drift limit: the shear force fades, pressure is still carried.
+   !>
+   !> A moment that is constant along the pier needs no shear: it stays elastic until N acts near the edge.
+   pure subroutine failed_forces(element, v, state, stiffness)
       type(macro_element), intent(in) :: element
       real(wp), intent(in) :: v(3)
       type(element_state), intent(inout) :: state
       real(wp), intent(out) :: stiffness(3, 3)
-      integer(c_int), intent(out) :: status
-      real(wp) :: axial, normal
-      status = status_ok
+      real(wp), parameter :: edge = 0.45_wp   !! eccentricity that N can have, over the length of the section
+      real(wp) :: axial, bending, normal, moment, arm
       stiffness = 0.0_wp
-      axial = element%axial_stiffness / element%length
-      if (element%pier) axial = element%section%young * element%section%length * element%section%thickness / element%length
-      normal = state%pressed(1) + axial * (v(1) - state%pressed(2))
-      if (element%pier .and. normal < 0.0_wp) then
+      associate (section => element%section)
+         axial = section%young * section%length * section%thickness / element%length
+         bending = axial * section%length**2 / 12.0_wp
+         arm = edge * section%length
+      end associate
+      normal = state%failed(1) + axial * (v(1) - state%failed(2))
+      if (normal < 0.0_wp) then
          axial = element%section%residual * axial
          normal = element%section%residual * normal
       end if
       stiffness(1, 1) = axial
-      state%force = [normal, state%left * state%fading]
+      moment = state%failed(4) + bending * (v(3) - v(2) - state%failed(5))
+      if (abs(moment) <= arm * max(normal, 0.0_wp)) then
+         stiffness(2:3, 2) = [bending, -bending]
+         stiffness(2:3, 3) = [-bending, bending]
+      else
+         arm = sign(arm, moment)
+         moment = arm * max(normal, 0.0_wp)
+         if (normal > 0.0_wp) stiffness(2:3, 1) = axial * [-arm, arm]
+      end if
+      state%force = [normal, state%left * state%failed(3) - moment, state%left * state%failed(3) + moment]
    end subroutine failed_forces
 
    !> Keep what a step in equilibrium has made of an element
@@ -449,8 +471,9 @@ contains
          return
       end if
       failed = .true.
-      state%fading = state%force(2:3)
-      state%pressed = [state%force(1), state%deformation(1)]
+      associate (q => state%force, v => state%deformation)
+         state%failed = [q(1), v(1), 0.5_wp * (q(2) + q(3)), 0.5_wp * (q(3) - q(2)), v(3) - v(2)]
+      end associate
       state%left = 1.0_wp
    end subroutine element_failed
 

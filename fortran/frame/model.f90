@@ -32,11 +32,12 @@ module frame_model
       real(wp), allocatable :: tangent(:, :)      !! (n, n)
       type(element_state), allocatable :: element(:)
       real(wp), allocatable :: plastic(:)         !! of links [m]
+      logical :: lagged = .false.                 !! shear strengths by the forces of the last equilibrium
    end type frame_state
 
    !> Forces out of balance, over the greatest sum of constant loads
    real(wp), parameter :: tolerance = 1.0e-7_wp
-   integer, parameter :: most_iterations = 30
+   integer, parameter :: most_iterations = 40, patience = 8
 
    interface
       subroutine dgesv(n, nrhs, a, lda, ipiv, b, ldb, info)
@@ -92,10 +93,12 @@ contains
             do i = 1, 6
                if (freedom(i) > 0) d(i) = now%d(freedom(i))
             end do
-            call element_forces(model%element(e), past%element(e), d, now%element(e), force, tangent, status)
+            call element_forces(model%element(e), past%element(e), d, now%lagged, now%element(e), force, tangent, &
+               status)
             if (status /= status_ok) then   ! again, from its last equilibrium
                now%element(e) = past%element(e)
-               call element_forces(model%element(e), past%element(e), d, now%element(e), force, tangent, status)
+               call element_forces(model%element(e), past%element(e), d, now%lagged, now%element(e), force, tangent, &
+                  status)
                if (status /= status_ok) return
             end if
             do j = 1, 6
@@ -156,7 +159,7 @@ contains
       type(frame_state), intent(inout) :: now    !! a first guess in
       real(wp), intent(inout) :: multiple
       integer(c_int), intent(out) :: status
-      real(wp) :: right(model%n, 2), scale, more
+      real(wp) :: right(model%n, 2), scale, more, part
       integer :: iteration, columns
       columns = merge(2, 1, controlled)
       do iteration = 1, most_iterations
@@ -172,10 +175,13 @@ contains
          if (status /= status_ok) return
          if (controlled) then
             more = (value - dot_product(control, now%d + right(:, 1))) / dot_product(control, right(:, 2))
-            multiple = multiple + more
             right(:, 1) = right(:, 1) + more * right(:, 2)
          end if
-         now%d(:) = now%d + right(:, 1)
+         ! Iterations that go to and fro between sliding and sticking settle in shorter steps
+         part = 1.0_wp
+         if (iteration > patience) part = merge(0.5_wp, 0.8_wp, mod(iteration, 2) == 0)
+         if (controlled) multiple = multiple + part * more
+         now%d(:) = now%d + part * right(:, 1)
       end do
       status = status_too_many_steps
    end subroutine equilibrate

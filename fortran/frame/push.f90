@@ -21,6 +21,9 @@ module frame_push
       integer(c_int), allocatable :: state(:, :)      !! (elements, most) of the list frame_state
    end type push_path
 
+   !> Step over the greatest in which shear strengths follow the forces of the last equilibrium. It is taken where no
+   !> smaller step converges: friction makes the problem unsymmetric, and it may have no solution nearby.
+   real(wp), parameter :: lagged_step = 0.1_wp
    !> The least step, over the greatest; parts in which moments of failed elements fade, at most
    real(wp), parameter :: least_step = 1.0e-4_wp
    integer, parameter :: most_parts = 256
@@ -122,9 +125,14 @@ contains
             status = status_ok
             step = 0.5_wp * step
             ended = frame_stop_step
-            if (step < least_step * most) return
+            if (step < least_step * most) then
+               if (now%lagged) return
+               now%lagged = .true.
+               step = lagged_step * most
+            end if
             cycle
          end if
+         now%lagged = .false.
          moved = moved + step
          multiple = trial
          call commit(model, now, failed)
@@ -179,7 +187,11 @@ contains
          call equilibrate(model, 1.0_wp, from, pattern, control, start + moved, .true., now, trial, status)
          if (status /= status_ok) then
             part = 0.5_wp * part
-            if (part < 1.0e-3_wp) return
+            if (part < 1.0e-3_wp) then
+               if (now%lagged) return
+               now%lagged = .true.
+               part = 0.05_wp
+            end if
             cycle
          end if
          multiple = trial
@@ -255,12 +267,16 @@ contains
                ended = frame_stop_step
                pieces = 2 * pieces
                piece = 2 * piece
-               if (pieces > 2**halvings) return
+               if (pieces > 2**halvings) then
+                  if (past%lagged) return
+                  past%lagged = .true.
+               end if
                cycle
             end if
             piece = piece + 1
             call commit(model, past, failed)
          end do
+         past%lagged = .false.
          call fade(model, past, time_step)
          call note(path, past, 0.0_wp, 0.0_wp)
          shear(k) = dot_product(unit, past%force)
@@ -298,6 +314,7 @@ contains
       call frame_state_new(model, now, found)
       status = status_out_of_memory
       if (found /= 0) return
+      now%lagged = past%lagged
       load = matmul(model%mass, unit)
       load = model%weight - ground * load
       scale = 1.0e-6_wp * sum(abs(model%weight))

@@ -34,7 +34,9 @@ def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
                     color=PATTERNS.get(row.pattern, style.EDGE), linewidth=1.3 if main else 0.6, label=label,
                 )  # fmt: skip
                 if row.ultimate_displacement_m is not None and main:
-                    at = np.interp(row.ultimate_displacement_m, row.control_displacement_m, row.base_shear_N)
+                    moved, shear = np.array(row.control_displacement_m), np.array(row.base_shear_N)
+                    before = shear[moved < row.ultimate_displacement_m]
+                    at = before[-1] if len(before) else shear[0]
                     ax.plot(
                         1e3 * sign * row.ultimate_displacement_m,
                         1e-3 * sign * at,

@@ -83,7 +83,8 @@ class PointMass:
 
 @dataclass
 class EquivalentFrame:
-    """`strips` goes with `elements`. `remarks` states what is neglected."""
+    """`strips` goes with `elements`. inertia (n): masses of the nodes that move up and down, and turn; `remarks` states what is
+    neglected."""
 
     plan: Plan
     nodes: list[Node]
@@ -93,6 +94,7 @@ class EquivalentFrame:
     linear: np.ndarray
     weight: np.ndarray
     masses: list[PointMass]
+    inertia: np.ndarray
     total_weight: float
     remarks: list[str] = field(default_factory=list)
 
@@ -108,7 +110,7 @@ class EquivalentFrame:
 
     @property
     def mass(self) -> np.ndarray:
-        """Masses (n, n) [kg] by the freedoms."""
+        """Masses (n, n) [kg] that move horizontally, by the freedoms."""
         total = np.zeros_like(self.linear)
         for one in self.masses:
             total += one.mass * one.rows.T @ one.rows
@@ -126,7 +128,7 @@ class EquivalentFrame:
 
     def core(self) -> Frame:
         """The frame in the core."""
-        return Frame(self.elements, self.links, self.linear, self.weight, self.mass)
+        return Frame(self.elements, self.links, self.linear, self.weight, self.mass + np.diag(self.inertia))
 
     def control(self, direction: np.ndarray, level: int) -> np.ndarray:
         """Row (n) that gives the displacement along a direction of the masses on a level, their mean."""
@@ -170,6 +172,7 @@ class _Maker:
         n = self._number()
         self.linear, self.weight = np.zeros((n, n)), np.zeros(n)
         self.masses: list[PointMass] = []
+        self.inertia = np.zeros(n)
         self.total = 0.0
         for strip in self.strips:
             self._weigh(strip)
@@ -189,7 +192,7 @@ class _Maker:
             self._ground(plan.foundation_stiffness)
         elements = [self._element(strip) for strip in self.strips]
         return EquivalentFrame(
-            plan, self.nodes, self.strips, elements, [*self._corners(), *self._rods()], self.linear, self.weight, self.masses,
+            plan, self.nodes, self.strips, elements, [*self._corners(), *self._rods()], self.linear, self.weight, self.masses, self.inertia,
             self.total, self.remarks, self.along,
         )  # fmt: skip
 
@@ -209,13 +212,13 @@ class _Maker:
             groups = _groups([p[:2] for p in below], [p[:2] for p in above])
             if level and any(len(g) > 2 for g in groups):
                 self.remarks.append(
-                    f"Wall '{wall.name}', level {level}: openings do not stand above each other; piers that overlap share one rigid node."
+                    f"Wall '{wall.name}', level {level}: piers above and below do not match; those that overlap share one rigid node."
                 )
             for group in groups:
                 if level and not any(side == 0 for side, _ in group):
-                    s = [above[k][:2] for _, k in group]
+                    ends = [above[k][:2] for _, k in group]
                     self.remarks.append(
-                        f"Wall '{wall.name}', level {level}: the pier at {s[0][0]:.3g} to {s[0][1]:.3g} m stands above an opening; "
+                        f"Wall '{wall.name}', level {level}: the pier at {ends[0][0]:.3g} to {ends[0][1]:.3g} m stands above an opening; "
                         "only spandrels carry it."
                     )
                 ends = [(below, above)[side][k][:2] for side, k in group]
@@ -345,6 +348,9 @@ class _Maker:
             if node.freedoms[0] >= 0:
                 self.weight[node.freedoms[0]] -= share
                 self.weight[node.freedoms[1]] -= share * (s - node.s)
+                if massive:
+                    self.inertia[node.freedoms[0]] += share / GRAVITY
+                    self.inertia[node.freedoms[1]] += share / GRAVITY * ((s - node.s) ** 2 + (b - a) ** 2 / 12.0)
             if level and massive:
                 x, y = np.asarray(self.plan.walls[w].start) + s * self.plan.walls[w].direction
                 self.masses.append(
