@@ -29,7 +29,7 @@ def verify_frame(
     """Displacement demand and capacity of all pushes. tangent: stiffness (n, n) under the weight [N/m]."""
     mass = frame.mass
     total = sum(one.mass for one in frame.masses)
-    rows, violated = [], []
+    rows, violated, sliding = [], [], []
     for push, path, row in zip(pushes, paths, result.results.runs, strict=True):
         if not path.multiple.max() > 0.0:
             continue
@@ -50,10 +50,13 @@ def verify_frame(
         rows.append(Verified(push.name, curve, total))
         limit, storey = sliding_limit(frame, context.building, push, options.frame.confidence_factor)
         if path.multiple.max() > limit:
-            violated.append(
-                f"Push {push.name}: by Coulomb's law storey {storey} slides at a base shear of {limit / 1e3:.3g} kN, below the "
-                f"{path.multiple.max() / 1e3:.3g} kN of the curve."
-            )
+            sliding.append((limit / float(path.multiple.max()), limit, storey, push.name, float(path.multiple.max())))
+    if sliding:
+        _, limit, storey, name, peak = min(sliding)
+        violated.append(
+            f"{len(sliding)} of {len(pushes)} curves exceed the sliding of a storey by Coulomb's law, most {name}: storey {storey} slides at a "
+            f"base shear of {limit / 1e3:.3g} kN, below the {peak / 1e3:.3g} kN of the curve."
+        )
     result.arrays |= curve_arrays(context, options.verification, rows)
     return verify(context, options.verification, rows, violated, options.frame.confidence_factor)
 
