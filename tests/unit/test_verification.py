@@ -254,3 +254,19 @@ def test_sliding_of_a_storey_by_hand():
     limit = 0.1 * found.weight_N / 1e3
     assert f"{limit:.3g} kN" in found.verification.violated[0]
     assert run.analysis("frame-pushover")["verdict"]["outcome"] in ("open", "collapses")
+
+
+def test_walls_out_of_plane_are_those_of_the_local_mechanism(frame):
+    """The same check as an analysis of its own, with the period of the frame."""
+    found = frame["frame-pushover"].out_of_plane
+    alone = framed(code={})
+    alone["analysis"] = [
+        {"kind": "local-mechanism", "mechanism": "building", "building_period": found.building_period_s}
+    ]
+    verdict = extrados.run(alone, threads=1).analysis("local-mechanism")["verdict"]
+    assert (found.factor, found.outcome) == (verdict["ratio"], verdict["outcome"])
+    assert found.building_period_s == pytest.approx(
+        max(m.period_s for m in frame["frame-modes"].modes if m.mass_ratio_x > 0.5), rel=1e-6
+    )
+    violated = any("out of plane" in text for text in frame["frame-pushover"].verification.violated)
+    assert violated == (found.outcome == "collapses")

@@ -3,7 +3,7 @@
 from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
-from extrados.results.verdict import Demand, KindResults, Verdict, capacity_alone, judge
+from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, capacity_alone, judge
 from extrados.results.verification import Verification
 
 
@@ -77,6 +77,15 @@ class FramePush(ResultModel):
     failed: list[FailedElement] = fact("elements beyond their drift limits, in order")
 
 
+class OutOfPlane(ResultModel):
+    """The wall of least margin out of its plane, by local-mechanism."""
+
+    factor: float | None = fact("capacity over demand of the check that governs; null where none does")
+    outcome: Outcome = fact("verdict: stands, collapses, open or not-applicable")
+    building_period_s: float = fact("period of the frame, for the floor spectrum", "s")
+    statement: str = fact("verdict in words")
+
+
 class FramePushover(KindResults):
     """frame-pushover: a building as a frame of macro-elements under growing horizontal forces."""
 
@@ -92,6 +101,7 @@ class FramePushover(KindResults):
     piers: int = fact("piers")
     spandrels: int = fact("spandrels")
     remarks: list[str] = fact("what the frame neglects of the building")
+    out_of_plane: OutOfPlane = maybe("check of the walls out of their planes, where there is a seismic action")
     verification: Verification = maybe("verification by displacement: all runs at the limit states of the code")
 
     def judged(self, demand: Demand) -> Verdict:

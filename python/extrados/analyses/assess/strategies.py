@@ -185,8 +185,9 @@ def _frame(asked: Asked) -> Choice:
         raise LeftOut(
             "piers need a shear strength, [material] tensile_strength or [joints] cohesion, which the deck lacks"
         )
+    # walls out of their planes are a strategy of their own
     return Choice(
-        _action(asked),
+        {"out_of_plane": False, **_action(asked)},
         "both directions and senses, forces by masses and by masses times height, eccentricity 0 and 5 %",
     )
 

@@ -69,6 +69,11 @@ class FramePushover(FrameAnalysis):
         min_length=1, max_length=9, source="EN 1998-1, 4.3.2",
     )  # fmt: skip
     verification: Verification = key(Verification(), "verification by displacement, [analysis.verification]")
+    out_of_plane: bool = key(
+        True,
+        "where there is a seismic action, check every wall above the foot of each storey out of its plane by `local-mechanism`, with the "
+        "period of the frame for the floor spectrum",
+    )
     control_level: int | None = key(
         None,
         "storey whose mean displacement, weighted by the masses on its top, is followed; default the highest with masses",

@@ -1,17 +1,22 @@
 """Verification by displacement of a frame of macro-elements: all pushes, and the sliding of its storeys."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from extrados.analyses.codes.capacity_curve import CapacityCurve
+from extrados.analyses.codes.local_mechanism import run as run_local_mechanism
+from extrados.analyses.codes.tables import LocalMechanism
 from extrados.analyses.codes.verification import Push as Verified
-from extrados.analyses.codes.verification import curve_arrays, verify
+from extrados.analyses.codes.verification import curve_arrays, demands, verify
 from extrados.analyses.context import Context
 from extrados.analyses.frame.tables import FramePushover
 from extrados.analyses.sla.curve import envelope
 from extrados.core.frame import Path
+from extrados.results.codes import LocalMechanism as Found
+from extrados.results.frame import OutOfPlane
 from extrados.results.model import Result
 from extrados.results.verification import Verification
 from extrados.schema.constants import GRAVITY
@@ -57,8 +62,34 @@ def verify_frame(
             f"{len(sliding)} of {len(pushes)} curves exceed the sliding of a storey by Coulomb's law, most {name}: storey {storey} slides at a "
             f"base shear of {limit / 1e3:.3g} kN, below the {peak / 1e3:.3g} kN of the curve."
         )
+    if options.out_of_plane and demands(context, options.verification):
+        walls = out_of_plane(context, options, max(1.0 / push.mode.frequency for push in pushes))
+        result.results = result.results.model_copy(update={"out_of_plane": walls})
+        if walls.outcome in ("collapses", "cannot-stand"):
+            violated.append(f"A wall does not satisfy its check out of plane. {walls.statement}")
     result.arrays |= curve_arrays(context, options.verification, rows)
     return verify(context, options.verification, rows, violated, options.frame.confidence_factor)
+
+
+def out_of_plane(context: Context, options: FramePushover, period: float) -> OutOfPlane:
+    """Every wall above the foot of each storey as a local mechanism (C8.7.1.2), with the floor spectrum of a period [s]."""
+    given = options.verification
+    checks = LocalMechanism(
+        kind="local-mechanism", mechanism="building", spectrum=given.spectrum, motion_spectrum=given.motion_spectrum,
+        building_period=period,
+    )  # fmt: skip
+    found = run_local_mechanism(replace(context, warnings=[]), checks).results
+    verdict = found.overall() if isinstance(found, Found) else None
+    wall = (
+        f"Wall {found.walls[0].wall}, storey {found.walls[0].storey}: "
+        if isinstance(found, Found) and found.walls
+        else ""
+    )
+    statement = f"{wall}{verdict.statement}" if verdict is not None else found.statement()
+    return OutOfPlane(
+        factor=None if verdict is None else verdict.ratio, outcome="not-applicable" if verdict is None else verdict.outcome,
+        building_period_s=period, statement=statement,
+    )  # fmt: skip
 
 
 def sliding_limit(frame: EquivalentFrame, building: Building, push: "Push", factor: float = 1.0) -> tuple[float, int]:
