@@ -270,3 +270,23 @@ def test_walls_out_of_plane_are_those_of_the_local_mechanism(frame):
     )
     violated = any("out of plane" in text for text in frame["frame-pushover"].verification.violated)
     assert violated == (found.outcome == "collapses")
+
+
+def test_the_limit_state_of_operation_is_two_thirds_of_that_of_damage():
+    """SLO has a return period of 30 years (V_R 50 years, 81 %), and no check of local mechanisms."""
+    code = {
+        "limit_states": ["SLO", "SLD"], "accelerations": ["0.04 g", "0.05 g"], "amplifications": [2.4, 2.4], "corner_periods": [0.27, 0.28],
+    }  # fmt: skip
+    run = extrados.run(framed(code=code), threads=1)
+    for curve in run["frame-pushover"].verification.curves:
+        slo, sld = (
+            next(c for c in run["frame-pushover"].verification.checks if (c.push, c.limit_state) == (curve.push, state))
+            for state in ("SLO", "SLD")
+        )  # fmt: skip
+        assert slo.capacity_m == pytest.approx(2.0 / 3.0 * sld.capacity_m, rel=1e-12)
+        assert slo.return_period_years == pytest.approx(-50.0 / np.log(1.0 - 0.81), rel=1e-12)
+    alone = framed(code=code)
+    alone["analysis"] = [{"kind": "local-mechanism", "mechanism": "building"}]
+    found = extrados.run(alone, threads=1)
+    assert {c.limit_state for c in found["local-mechanism"].checks.values()} <= {"SLD", "SLV"}
+    assert any("SLO" in text for text in found.analysis("local-mechanism")["warnings"])

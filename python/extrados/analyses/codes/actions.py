@@ -21,6 +21,8 @@ from extrados.schema.table import FloorBelow
 Spectrum = Callable[[float, float], float]
 #: The spectra that belong to a code, beside a table of the deck's own
 OWN = {"NTC": ("NTC",), "EN1998": ("EN1998-1", "EN1998-2"), "ASCE41": ("ASCE7",), "NZSEE": ("NZS1170",)}
+#: What the limit state of operation is for
+ONLY_DISPLACEMENT = "SLO is checked for the displacement of pushed buildings alone: C8.7.1 has no check of piers or local mechanisms at SLO."
 #: The rules of a deck without [code]
 NATIVE = Code(jurisdiction="NTC")
 
@@ -55,6 +57,10 @@ def actions(context: Context, options: CodeChecks | LocalMechanism | Verificatio
         return None if context.deck.code is None else code.return_period(state)
 
     for state in code.states:
+        if state == "SLO" and not isinstance(options, Verification):
+            if ONLY_DISPLACEMENT not in context.warnings:
+                context.warnings.append(ONLY_DISPLACEMENT)
+            continue
         spectrum = spectrum_of(context, code.spectrum(state), "code")
         found[state] = Action(state, spectrum, None if spectrum is None else spectrum(0.0, 0.05), years(state))
     spectrum = demanded_spectrum(context, options.spectrum, options.motion_spectrum and not _given(found, code))
