@@ -290,3 +290,23 @@ def test_the_limit_state_of_operation_is_two_thirds_of_that_of_damage():
     found = extrados.run(alone, threads=1)
     assert {c.limit_state for c in found["local-mechanism"].checks.values()} <= {"SLD", "SLV"}
     assert any("SLO" in text for text in found.analysis("local-mechanism")["warnings"])
+
+
+def test_fragility_over_motions_is_that_of_each_motion_by_itself():
+    """The accelerations carried of a set of three are those of three runs with the spectrum of one of its motions (SLV)."""
+    motion = {"kind": "generated", "mmi": 7, "duration": 4.0, "seed": 3}
+    whole = framed(verification={"motions": 3})
+    run = extrados.run(
+        {**whole, "motion": motion, "code": {"jurisdiction": "NTC", "knowledge_level": "LC3"}}, threads=1
+    )
+    found, carried = run["frame-pushover"].verification, run.array("frame-pushover", "carried_pga")
+    (row,) = found.fragility
+    assert (row.limit_state, row.motions, carried.shape) == ("SLV", 3, (3, 1))
+    assert row.median_pga_g == pytest.approx(np.exp(np.log(carried).mean()), rel=1e-12)
+    assert row.dispersion == pytest.approx(np.log(carried).std(ddof=1), rel=1e-12)
+    for k in range(3):
+        one = {**framed(verification={"motion_spectrum": True}), "motion": {**motion, "member": k + 1}}
+        one["code"] = {"jurisdiction": "NTC", "knowledge_level": "LC3"}
+        check = extrados.run(one, threads=1)["frame-pushover"].verification.governing()
+        if check.factor * check.strength_ratio < 2.99:  # else q* governs, which is a rule of the code
+            assert carried[k, 0] == pytest.approx(check.capacity_pga_g, rel=5e-3)

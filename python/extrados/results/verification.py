@@ -48,6 +48,15 @@ class DisplacementCheck(ResultModel):
     clause: str = fact("clauses of demand and capacity")
 
 
+class BuildingFragility(ResultModel):
+    """Lognormal fragility by N2 over a set of motions, each scaled; its scatter is that of the motions alone."""
+
+    limit_state: str = fact("limit state whose displacement capacity is reached by the first curve")
+    motions: int = fact("motions that were used")
+    median_pga_g: float = fact("median of the peak ground accelerations that are carried", "g")
+    dispersion: float = fact("standard deviation of their logarithms")
+
+
 class Verification(ResultModel):
     """Verification of capacity curves by displacement: the least factor of all curves and limit states governs."""
 
@@ -60,6 +69,7 @@ class Verification(ResultModel):
     checks: list[DisplacementCheck] = fact("each curve at each limit state")
     zeta_E: float | None = fact("NTC: least factor on the action at SLV; null without a demand", source="NTC 2018 8.3")
     nbs_percent: float | None = maybe("NZSEE: %NBS, the least factor", "%")
+    fragility: list[BuildingFragility] = maybe("fragility of the building over the motions of the deck")
     violated: list[str] = fact("assumptions on the unsafe side that do not hold: a check that holds is then open")
 
     def governing(self) -> DisplacementCheck | None:

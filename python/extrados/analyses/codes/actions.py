@@ -149,12 +149,15 @@ def demanded_spectrum(context: Context, model: CodeSpectrum | None, of_motion: b
         return code
     if context.deck.motion is None:
         raise Refused("motion_spectrum needs a [motion]", ("analysis", "motion_spectrum"))
-    motion = context.motion
-    acceleration, step = sampled(motion)
+    return spectrum_of_motion(*sampled(context.motion), context.motion.peak)
+
+
+def spectrum_of_motion(acceleration: np.ndarray, step: float, peak: float) -> Spectrum:
+    """The response spectrum of samples [m/s^2] every step [s], joined by straight lines; peak: theirs [m/s^2]."""
 
     def at(period: float, damping: float) -> float:
-        if period < 10.0 * step:  # too stiff to answer otherwise than the ground
-            return motion.peak
+        if period < step:  # too stiff to answer otherwise than the ground
+            return peak
         return float(core_motion.response_spectra(acceleration, step, [period], [damping]).psa[0, 0])
 
     return at

@@ -101,7 +101,11 @@ def oscillator_of(curve: CapacityCurve, secant: float = MASONRY) -> Oscillator |
 def corner_period(spectrum: Spectrum) -> float:
     """T_C [s]: 2 pi times the greatest pseudo-velocity over the greatest pseudo-acceleration, of periods up to 2 s. For a
     spectrum with a plateau followed by constant velocity this is the end of the plateau."""
-    values = np.array([spectrum(float(t), DAMPING) for t in PERIODS])
+    return corner_of(np.array([spectrum(float(t), DAMPING) for t in PERIODS]))
+
+
+def corner_of(values: np.ndarray) -> float:
+    """T_C [s] of pseudo-accelerations at PERIODS."""
     return float((values * PERIODS).max() / values.max())
 
 

@@ -120,6 +120,13 @@ class Verification(Table):
     )
     motion_spectrum: bool = key(False, "without a spectrum of a code, the response spectrum of the deck's motion")
 
+    motions: int | None = key(
+        None,
+        "motions of the set in [motion] of which N2 makes a fragility, record by record; default none",
+        ge=2,
+        le=10_000,
+    )
+
     @model_validator(mode="after")
     def _of_the_method(self) -> "Verification":
         if "quality" in self.model_fields_set and self.method != "capacity-spectrum":

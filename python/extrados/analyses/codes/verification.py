@@ -2,19 +2,20 @@
 
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
 from extrados.analyses.codes import capacity_curve as cc
 from extrados.analyses.codes.actions import NATIVE, Action, Spectrum, actions, code_of
 from extrados.analyses.codes.capacity_curve import CapacityCurve, Oscillator
+from extrados.analyses.codes.suites import fragilities
 from extrados.analyses.codes.tables import Verification
 from extrados.analyses.context import Context
 from extrados.core.sla import Model, Monitor
 from extrados.model.properties import Joints, JointType, Material
 from extrados.results import verification as out
-from extrados.results.model import Array
+from extrados.results.model import Array, Result
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 
@@ -105,7 +106,12 @@ def displaced_shape(
 
 
 def verify(
-    context: Context, options: Verification, pushes: list[Push], violated: list[str], factor: float | None = None
+    context: Context,
+    result: Result,
+    options: Verification,
+    pushes: list[Push],
+    violated: list[str],
+    factor: float | None = None,
 ) -> out.Verification | None:
     """The verification of all pushes; None where no code is applied. factor: by which strengths were divided, by default that of
     the code."""
@@ -119,13 +125,15 @@ def verify(
         for state in dict.fromkeys([*code.states, *(a.state for a in given)])
     ]
     known = {a.years: a.peak for a in given if a.years is not None and a.peak is not None}
-    curves, checks = [], []
+    curves, checks, made = [], [], []
+    result.arrays |= curve_arrays(context, options, pushes)
     for push in pushes:
         oscillator = cc.oscillator_of(push.curve, options.secant)
         if oscillator is None:
             continue
         rows = [_check(push, oscillator, action, method, options, code.jurisdiction, known) for action in states]
         checks += rows
+        made.append((push.curve, oscillator))
         law, gamma = oscillator.law, oscillator.participation
         curves.append(
             out.IdealisedCurve(
@@ -139,7 +147,16 @@ def verify(
     def least(state: str) -> float | None:
         return min((c.factor for c in checks if c.limit_state == state and c.factor is not None), default=None)
 
-    more = {}
+    more: dict[str, Any] = {}
+    known_states = [a.state for a in states if a.state in cc.CAPACITY]
+    if options.motions is not None and made and known_states:
+        more["fragility"], carried = fragilities(context, options, made, known_states)
+        result.arrays["carried_pga"] = Array(
+            carried,
+            ("motion", "limit_state"),
+            "g",
+            f"peak ground acceleration carried of each motion, at {', '.join(known_states)}",
+        )
     if code.jurisdiction == "NZSEE" and (found := least("ULS")) is not None:
         more["nbs_percent"] = 100.0 * found
     return out.Verification(

@@ -10,7 +10,7 @@ from extrados.analyses.codes.capacity_curve import CapacityCurve
 from extrados.analyses.codes.local_mechanism import run as run_local_mechanism
 from extrados.analyses.codes.tables import LocalMechanism
 from extrados.analyses.codes.verification import Push as Verified
-from extrados.analyses.codes.verification import curve_arrays, demands, verify
+from extrados.analyses.codes.verification import demands, verify
 from extrados.analyses.context import Context
 from extrados.analyses.frame.tables import FramePushover
 from extrados.analyses.sla.curve import envelope
@@ -67,8 +67,7 @@ def verify_frame(
         result.results = result.results.model_copy(update={"out_of_plane": walls})
         if walls.outcome in ("collapses", "cannot-stand"):
             violated.append(f"A wall does not satisfy its check out of plane. {walls.statement}")
-    result.arrays |= curve_arrays(context, options.verification, rows)
-    return verify(context, options.verification, rows, violated, options.frame.confidence_factor)
+    return verify(context, result, options.verification, rows, violated, options.frame.confidence_factor)
 
 
 def out_of_plane(context: Context, options: FramePushover, period: float) -> OutOfPlane:

@@ -13,7 +13,6 @@ from extrados.analyses.codes.capacity_curve import CapacityCurve
 from extrados.analyses.codes.verification import (
     DRIFTS,
     Push,
-    curve_arrays,
     displaced_shape,
     verify,
     with_design_strengths,
@@ -416,8 +415,7 @@ def _verify(
                 f"To {own['sense']} the building slides on {own['sliding_level']} at {own['capacity_N'] / 1e3:.3g} kN; the curve "
                 "excludes that sliding."
             )
-    result.arrays |= curve_arrays(context, options.verification, pushes)
-    return verify(context, options.verification, pushes, violated)
+    return verify(context, result, options.verification, pushes, violated)
 
 
 def _drift_reached(model: ShellModel, curve: Curve, limit: float) -> float | None:

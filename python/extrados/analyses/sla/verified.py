@@ -6,7 +6,7 @@ import numpy as np
 
 from extrados.analyses.codes.actions import code_of
 from extrados.analyses.codes.capacity_curve import CapacityCurve
-from extrados.analyses.codes.verification import DRIFTS, Push, curve_arrays, displaced_shape, verify
+from extrados.analyses.codes.verification import DRIFTS, Push, displaced_shape, verify
 from extrados.analyses.context import Context
 from extrados.analyses.sla.events import Curve
 from extrados.analyses.sla.model import SlaModel
@@ -53,5 +53,4 @@ def verify_wall(
                     "mm, before the collapse displacement: piers that fail in shear end the curve there."
                 )
         pushes.append(Push(curve.sense, found, float(mass.sum())))
-    result.arrays |= curve_arrays(context, options.verification, pushes)
-    return verify(context, options.verification, pushes, violated)
+    return verify(context, result, options.verification, pushes, violated)
