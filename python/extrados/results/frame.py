@@ -80,7 +80,7 @@ class FramePush(ResultModel):
 class OutOfPlane(ResultModel):
     """The wall of least margin out of its plane, by local-mechanism."""
 
-    factor: float | None = fact("capacity over demand of the check that governs; null where none does")
+    factor: float | None = fact("capacity over demand of the check that governs; null without one")
     outcome: Outcome = fact("verdict: stands, collapses, open or not-applicable")
     building_period_s: float = fact("period of the frame, for the floor spectrum", "s")
     statement: str = fact("verdict in words")
@@ -101,7 +101,7 @@ class FramePushover(KindResults):
     piers: int = fact("piers")
     spandrels: int = fact("spandrels")
     remarks: list[str] = fact("what the frame neglects of the building")
-    out_of_plane: OutOfPlane = maybe("check of the walls out of their planes, where there is a seismic action")
+    out_of_plane: OutOfPlane = maybe("check of the walls out of their planes, with a seismic action")
     verification: Verification = maybe("verification by displacement: all runs at the limit states of the code")
 
     def judged(self, demand: Demand) -> Verdict:

@@ -71,7 +71,7 @@ class FramePushover(FrameAnalysis):
     verification: Verification = key(Verification(), "verification by displacement, [analysis.verification]")
     out_of_plane: bool = key(
         True,
-        "where there is a seismic action, check every wall above the foot of each storey out of its plane by `local-mechanism`, with the "
+        "with a seismic action, check every wall above the foot of each storey out of its plane by `local-mechanism`, with the "
         "period of the frame for the floor spectrum",
     )
     control_level: int | None = key(
