@@ -125,13 +125,18 @@ def verify(
         for state in dict.fromkeys([*code.states, *(a.state for a in given)])
     ]
     known = {a.years: a.peak for a in given if a.years is not None and a.peak is not None}
-    curves, checks, made = [], [], []
+    corners = {a.state: cc.corner_period(a.spectrum) for a in given if a.spectrum is not None}
+    violated, curves, checks, made = list(violated), [], [], []
     result.arrays |= curve_arrays(context, options, pushes)
     for push in pushes:
-        oscillator = cc.oscillator_of(push.curve, options.secant)
+        oscillator = _idealised(push.curve, options, code.jurisdiction)
         if oscillator is None:
+            violated.append(unverified(push.name))
             continue
-        rows = [_check(push, oscillator, action, method, options, code.jurisdiction, known) for action in states]
+        rows = [
+            _check(push, oscillator, action, corners.get(action.state, 0.0), method, options, code.jurisdiction, known)
+            for action in states
+        ]
         checks += rows
         made.append((push.curve, oscillator))
         law, gamma = oscillator.law, oscillator.participation
@@ -166,6 +171,18 @@ def verify(
     )  # fmt: skip
 
 
+def unverified(name: str) -> str:
+    """The condition of a push that has no curve to be verified."""
+    return f"Push {name} has no capacity curve with a rising branch: the least factor is that of the other pushes."
+
+
+def _idealised(curve: CapacityCurve, options: Verification, jurisdiction: str) -> Oscillator | None:
+    """The oscillator of a curve up to collapse; by EN 1998-1 that of its Annex B."""
+    if jurisdiction == "EN1998":
+        return cc.annex_b_oscillator(curve, curve.ultimate / curve.participation)
+    return cc.oscillator_of(curve, options.secant)
+
+
 def curve_arrays(context: Context, options: Verification, pushes: list[Push]) -> dict[str, Array]:
     """The verified curves, and the spectra of the limit states that have one."""
     found: dict[str, Array] = {}
@@ -189,22 +206,20 @@ def curve_arrays(context: Context, options: Verification, pushes: list[Push]) ->
 
 
 def _check(
-    push: Push, oscillator: Oscillator, action: Action, method: out.Method, options: Verification, jurisdiction: str,
+    push: Push, oscillator: Oscillator, action: Action, corner: float, method: out.Method, options: Verification, jurisdiction: str,
     known: dict[float, float],
 ) -> out.DisplacementCheck:  # fmt: skip
-    """A curve at a limit state."""
+    """A curve at a limit state. corner: T_C of the action [s]; known: accelerations of the return periods, of `return_period`."""
     state, gamma, curve = action.state, oscillator.participation, push.curve
     capacity = cc.capacity_of(curve, oscillator, state) if state in cc.CAPACITY else None
     limit = cc.GREATEST_Q.get(state)
     demand = ratio = factor = None
     if action.spectrum is not None:
-        demanded = partial(
-            _demand, push, oscillator, method, options.quality, jurisdiction, cc.corner_period(action.spectrum)
-        )
+        demanded = partial(_demand, push, oscillator, method, options.quality, jurisdiction, corner)
         demand, ratio = demanded(action.spectrum), cc.strength_ratio(oscillator, action.spectrum)
         if capacity is not None:
             if method == "N2" and jurisdiction != "EN1998":
-                factor = cc.n2_factor(oscillator, action.spectrum, cc.corner_period(action.spectrum), capacity / gamma)
+                factor = cc.n2_factor(oscillator, action.spectrum, corner, capacity / gamma)
             else:
                 factor = cc.greatest_factor(partial(_scaled, demanded, action.spectrum), capacity)
             if limit is not None:

@@ -10,7 +10,7 @@ from extrados.analyses.codes.capacity_curve import CapacityCurve
 from extrados.analyses.codes.local_mechanism import run as run_local_mechanism
 from extrados.analyses.codes.tables import LocalMechanism
 from extrados.analyses.codes.verification import Push as Verified
-from extrados.analyses.codes.verification import demands, verify
+from extrados.analyses.codes.verification import demands, unverified, verify
 from extrados.analyses.context import Context
 from extrados.analyses.frame.tables import FramePushover
 from extrados.analyses.sla.curve import envelope
@@ -37,6 +37,7 @@ def verify_frame(
     rows, violated, sliding = [], [], []
     for push, path, row in zip(pushes, paths, result.results.runs, strict=True):
         if not path.multiple.max() > 0.0:
+            violated.append(unverified(push.name))
             continue
         if options.verification.shape == "mode":
             shape = push.mode.shape

@@ -14,6 +14,7 @@ from extrados.analyses.codes.verification import (
     DRIFTS,
     Push,
     displaced_shape,
+    unverified,
     verify,
     with_design_strengths,
 )
@@ -397,6 +398,7 @@ def _verify(
     pushes, violated = [], []
     for curve in curves:
         if curve.peak < 0:
+            violated.append(unverified(curve.sense))
             continue
         d, p = curve.envelope(model.unit)
         found = CapacityCurve(d - d[0], through * p, mass, shape)

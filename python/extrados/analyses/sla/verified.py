@@ -6,7 +6,7 @@ import numpy as np
 
 from extrados.analyses.codes.actions import code_of
 from extrados.analyses.codes.capacity_curve import CapacityCurve
-from extrados.analyses.codes.verification import DRIFTS, Push, displaced_shape, verify
+from extrados.analyses.codes.verification import DRIFTS, Push, displaced_shape, unverified, verify
 from extrados.analyses.context import Context
 from extrados.analyses.sla.events import Curve
 from extrados.analyses.sla.model import SlaModel
@@ -41,6 +41,7 @@ def verify_wall(
     limits = DRIFTS.get(code_of(context).jurisdiction)
     for curve in curves:
         if curve.peak < 0:
+            violated.append(unverified(curve.sense))
             continue
         d, p = curve.envelope(model.unit)
         found = CapacityCurve(d - d[0], through * p, mass, shape)
