@@ -32,6 +32,8 @@ FIGURES: dict[str, tuple[str, str, str, tuple[int, ...], int]] = {
     "facade": ("codes/facade", "local-mechanism", "", (), 900),
     "elements": ("dem/oppenheim", "dem", "", (), 900),
     "wall": ("sla/yi-wall-1", "sla", "sla-cracks", (), 900),
+    "frame": ("frame/two-rooms", "frame-pushover", "frame-pushover-walls-0", (), 900),
+    "frame-curves": ("frame/two-rooms", "frame-pushover", "frame-pushover-curves", (), 800),
     "strengthened": ("strengthen/nave", "strengthen", "strengthen-mechanisms", (), 900),
     "fragility-pair": ("strengthen/pinnacle", "strengthen", "strengthen-fragility", (), 700),
     "fragility": ("fragility/annual-rate", "fragility", "fragility-curve", (), 800),

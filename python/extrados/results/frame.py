@@ -25,6 +25,11 @@ class FrameModes(KindResults):
     piers: int = fact("piers")
     spandrels: int = fact("spandrels")
 
+    def judged(self, demand: Demand) -> Verdict:
+        """Modes are neither a demand nor a capacity."""
+        text = f"First period {self.modes[0].period_s:.3g} s. Modes alone decide no limit state."
+        return judge(text, None, None, "", "not-applicable")
+
 
 class PierLimits(ResultModel):
     """Control displacements at which the piers of a storey of a wall reach their strength, and their drift limit; null: never."""

@@ -10,14 +10,14 @@ from extrados.show import style
 from extrados.show.verification import draw_verification
 
 #: Colours of the states of elements, by their numbers
-COLOURS = ("#e8e2d4", "#cfe3d6", "#f2c28b", "#e08b5a", "#b3261e", "#6d1a36")
+COLOURS = ("#e8e2d4", "#cfe3d6", "#f2c28b", "#e08b5a", "#e0342b", "#5b1136")
 WORDS = ("elastic", "cracked", "flexural strength", "shear strength", "drift limit in flexure", "drift limit in shear")
 #: Colours of the patterns
 PATTERNS = {"uniform": style.THRUST, "static": style.HINGE, "modal": style.SAFE}
 
 
 def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """Base shear over control displacement of all runs, and the walls of the governing run at its last state."""
+    """Base shear over control displacement of all runs; for each direction the walls of its weakest run, at the last state."""
     r = run[name]
     angles = sorted({row.direction_deg for row in r.runs})
     made = draw_verification(run, name, folder)
@@ -58,14 +58,15 @@ def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
             "or by the drift limits of all piers of a storey of a wall.",
         )
     )
-    number = next(k for k, row in enumerate(r.runs, 1) if row.name == r.governing)
-    state = run.array(name, f"state_{number}")
-    row = r.runs[number - 1]
-    shear = np.array(row.base_shear_N)
-    for word, at in (("peak", int(shear.argmax())), ("end", len(shear) - 1)):
-        made.append(
-            _walls(run, name, folder, state[at], word, f"{r.governing}, {1e3 * row.control_displacement_m[at]:.3g} mm")
+    for angle in angles:
+        number = min(
+            (k for k, row in enumerate(r.runs, 1) if row.direction_deg == angle),
+            key=lambda k: r.runs[k - 1].peak_base_shear_N,
         )
+        row = r.runs[number - 1]
+        state = run.array(name, f"state_{number}")
+        told = f"{row.name}, {1e3 * row.control_displacement_m[-1]:.3g} mm"
+        made.append(_walls(run, name, folder, state[-1], f"{angle:g}", told))
     return made
 
 

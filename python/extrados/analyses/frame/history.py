@@ -41,7 +41,7 @@ def run(context: Context, options: FrameHistory) -> Result:
         damping = rayleigh(options.damping_ratio, pair)
         path = core.move(frame.unit(way), ground, options.time_step, damping)
     if path.stop == "no equilibrium under the weight":
-        raise Refused("the frame has no equilibrium under its weight")
+        raise Refused("the frame has no equilibrium under its weight", ("structure", "walls"))
     count = len(path.displacement)
     time = time[:count]
     moved = (path.displacement - path.displacement[0]) @ control

@@ -34,7 +34,8 @@ def rest_of(frame: EquivalentFrame, core: Frame) -> Rest:
         return core.at_rest()
     except CoreError as error:
         raise Refused(
-            f"the frame has no equilibrium under its weight ({error}): a pier without load, or a wall that nothing joins with others"
+            f"the frame has no equilibrium under its weight ({error}): a pier without load, or a wall that nothing joins with others",
+            ("structure", "walls"),
         ) from None
 
 

@@ -104,7 +104,7 @@ def run(context: Context, options: FramePushover) -> Result:
         with ThreadPoolExecutor(max(1, context.threads)) as pool:
             paths = list(pool.map(one, pushes))
     if any(path.stop == "no equilibrium under the weight" for path in paths):
-        raise Refused("the frame has no equilibrium under its weight")
+        raise Refused("the frame has no equilibrium under its weight", ("structure", "walls"))
     runs = [_row(frame, push, path) for push, path in zip(pushes, paths, strict=True)]
     peaks = [max(row["base_shear_N"]) for row in runs]
     least = int(np.argmin(peaks))
