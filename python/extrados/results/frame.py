@@ -95,6 +95,7 @@ class FramePushover(KindResults):
     control_height_m: float = fact("height of the control level", "m")
     piers: int = fact("piers")
     spandrels: int = fact("spandrels")
+    walls: list[str] = fact("names of the walls in the order of their numbers in the arrays")
     remarks: list[str] = fact("what the frame neglects of the building")
 
     def judged(self, demand: Demand) -> Verdict:

@@ -101,8 +101,10 @@ def _walls(run: Stored, name: str, folder: Path, state: np.ndarray, word: str, t
                     (first[int(w)] + a, low), b - a, high - low, facecolor="white", edgecolor=style.EDGE, linewidth=0.6
                 )
             )
+        for w, label in enumerate(run[name].walls):
+            ax.text(first[w] + 0.5 * length[w], 1.01 * height[w], label, ha="center", va="bottom", fontsize=8)
         ax.set_xlim(-0.3, total + 0.3)
-        ax.set_ylim(0.0, float(height.max()) * 1.02)
+        ax.set_ylim(0.0, float(height.max()) * 1.1)
         ax.set_aspect("equal")
         ax.grid(False)
         ax.set_xlabel("walls side by side, along each [m]")
