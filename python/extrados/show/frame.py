@@ -53,7 +53,7 @@ def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
     made.append(
         (
             saved,
-            f"Capacity curves of {len(r.runs)} pushovers; thin: with accidental eccentricity. Dots: ultimate displacement, by a fall of 20 % "
+            f"Capacity curves of {len(r.runs)} pushovers; thin: with accidental eccentricity. Dots: ultimate displacement, by a loss of 20 % "
             "or by the drift limits of all piers of a storey of a wall.",
         )
     )
