@@ -72,7 +72,12 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
         r"scaling_misfit",
     ),
     "probability": (r"fragility\S*\.(?!mean_peak)", r"(?:median|probability)$", r"share_of_starts"),
-    "weight and other data": (r"weight_N", r"flanges", r"survey\.sections"),
+    "weight and other data": (
+        r"weight_N",
+        r"frame-\S*\.(?:piers|spandrels|moving_mass_kg|steps)$",
+        r"flanges",
+        r"survey\.sections",
+    ),
     "capacity in acceleration": (
         r"collapse_acceleration",
         r"uplift",

@@ -236,7 +236,7 @@ def by_membrane(wall: Wall) -> dict[str, Predicted]:
 
 
 def by_macro_element(wall: Wall) -> dict[str, Predicted]:
-    """One pier under its axial load; its top does not turn where the shear span is half its height."""
+    """One pier under its axial load; its top does not rotate where the shear span is half its height."""
     from extrados.core.frame import STATE, Frame, MacroElement
 
     double = wall.span < 0.75

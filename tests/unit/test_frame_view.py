@@ -136,7 +136,7 @@ def test_what_a_frame_cannot_be_is_refused():
              {"name": "b", "start": [0, 0], "end": [0, 3], "thickness": 0.4}]  # fmt: skip
     with pytest.raises(BadGeometry, match="does not reach the ground"):
         box(walls=walls, storeys=[3.0, 3.0], floors=[]).frame()
-    with pytest.raises(BadGeometry, match="turnsek-cacovic needs a tensile strength"):
+    with pytest.raises(BadGeometry, match="turnsek-cacovic needs diagonal_strength"):
         box().frame(FrameOptions(shear="turnsek-cacovic"))
 
 

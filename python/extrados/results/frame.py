@@ -66,7 +66,7 @@ class FramePush(ResultModel):
     peak_base_shear_N: float = fact("greatest base shear", "N")
     displacement_at_peak_m: float = fact("control displacement there", "m")
     drop_displacement_m: float | None = fact(
-        "that at which the base shear has fallen by 20 %; null where it has not", "m"
+        "that at which the base shear has decreased by 20 %; null: not reached", "m"
     )
     ultimate_displacement_m: float | None = fact(
         "least of that and of those at which all piers of a storey of a wall are at their drift limit; null: not reached",
@@ -97,7 +97,7 @@ class FramePushover(KindResults):
     runs: list[FramePush] = fact("all pushovers")
     governing: str = fact("name of the run of least base shear")
     base_shear_N: float = fact("its greatest base shear", "N")
-    ultimate_displacement_m: float | None = fact("its ultimate displacement; null where the curve ends before", "m")
+    ultimate_displacement_m: float | None = fact("its ultimate displacement; null: not reached", "m")
     failed: list[FailedElement] = fact("its elements beyond their drift limits, in order")
     weight_N: float = fact("weight of walls and floors", "N")
     moving_mass_kg: float = fact("masses on the levels above the ground", "kg")
@@ -105,7 +105,8 @@ class FramePushover(KindResults):
     control_height_m: float = fact("height of the control level", "m")
     piers: int = fact("piers")
     spandrels: int = fact("spandrels")
-    remarks: list[str] = fact("what the frame neglects of the building")
+    walls: list[str] = fact("names of the walls in the order of their numbers in the arrays")
+    remarks: list[str] = fact("parts of the building that the frame neglects")
     out_of_plane: OutOfPlane = maybe("check of the walls out of their planes, with a seismic action")
     verification: Verification = maybe("verification by displacement: all runs at the limit states of the code")
 
@@ -144,7 +145,7 @@ class FrameHistory(KindResults):
     first_failure_s: float = maybe("instant of the first drift limit", "s")
 
     def judged(self, demand: Demand) -> Verdict:
-        """Collapses where the calculation finds no equilibrium; else its drifts, without a limit state."""
+        """Open without equilibrium; else the drifts, which decide no limit state."""
         moved = f"greatest displacement {1e3 * self.peak_displacement_m:.3g} mm, greatest drift of a pier {100 * self.peak_drift:.3g} %"
         if self.stop != "target displacement":
             return judge(

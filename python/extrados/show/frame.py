@@ -54,7 +54,7 @@ def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
     made.append(
         (
             saved,
-            f"Capacity curves of {len(r.runs)} pushovers; thin: with accidental eccentricity. Dots: ultimate displacement, by a fall of 20 % "
+            f"Capacity curves of {len(r.runs)} pushovers; thin: with accidental eccentricity. Dots: ultimate displacement, by a loss of 20 % "
             "or by the drift limits of all piers of a storey of a wall.",
         )
     )
@@ -102,8 +102,10 @@ def _walls(run: Stored, name: str, folder: Path, state: np.ndarray, word: str, t
                     (first[int(w)] + a, low), b - a, high - low, facecolor="white", edgecolor=style.EDGE, linewidth=0.6
                 )
             )
+        for w, label in enumerate(run[name].walls):
+            ax.text(first[w] + 0.5 * length[w], 1.01 * height[w], label, ha="center", va="bottom", fontsize=8)
         ax.set_xlim(-0.3, total + 0.3)
-        ax.set_ylim(0.0, float(height.max()) * 1.02)
+        ax.set_ylim(0.0, float(height.max()) * 1.1)
         ax.set_aspect("equal")
         ax.grid(False)
         ax.set_xlabel("walls side by side, along each [m]")

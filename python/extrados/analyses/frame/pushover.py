@@ -112,7 +112,7 @@ def run(context: Context, options: FramePushover) -> Result:
         runs=runs, weight_N=frame.total_weight, moving_mass_kg=sum(m.mass for m in frame.masses), control_level=level,
         control_height_m=height, base_shear_N=peaks[least], ultimate_displacement_m=runs[least]["ultimate_displacement_m"],
         governing=runs[least]["name"], failed=runs[least]["failed"], piers=frame.piers,
-        spandrels=len(frame.elements) - frame.piers, remarks=frame.remarks,
+        spandrels=len(frame.elements) - frame.piers, walls=[wall.name for wall in frame.plan.walls], remarks=frame.remarks,
     )  # fmt: skip
     verified = verify_frame(context, result, frame, rest.tangent, options, pushes, paths)
     if verified is not None:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 #: Properties of the building that frames use
 ELASTIC = ("material.density", "material.young", "material.poisson")
-STRENGTHS = ("material.compressive_strength", "material.tensile_strength", "joints.cohesion")
+STRENGTHS = ("material.compressive_strength", "joints.cohesion")
 
 
 class FrameAnalysis(BuildingAnalysis):
@@ -25,18 +25,14 @@ class FrameAnalysis(BuildingAnalysis):
     view: ClassVar = "frame"
     structures: ClassVar = tuple(kind for kind, parts in kinds.STRUCTURES.items() if isinstance(parts.frame, str))
     uses: ClassVar = (*ELASTIC, *STRENGTHS)
-    #: tensile_strength does not go without its energy
-    beside: ClassVar = ("material.fracture_energy",)
     starter_structure: ClassVar = "building"
     frame: FrameOptions = key(FrameOptions(), "piers and spandrels, [analysis.frame]")
 
     def rests_on(self, building: "Building") -> dict[str, str | None]:
-        """Strengths that the frame's own keys replace are not among them."""
+        """A cohesion that the key of the frame replaces is not among them."""
         found = super().rests_on(building)
         if self.frame.cohesion is not None:
             found.pop("joints.cohesion", None)
-        if self.frame.diagonal_strength is not None:
-            found.pop("material.tensile_strength", None)
         return found
 
 
@@ -45,7 +41,7 @@ class FrameModes(FrameAnalysis):
 
     kind: Literal["frame-modes"]
     uses: ClassVar = ELASTIC
-    beside: ClassVar = (*STRENGTHS, "material.fracture_energy")
+    beside: ClassVar = ("material.compressive_strength",)
     modes: int = key(6, "how many modes", ge=1, le=100)
 
 
@@ -83,7 +79,7 @@ class FramePushover(FrameAnalysis):
     steps: int = key(200, "steps to the target; steps are cut where needed", ge=10, le=10_000)
     drop: float = key(
         0.5,
-        "ends where the base shear falls below this part of its greatest; 0.8 is the 20 % drop of codes",
+        "ends where the base shear is below this part of its greatest; 0.8 is the 20 % drop of codes",
         ge=0,
         le=0.95,
     )

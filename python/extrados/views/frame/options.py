@@ -29,7 +29,7 @@ class FrameOptions(Table):
     )
     diagonal_strength: Stress | None = key(
         None,
-        "tau_0 of diagonal cracking; f_t is 1.5 times it; default f_t is tensile_strength",
+        "tau_0 of diagonal cracking, without pressure; f_t is 1.5 times it",
         gt=0,
         source="Circ. 7/2019, C8.7.1.16",
     )

@@ -454,9 +454,7 @@ class _Maker:
         young = o.stiffness * material.young
         shear = young / (2.0 * (1.0 + material.poisson))
         cohesion = (o.cohesion or self.building.joints.cohesion) / o.confidence_factor
-        tension = (
-            1.5 * o.diagonal_strength if o.diagonal_strength else material.tensile_strength or 0.0
-        ) / o.confidence_factor
+        tension = 1.5 * (o.diagonal_strength or 0.0) / o.confidence_factor
         strength = material.compressive_strength
         pressed = UNLIMITED if strength is None else BLOCK * strength / o.confidence_factor
         levels = self.plan.levels
@@ -597,7 +595,7 @@ def _law(wanted: str, cohesion: float, tension: float) -> str:
         return "mohr-coulomb"
     if not tension > 0.0:
         raise BadGeometry(
-            "turnsek-cacovic needs a tensile strength: diagonal_strength, or tensile_strength of [material]",
+            "turnsek-cacovic needs diagonal_strength",
             ("analysis", "frame", "shear"),
         )
     return "turnsek-cacovic" if wanted == "turnsek-cacovic" or not cohesion > 0.0 else "least"
