@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from extrados.analyses.codes.tables import LocalMechanism
 from extrados.analyses.codes.verification import Push as Verified
 from extrados.analyses.codes.verification import demands, unverified, verify
 from extrados.analyses.context import Context
+from extrados.analyses.frame.modes import Mode
 from extrados.analyses.frame.tables import FramePushover
 from extrados.analyses.sla.curve import envelope
 from extrados.core.frame import Path
@@ -23,13 +24,26 @@ from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 from extrados.views.frame.plan import EquivalentFrame
 
-if TYPE_CHECKING:
-    from extrados.analyses.frame.pushover import Push
+
+class Push(Protocol):
+    """What the verification takes of a push: its name, forces (n) of 1 N along its sense, the row (n) of the control displacement,
+    the mode of greatest participating mass, and its direction on the plan."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def forces(self) -> np.ndarray: ...
+    @property
+    def control(self) -> np.ndarray: ...
+    @property
+    def mode(self) -> Mode: ...
+    @property
+    def way(self) -> np.ndarray: ...
 
 
 def verify_frame(
     context: Context, result: Result, frame: EquivalentFrame, tangent: np.ndarray, options: FramePushover,
-    pushes: Sequence["Push"], paths: Sequence[Path],
+    pushes: Sequence[Push], paths: Sequence[Path],
 ) -> Verification | None:  # fmt: skip
     """Displacement demand and capacity of all pushes. tangent: stiffness (n, n) under the weight [N/m]."""
     mass = frame.mass
@@ -92,7 +106,7 @@ def out_of_plane(context: Context, options: FramePushover, period: float) -> Out
     )  # fmt: skip
 
 
-def sliding_limit(frame: EquivalentFrame, building: Building, push: "Push", factor: float = 1.0) -> tuple[float, int]:
+def sliding_limit(frame: EquivalentFrame, building: Building, push: Push, factor: float = 1.0) -> tuple[float, int]:
     """Least base shear [N] under which a storey slides on its base, friction times the weight above and cohesion times the area of
     the piers, and that storey; infinite where friction excludes sliding. factor: divides the cohesion."""
     friction, cohesion = building.joints.coefficient, building.joints.cohesion / factor
