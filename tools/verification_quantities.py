@@ -6,7 +6,7 @@ import re
 QUANTITIES: dict[str, tuple[str, ...]] = {
     "size of a strengthening": (r"^strengthen\S*\.",),
     "start of sliding": (r"hand_over\.time_s$", r"\.handed_over$"),
-    "code check": (r"(?:local-mechanism|code-checks)\S*\.", r"checks\."),
+    "code check": (r"(?:local-mechanism|code-checks)\S*\.", r"checks(?:\[\d+\])?\.", r"verification\."),
     "ground motion and spectrum": (r"^motion", r"^shake-table"),
     "displacement": (r"dowel", r"slip_m$", r"displacement_m$", r"permanent_elongation"),
     "tail of a load curve": (r"measured\.tail_ratios", r"\.last_load_N$"),
@@ -73,7 +73,12 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
         r"greatest_misfit",
     ),
     "probability": (r"fragility\S*\.(?!mean_peak)", r"(?:median|probability)$", r"share_of_starts"),
-    "weight and other data": (r"weight_N", r"flanges", r"survey\.sections"),
+    "weight and other data": (
+        r"weight_N",
+        r"frame-\S*\.(?:piers|spandrels|moving_mass_kg|steps)$",
+        r"flanges",
+        r"survey\.sections",
+    ),
     "capacity in acceleration": (
         r"collapse_acceleration",
         r"uplift",

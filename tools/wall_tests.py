@@ -9,6 +9,8 @@ are those of `read_walls`. Each wall becomes one deck per method, as a user woul
     codes     `code-checks` of a panel, by each code; the least applicable strength of each
     membrane  `sla` of a panel without bricks, pushed sideways under its axial load to a drift of 1 %
     units     `sla` of its units and joints, likewise
+    frame     one macro-element of `frame-pushover`: sections without tension, shear by the lesser of Mohr-Coulomb on the compressed
+              part and Turnsek-Cacovic; without drift limits, to 2 % drift
 
 Empty cells are filled by these rules: friction 0.4; cohesion of the joints as tested; tensile strength of the diagonal
 test, else the cohesion; modulus 600 times the compressive strength. Crushing in limit analysis at 0.85 of the strength.
@@ -26,6 +28,8 @@ from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 import extrados
 
@@ -280,11 +284,34 @@ CRACK_DUCTILITY, SLIP_DUCTILITY, CRUSHING_DUCTILITY = 50e-6, 200e-6, 1.6e-3
 #: Tension of joints over their cohesion, and of units over the compressive strength of masonry, assumed for all walls
 BOND_TENSION, UNIT_TENSION = 0.7, 0.1
 
+
+def by_macro_element(wall: Wall) -> dict[str, Predicted]:
+    """One pier under its axial load; its top does not rotate where the shear span is half its height."""
+    from extrados.core.frame import STATE, Frame, MacroElement
+
+    double = wall.span < 0.75
+    pier = MacroElement(
+        (-1, -1, -1, 0, 1, -1 if double else 2), wall.height, wall.length, wall.thickness, wall.young,
+        0.4 * wall.young * wall.length * wall.thickness / (1.2 * wall.height), CRUSHES_AT * wall.compressive, shear="least",
+        cohesion=wall.cohesion, friction=wall.friction, tension=wall.tensile,
+        slenderness=min(max(wall.height / wall.length, 1.0), 1.5), second_order=False,
+    )  # fmt: skip
+    n = 2 if double else 3
+    weight, along = np.zeros(n), np.zeros(n)
+    weight[1], along[0] = -wall.axial, 1.0
+    with Frame([pier], [], np.zeros((n, n)), weight, np.zeros((n, n))) as frame:
+        path = frame.push(along, along, 0.02 * wall.height, 400, 0.0)
+    peak = int(path.multiple.argmax())
+    sheared = bool((path.state[: peak + 1, 0] == STATE["shear"]).any())
+    return {"frame": Predicted(float(path.multiple[peak]), "S" if sheared else "F")}
+
+
 METHODS: dict[str, Callable[[Wall], dict[str, Predicted]]] = {
     "limit": by_limit_analysis,
     "codes": by_codes,
     "membrane": by_membrane,
     "units": by_units,
+    "frame": by_macro_element,
 }
 
 

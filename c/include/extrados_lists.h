@@ -13,7 +13,8 @@
   ENTRY(1, motions, "set of ground motions") \
   ENTRY(2, rocking, "set of rocking bodies") \
   ENTRY(3, dem, "model of discrete elements") \
-  ENTRY(4, sla, "model of sequentially linear analysis")
+  ENTRY(4, sla, "model of sequentially linear analysis") \
+  ENTRY(5, frame, "frame of macro-elements")
 
 /* Kinds of rocking structure */
 #define EXTRADOS_ROCKING_BODY_LIST(ENTRY) \
@@ -141,6 +142,32 @@
   ENTRY(2, fourier, "fourier") \
   ENTRY(3, energy, "energy")
 
+/* Shear strength of a macro-element */
+#define EXTRADOS_FRAME_SHEAR_LIST(ENTRY) \
+  ENTRY(0, none, "none") \
+  ENTRY(1, friction, "mohr-coulomb") \
+  ENTRY(2, diagonal, "turnsek-cacovic") \
+  ENTRY(3, least, "least") \
+  ENTRY(4, damage, "damage")
+
+/* How far a macro-element has come; the greater number counts */
+#define EXTRADOS_FRAME_STATE_LIST(ENTRY) \
+  ENTRY(0, sound, "elastic") \
+  ENTRY(1, cracked, "cracked") \
+  ENTRY(2, flexure, "at flexural strength") \
+  ENTRY(3, shear, "at shear strength") \
+  ENTRY(4, failed_flexure, "drift limit in flexure") \
+  ENTRY(5, failed_shear, "drift limit in shear")
+
+/* Why a push of a frame ended */
+#define EXTRADOS_FRAME_STOP_LIST(ENTRY) \
+  ENTRY(0, target, "target displacement") \
+  ENTRY(1, drop, "loss of strength") \
+  ENTRY(2, weight, "no equilibrium under the weight") \
+  ENTRY(3, step, "no equilibrium at the least step") \
+  ENTRY(4, steps, "number of steps") \
+  ENTRY(5, cancelled, "interrupted")
+
 /* The list of lists */
 #define EXTRADOS_LISTS(LIST) \
   LIST(status, EXTRADOS_STATUS_LIST) \
@@ -156,6 +183,9 @@
   LIST(sla_event, EXTRADOS_SLA_EVENT_LIST) \
   LIST(sla_variant, EXTRADOS_SLA_VARIANT_LIST) \
   LIST(sla_stop, EXTRADOS_SLA_STOP_LIST) \
+  LIST(frame_shear, EXTRADOS_FRAME_SHEAR_LIST) \
+  LIST(frame_state, EXTRADOS_FRAME_STATE_LIST) \
+  LIST(frame_stop, EXTRADOS_FRAME_STOP_LIST) \
   LIST(shell_through, EXTRADOS_SHELL_THROUGH_LIST) \
   LIST(envelope, EXTRADOS_ENVELOPE_LIST) \
   LIST(spacing, EXTRADOS_SPACING_LIST) \

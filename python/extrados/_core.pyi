@@ -13,6 +13,7 @@ api_rocking: Any
 api_soft_base: Any
 api_stack: Any
 api_signal: Any
+api_frame: Any
 api_sla: Any
 api_sla_laws: Any
 api_shell: Any

@@ -28,8 +28,8 @@ class StructureKind:
 
     table: its deck table. The makers of its views take the building: blocks, piers and solids give its stones; rigid
     (building, groups, floor) rigid bodies; rocker (building, linear) the mechanism by which it rocks; mesh (building, options,
-    seed) finite elements; shell (building, options) flat shells. handles: those of its drawing on the
-    page; None where it has none.
+    seed) finite elements; shell (building, options) flat shells; frame (building, options) macro-elements. handles: those of its
+    drawing on the page; None where it has none.
     """
 
     table: str
@@ -40,6 +40,7 @@ class StructureKind:
     rocker: View
     mesh: View
     shell: View
+    frame: View
     handles: str | None
 
     @property
@@ -76,10 +77,12 @@ ROCKER = "views.rockers.rocker:make_rocker"
 SECTION, SPATIAL = "views.solids.sections:solids_of_section", "views.solids.sections:solids_of_spatial"
 MESH_OF_STONES, RODS = "views.mesh.stones:make_stones", "views.mesh.rods:add_rods"
 STRANDS = "views.solids.strands:strands_of"
+FRAME_OPTIONS = "views.frame.options:FrameOptions"
 MESH_OPTIONS, SHELL_OPTIONS = "views.mesh.options:MeshOptions", "views.shell.options:ShellOptions"
 NO_SECTION = Lacks("it is no plane section; `tilt` and `dem` analyse its solids")
 NO_STONES = Lacks("a mesh file holds elements, no stones: describe the wall as `panel` or `blocks`")
 NO_PIERS = Lacks("only a wall, of the kinds panel and brickwork, has piers")
+NO_FRAME = Lacks("only a building on a plan, of the kind building, has piers and spandrels of a frame")
 NO_SHELL = Lacks("this kind of structure has no shells; `extrados explain pushover` lists those that have")
 
 
@@ -89,7 +92,7 @@ def _stones(
 ) -> StructureKind:  # fmt: skip
     """A plane structure of blocks and joints."""
     return StructureKind(
-        f"model.structures.{table}", BLOCKS, piers, solids, RIGID, ROCKER, mesh, shell,
+        f"model.structures.{table}", BLOCKS, piers, solids, RIGID, ROCKER, mesh, shell, NO_FRAME,
         None if handles is None else f"explore.handles:{handles}",
     )  # fmt: skip
 
@@ -97,7 +100,16 @@ def _stones(
 def _solids(table: str, shell: View = NO_SHELL) -> StructureKind:
     """Blocks in space, no plane section."""
     return StructureKind(
-        f"model.structures.{table}", NO_SECTION, NO_PIERS, SPATIAL, NO_SECTION, NO_SECTION, NO_SECTION, shell, None
+        f"model.structures.{table}",
+        NO_SECTION,
+        NO_PIERS,
+        SPATIAL,
+        NO_SECTION,
+        NO_SECTION,
+        NO_SECTION,
+        shell,
+        NO_FRAME,
+        None,
     )
 
 
@@ -115,7 +127,7 @@ STRUCTURES: dict[str, StructureKind] = {
     "panel": _stones("walls:Panel", piers=PIERS, mesh="views.mesh.panel:mesh_panel", handles="PANEL"),
     "mesh": StructureKind(
         "model.structures.walls:MeshFile", NO_STONES, NO_PIERS, SECTION, RIGID, NO_STONES, "views.mesh.file:mesh_file",
-        "views.shell.file:shell_of_file", None,
+        "views.shell.file:shell_of_file", NO_FRAME, None,
     ),
     "column": _stones("masonry:Column", solids="views.solids.column:solids_of_column", handles="COLUMN"),
     "brickwork": _stones("brickwork:Brickwork", piers=PIERS, handles="BRICKWORK"),
@@ -128,7 +140,7 @@ STRUCTURES: dict[str, StructureKind] = {
         NO_PIERS, SECTION, RIGID,
         Lacks("a building on a plan does not rock as one body: draw one of its walls"),
         Lacks("the walls of a building form a structure in space: its analysis is `pushover`; draw one of them as `panel`"),
-        "views.shell.plan:shell_of_plan", None,
+        "views.shell.plan:shell_of_plan", "views.frame.plan:frame_of_plan", None,
     ),
     "wall": _solids("wall:Wall"),
     "dome": _solids("dome:Dome", shell="views.shell.vaults:shell_of_dome"),
@@ -185,6 +197,9 @@ ANALYSES: dict[str, AnalysisKind] = {
     "pushover": _analysis("shell", "Pushover", "pushover", "shell:draw_pushover", "pushover", "building/two-rooms", ("push-x", "push-y")),
     "dem": _analysis("dem", "Dem", "driver", "dem:draw_dem", "dem", "dem/oppenheim", ("dem",)),
     "dem-domain": _analysis("dem", "DemDomain", "dem_domain", "dem:draw_domain", "dem_domain", "dem/domain"),
+    "frame-modes": _analysis("frame", "FrameModes", "modes", "frame:draw_modes", "others", "frame/two-rooms"),
+    "frame-pushover": _analysis("frame", "FramePushover", "pushover", "frame:draw_pushover", "others", "frame/two-rooms", ("frame",)),
+    "frame-history": _analysis("frame", "FrameHistory", "history", "frame:draw_history", "others", "frame/history"),
     "assess": _analysis("assess", "Assess", "driver", "assess:draw_assess", "others", "assess/readme-arch"),
     "strengthen": _analysis("strengthen", "Strengthen", "driver", "strengthen:draw_strengthen", "strengthen", "strengthen/nave"),
     "dem-parameters": _analysis("dem", "DemParameters", "dem_parameters", "dem:draw_parameters", "others", "dem/rocking-block"),

@@ -56,6 +56,7 @@ MAY_USE = {
     "rocking": {"common", "arch", "mechanism"},
     "sla": {"common"},
     "shell": {"common", "sla"},
+    "frame": {"common"},
     "nonsmooth": {"common"},
     "dem": {"common", "nonsmooth"},
     "dem3": {"common", "dem", "nonsmooth"},

@@ -197,16 +197,26 @@ def test_a_building_on_a_plan_is_pushed_along_both_axes_and_its_walls_are_checke
     keys = {f"push-{axis}": {"events": 300, "mesh": {"size": 0.7}} for axis in "xy"}
     run = extrados.run(on_plan(assess={"options": keys, "sensitivity": True}))
     r = run["assess"]
-    assert [v.strategy for v in r.verdicts] == ["code-checks", "push-x", "push-y"]
-    assert [v.status for v in r.verdicts] == ["ok"] * 3 and r.verdicts[2].part == "pushover-2"
+    assert [v.strategy for v in r.verdicts] == ["code-checks", "frame", "push-x", "push-y"]
+    assert [v.status for v in r.verdicts] == ["ok"] * 4 and r.verdicts[3].part == "pushover-2"
     assert run["pushover"].direction_deg == 0.0 and run["pushover-2"].direction_deg == 90.0
     assert run["local-mechanism"].walls[0].wall in ("left", "right"), "the thin ones"
     assert any("building on a plan" in text for text in r.not_done)
     assert run["pushover"].peak_load_N is None, "300 events are few"
+    told = next(one for one in r.reasons if one.rule == "frame-and-shells")
+    assert ["frame", "push-x"] in told.explains and "kN" in told.text
+    assert told.numbers["frame_x_N"] == pytest.approx(
+        min(row.peak_base_shear_N for row in run["frame-pushover"].runs if row.direction_deg == 0.0 and row.pattern == "uniform" and not row.eccentricity)
+    )  # fmt: skip
+    assert told.numbers["shells_x_N"] == min(c.greatest_load_N for c in (run["pushover"], run["pushover"].minus))
     for push in r.verdicts[1:]:
         assert push.outcome == "not-applicable" and push.demand is None and push.capacity > 0.0
         assert push.margin is None and push.margin_at_least is None
-    assert "Capacity without a verdict: push along x at " in r.statement and r.overall != "stands under all"
+    assert (
+        "Capacity without a verdict: equivalent frame " in r.statement
+        and "push along x at " in r.statement
+        and r.overall != "stands under all"
+    )
     run.write(tmp_path / "out", figures=False)
     saved, caption = draw_building(Run.read(tmp_path / "out"), _figures(tmp_path))
     assert saved == "building" and "Storey: 2.80 m" in caption

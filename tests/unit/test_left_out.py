@@ -113,6 +113,13 @@ DECKS = {
     "rigid solids": (BLOCK, SINE, {"kind": "dem", "end_time": 0.2, "solver": "nonsmooth", "direction": 0.0}),
     "sla of a panel": (WALL, None, {"kind": "sla", "mesh": {"size": 0.5}, "events": 30}),
     "pushover": (HOUSE, None, {"mesh": {"size": 0.9, "layers": 3}, "events": 25}),
+    "frame-modes": (HOUSE, None, {}),
+    "frame-pushover": (
+        HOUSE,
+        None,
+        {"directions": [0.0], "senses": ["+"], "patterns": ["uniform"], "eccentricities": [0.0]},
+    ),
+    "frame-history": (HOUSE, SINE, {"end_time": 0.5}),
     "walls of a plan": (HOUSE, None, {"kind": "local-mechanism", "mechanism": "building"}),
     "rocking of a stack": (STACK_OF_TWO, SINE, {"kind": "rocking"}),
     "sla of rows": (STACK, None, {"kind": "sla", "mesh": {"size": 0.5, "joints": "rows"}, "events": 30}),

@@ -13,9 +13,11 @@ from extrados.motions import pulses
 from extrados.results.assess import StrategyVerdict
 from extrados.results.codes import Check, CodeChecks, LocalMechanism, WallMechanism
 from extrados.results.dem import DemRun
+from extrados.results.frame import FramePush, FramePushover
 from extrados.results.limit import Fracture, NonDilatant, Tilt
 from extrados.results.model import Array, Result
 from extrados.results.rocking import Assessment, Rocking
+from extrados.results.shell import Pushover
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 
@@ -97,6 +99,17 @@ def walls(multiplier: float) -> Result:
     return Result(
         "local-mechanism", results=LocalMechanism.model_construct(checks=checks, multiplier=multiplier, walls=[one])
     )
+
+
+def framed(peak: float) -> Result:
+    """Of a frame: one push along x by its masses."""
+    one = FramePush.model_construct(direction_deg=0.0, pattern="uniform", eccentricity=0.0, peak_base_shear_N=peak)
+    return Result("frame-pushover", results=FramePushover.model_construct(runs=[one]))
+
+
+def shells(load: float) -> Result:
+    """Of shells: a push along x past its peak."""
+    return Result("pushover", results=Pushover.model_construct(greatest_load_N=load, peak_load_N=load, walls=[]))
 
 
 def house(across: float) -> Building:
@@ -380,6 +393,14 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
         {
             "more of it along that axis": lambda f: replace(f, building=house(0.6)),
             "it is no plan": lambda f: replace(f, building=building()),
+        },
+    ),
+    "a frame that carries less than the shells": (
+        "frame-and-shells",
+        lambda: facts([row("frame", "collapses", margin=0.8), row("push-x", "stands", margin=1.6)], {"frame": framed(100e3), "push-x": shells(130e3)}),
+        {
+            "they differ by less than 15 %": lambda f: having(f, **{"push-x": shells(114e3)}),
+            "the shells are not pushed": lambda f: replace(f, results={"frame": framed(100e3)}),
         },
     ),
     "chance": (

@@ -50,3 +50,25 @@ def test_statistics() -> None:
     assert scatter == pytest.approx(math.log(2.0) * math.sqrt(2.0 / 3.0))
     assert tool.count_right_modes(pairs) == (2, 3)
     assert tool.statistics([*pairs, pair("S", math.nan, "")])[2] == 4
+
+
+@pytest.mark.parametrize(
+    ("row", "failure"),
+    [
+        # Slender and lightly loaded: N (L - N/(.85 f t))/(2 H_0), H_0 = 3 m
+        ("1,x,A,brick,3,1,0.25,250,65,5,,,0.3,0.9,1,0.2,F,40,40", "F"),
+        # Squat: L t f_t/b sqrt(1 + s/f_t) with f_t .1 MPa, b 1
+        ("1,x,A,brick,2,3,0.25,250,65,5,0.1,,0.5,0.6,0.5,0.5,S,40,40", "S"),
+    ],
+)
+def test_the_macro_element_has_the_strength_of_its_formula(tmp_path, row: str, failure: str) -> None:
+    (wall,) = walls(tmp_path, row)
+    found = tool.by_macro_element(wall)["frame"]
+    if failure == "F":
+        pressed = wall.axial / (0.85 * wall.compressive * wall.thickness)
+        expected = wall.axial * (wall.length - pressed) / (2.0 * wall.height)
+    else:
+        area = wall.length * wall.thickness
+        expected = area * wall.tensile * math.sqrt(1.0 + wall.pressure / wall.tensile)
+    assert found.failure == failure
+    assert found.strength == pytest.approx(expected, rel=5e-3)

@@ -18,7 +18,7 @@ SHARED = frozenset(
 ) | {"material.compressive_strength", "supports.stiffness"}
 
 #: The analyses that apply the rules of [code]
-BY_CODE = ("code-checks", "local-mechanism", "assess")
+BY_CODE = ("code-checks", "local-mechanism", "pushover", "frame-pushover", "sla", "assess")
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from typing import Literal
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.sla import SlaCurve
 from extrados.results.verdict import Demand, KindResults, Verdict, capacity_alone, judge
+from extrados.results.verification import Verification
 
 
 class WallShare(ResultModel):
@@ -144,10 +145,11 @@ class Pushover(PushCurve, KindResults):
     stages: list[StageOfPush] = maybe("of a run in stages, each; without a name, the numbers are those of the main one")
     frame: list[FrameCapacity] = maybe("strengths of its piers by the formulas of codes, in the direction of the push")
     variants: list[Variation] = maybe("the first sense with other assumptions")
+    verification: Verification = maybe("verification by displacement, of a building of walls on a plan")
     band_N: list[float] = maybe("least and greatest base shear of all variants and the deck's own", "N")
 
     def judged(self, demand: Demand) -> Verdict:
-        """The lesser capacity of the two senses, without an outcome: base shear over weight is not compared with the PGA."""
+        """The verification by displacement; without one the lesser capacity of the two senses, without an outcome."""
         curves = [c for c in (self, self.minus) if c is not None]
         if any(c.capacity_N is None for c in curves):
             return judge(f"No state with a base shear was found; the run ended by: {self.stop}.", None, None, "N")
@@ -156,6 +158,8 @@ class Pushover(PushCurve, KindResults):
         slides, reached = capacity < load, least.greatest_acceleration_g
         unit, value = ("N", capacity) if reached is None else ("g", abs(reached) * capacity / load if load else 0.0)
         told = f"{capacity / 1e3:.4g} kN" + ("" if reached is None else f" ({value:.3g} g times the masses)")
+        if self.verification is not None and self.verification.decides:
+            return self.verification.judged(f"The greatest base shear is {told}.")
         if slides:
             text = f"Sliding on {least.sliding_level} limits the base shear to {told}, by Coulomb's law."
             violated = [

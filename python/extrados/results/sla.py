@@ -4,6 +4,7 @@ from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.verdict import Demand, KindResults, Verdict, capacity_alone, judge, judge_acceleration
+from extrados.results.verification import Verification
 
 #: How the names of arrays begin that belong to the first sense of the load, and to the second
 PREFIXES = ("", "minus_")
@@ -192,6 +193,7 @@ class Sla(SlaCurve, KindResults):
     )
     measured: Comparison = maybe("the measured curve of the deck beside the first sense's")
     scatter: Scatter = maybe("repetitions with other seeds")
+    verification: Verification = maybe("verification by displacement, of a wall that its own masses push")
     stones: bool = fact("whether the model is of blocks with joints, whose peak acceleration is a static limit load")
     hinges: list[str] = maybe("of blocks: joints that are open but for an edge at the peak")
 
@@ -205,6 +207,8 @@ class Sla(SlaCurve, KindResults):
         reached, load = least.greatest_acceleration_g, f"{(least.greatest_load_N or 0.0) / 1e3:.4g} kN"
         if reached is not None and not self.stones:
             peaks = least.peak_load_N is not None
+            if self.verification is not None and self.verification.decides:
+                return self.verification.judged(f"The greatest base shear is {load}.")
             text = f"The wall {'carries' if peaks else 'has carried, without a peak,'} {load} ({abs(reached):.3g} g times its masses)."
             return capacity_alone(text, abs(reached), "g", None if peaks else "lower")
         if any(c.peak_load_N is None for c in curves):

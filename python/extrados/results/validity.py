@@ -152,3 +152,19 @@ Assess = Validity(
     "The reasons state how the models differ, not which model is right. No strategy is better than the geometry and the "
     "properties of the deck.",
 )
+FrameModes = Validity(
+    "Piers and spandrels vibrate about the equilibrium under the weight. Walls have no stiffness out of their planes.",
+    "Sections that are open under the weight stay open. Masses of walls out of their planes move with the corners, linearly between them.",
+)
+FramePushover = Validity(
+    "Walls are plane frames of piers and spandrels between rigid nodes. Sections carry no tension and crush; piers slide or crack in "
+    "shear; beyond a drift limit an element loses its strength and keeps its vertical load. All nodes of a wall on a level have one "
+    "displacement along it.",
+    "Failure of walls out of their planes is not considered: use local-mechanism. Spandrels carry no normal force. Strengths and drift limits "
+    "are those of codes; tested walls scatter by a fifth about them. Irregular openings make the division into piers uncertain.",
+)
+FrameHistory = Validity(
+    "The frame of frame-pushover moves under one horizontal component. Sections unload elastically towards the origin and keep their "
+    "crushing; sliding is plastic. Damping follows the stiffness of the last step.",
+    "Vertical motion, failure of walls out of their planes and impacts of opened joints are not considered.",
+)

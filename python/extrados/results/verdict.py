@@ -126,7 +126,7 @@ def capacity_alone(
     """A base shear that a structure carries which vibrates and yields: no verdict follows from the peak ground acceleration."""
     text = (
         f"{carried} This is a capacity without a verdict: the structure amplifies the motion and yields, so that the peak ground "
-        "acceleration is no demand on it. A displacement demand by the response spectrum would give a verdict."
+        "acceleration is no demand on it. A displacement demand by the response spectrum gives a verdict: give the seismic action in [code]."
     )
     return judge(text, None, capacity, unit, "not-applicable", bound, violated)
 

@@ -22,7 +22,7 @@ NAMES = {
 }  # fmt: skip
 #: Limit states of each code; the first of DEFAULT is that of collapse prevention or life safety by which a report concludes
 LIMIT_STATES = {
-    "NTC": ("SLD", "SLV", "SLC"), "EN1998": ("DL", "SD", "NC"), "ASCE41": ("IO", "LS", "CP"), "NZSEE": ("ULS",), "none": (),
+    "NTC": ("SLO", "SLD", "SLV", "SLC"), "EN1998": ("DL", "SD", "NC"), "ASCE41": ("IO", "LS", "CP"), "NZSEE": ("ULS",), "none": (),
 }  # fmt: skip
 DEFAULT = {"NTC": "SLV", "EN1998": "SD", "ASCE41": "LS", "NZSEE": "ULS"}
 #: Confidence factor by knowledge level: Circ. 7/2019 Table C8.5.IV; EN 1998-3:2005 Table 3.1 (verify clause). For ASCE 41 1 over
@@ -36,7 +36,7 @@ IMPORTANCE = {
     "NTC": {"I": 0.7, "II": 1.0, "III": 1.5, "IV": 2.0}, "EN1998": {"I": 0.8, "II": 1.0, "III": 1.2, "IV": 1.4},
 }  # fmt: skip
 #: NTC 2018 Table 3.2.I: probability of exceedance in the reference life V_R
-EXCEEDED = {"SLD": 0.63, "SLV": 0.10, "SLC": 0.05}
+EXCEEDED = {"SLO": 0.81, "SLD": 0.63, "SLV": 0.10, "SLC": 0.05}
 #: NZS 1170.5 Table 3.5 (verify clause): return period [years], factor R
 RETURN_FACTOR = (
     (20.0, 0.2), (25.0, 0.25), (50.0, 0.35), (100.0, 0.5), (250.0, 0.75), (500.0, 1.0), (1000.0, 1.3), (2000.0, 1.7), (2500.0, 1.8),
@@ -66,11 +66,11 @@ class Code(Table):
         "class of use (NTC: coefficient C_U) or importance class (EN 1998-1: factor gamma_I); default II",
         source="NTC 2018 Table 2.4.II; EN 1998-1 4.2.5",
     )
-    limit_states: list[Literal["SLD", "SLV", "SLC", "DL", "SD", "NC", "IO", "LS", "CP", "ULS"]] = key(
-        [], "limit states that are checked; default SLV, SD, LS or ULS", max_length=3
+    limit_states: list[Literal["SLO", "SLD", "SLV", "SLC", "DL", "SD", "NC", "IO", "LS", "CP", "ULS"]] = key(
+        [], "limit states that are checked; default SLV, SD, LS or ULS", max_length=4
     )
     return_periods: list[Years] = key(
-        [], "return period in years of each limit state; default of NTC that of V_N C_U", max_length=3
+        [], "return period in years of each limit state; default of NTC that of V_N C_U", max_length=4
     )
     knowledge_level: Literal["LC1", "LC2", "LC3", "KL1", "KL2", "KL3", "minimum", "usual", "comprehensive"] | None = (
         key(None, "level of knowledge of the masonry; default the lowest of the code")
@@ -82,19 +82,19 @@ class Code(Table):
     topography: float = key(1.0, "topographic amplification S_T, of NTC", ge=1, le=2)
     spectrum_type: Literal[1, 2] = key(1, "spectrum of EN 1998-1: type 1 or 2")
     accelerations: list[Annotated[Acceleration, Field(gt=0)]] = key(
-        [], "a_g on ground A for each limit state (NTC); a_gR, which gamma_I multiplies (EN 1998-1)", max_length=3
+        [], "a_g on ground A for each limit state (NTC); a_gR, which gamma_I multiplies (EN 1998-1)", max_length=4
     )
     amplifications: list[Annotated[float, Field(ge=1, le=10)]] = key(
-        [], "F_0 for each limit state, of NTC; default 2.5", max_length=3
+        [], "F_0 for each limit state, of NTC; default 2.5", max_length=4
     )
     corner_periods: list[Annotated[Time, Field(gt=0, le=2)]] = key(
-        [], "T_C* for each limit state, of NTC; default 0.35 s", max_length=3
+        [], "T_C* for each limit state, of NTC; default 0.35 s", max_length=4
     )
     short_accelerations: list[Annotated[Acceleration, Field(gt=0)]] = key(
-        [], "S_XS at the site for each limit state, of ASCE 41", max_length=3
+        [], "S_XS at the site for each limit state, of ASCE 41", max_length=4
     )
     one_second_accelerations: list[Annotated[Acceleration, Field(gt=0)]] = key(
-        [], "S_X1 at the site for each limit state, of ASCE 41", max_length=3
+        [], "S_X1 at the site for each limit state, of ASCE 41", max_length=4
     )
     long_period: Time = key(8.0, "T_L of ASCE 7", gt=0)
     hazard_factor: Annotated[float, Field(gt=0, le=1)] | None = key(None, "Z, hazard factor of NZS 1170.5")

@@ -10,6 +10,7 @@ from extrados.results.store import Stored
 from extrados.results.strengthen import Strengthen
 from extrados.show.document import Block, Figure, Table, Words
 from extrados.show.language import Language
+from extrados.show.verification import COLUMNS, WIDTHS, rows_of
 
 Figures = list[tuple[str, str]]
 #: Outcomes of verdicts in words, the gravest first
@@ -120,6 +121,9 @@ def _comparison(run: Stored, lead: dict[str, Any], words: Language) -> Table:
         return Table(
             tuple(map(words, ("strategy", "verdict", "demand", "capacity", "margin"))), rows, (2.4, 1.2, 1.2, 1.2, 1.2)
         )
+    verified = getattr(r, "verification", None)
+    if verified is not None and verified.checks:
+        return Table(tuple(map(words, COLUMNS)), rows_of(verified), WIDTHS)
     head: tuple[str, ...] = tuple(map(words, ("demand", "capacity", "safety factor")))
     row: tuple[str, ...] = (number(v["demand"], v["unit"]), number(v["capacity"], v["unit"]), number(v["ratio"], ""))
     if isinstance(r, Checked) and r.clause:
@@ -166,6 +170,17 @@ def _confidence(run: Stored, lead: dict[str, Any], words: Language) -> str:
         ]
         if open_parts:
             said.append(words("No check decides for: {parts}.", parts=", ".join(open_parts)))
+    verified = getattr(r, "verification", None)
+    if verified is not None:
+        if verified.confidence_factor is not None:
+            factor = f"{verified.confidence_factor:.3g}"
+            said.append(words("Strengths are divided by the confidence factor {factor}.", factor=factor))
+        if verified.by_default:
+            said.append(words("The deck names no code; the report applies {code}.", code=verified.code))
+        clauses = {c.clause for c in verified.checks}
+        said.append(words("Clauses: {clauses}.", clauses="; ".join(sorted(clauses))))
+        if any("verify clause" in clause for clause in clauses):
+            said.append(words("Clauses so marked were not verified against the standard. Compare them before use."))
     if v["bound"] in ("upper", "lower"):
         said.append(words(f"The capacity is {'an upper' if v['bound'] == 'upper' else 'a lower'} bound."))
     if v["violated"]:

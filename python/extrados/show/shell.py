@@ -15,6 +15,7 @@ from extrados.results.store import Stored
 from extrados.show import scene, style
 from extrados.show.cracked import CRACKS
 from extrados.show.sla import LOST, SENSES
+from extrados.show.verification import draw_verification
 
 FLOOR = "#dbe3ea"
 #: Where the building is looked at from
@@ -30,6 +31,7 @@ LEAST_WIDTH = 0.02
 def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """All figures of one analysis."""
     figures = [_stage_curves(run, name, folder) if run[name].stages else _curves(run, name, folder)]
+    figures = [*draw_verification(run, name, folder), *figures]
     for prefix in _prefixes(run, name):
         if f"{prefix}state_event" not in run.arrays[name]:
             continue

@@ -13,6 +13,7 @@ from extrados.results.store import Stored
 from extrados.show import style
 from extrados.show.cracked import CORNERS, CRACKS, at_points, polygons, scale
 from extrados.show.sla_film import film_sla
+from extrados.show.verification import draw_verification
 
 LOST, ENVELOPE = "#d9822b", "#1f4e79"
 #: Panels that stand beside each other at most; one more does before the next row begins
@@ -51,7 +52,7 @@ def _outline(run: Stored, name: str) -> np.ndarray:
 
 def draw_sla(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """All figures of one analysis."""
-    figures = [_curve(run, name, folder)]
+    figures = [*draw_verification(run, name, folder), _curve(run, name, folder)]
     film_sla(run, name, folder)
     for prefix in PREFIXES:
         if f"{prefix}state_event" in run.arrays[name]:

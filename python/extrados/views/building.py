@@ -9,6 +9,8 @@ from extrados.views.blocks import Masonry, maker_of
 if TYPE_CHECKING:  # a view is loaded when it is asked for
     from extrados.model.geometry.solids.assembly import SolidAssembly
     from extrados.model.geometry.solids.strands import Strand
+    from extrados.views.frame.options import FrameOptions
+    from extrados.views.frame.plan import EquivalentFrame
     from extrados.views.mesh.mesh import Mesh
     from extrados.views.mesh.options import MeshOptions
     from extrados.views.rigid import RigidBodies
@@ -20,7 +22,7 @@ if TYPE_CHECKING:  # a view is loaded when it is asked for
 @dataclass(frozen=True)
 class Building(Masonry):
     """A building and its views: blocks, piers, solids, rigid bodies, the mechanism by which it rocks, finite elements,
-    shells."""
+    shells, frames of macro-elements."""
 
     def solids(self) -> "SolidAssembly":
         """Blocks in space and the polygons along which they touch."""
@@ -75,6 +77,12 @@ class Building(Masonry):
         options = options or kinds.load(kinds.SHELL_OPTIONS)()
         tables = (self.structure, self.material, *self.materials.items(), options)
         return self.made("shell", tables, lambda: maker_of(self.kind.shell)(self, options))
+
+    def frame(self, options: "FrameOptions | None" = None) -> "EquivalentFrame":
+        """Macro-elements: piers and spandrels of walls on a plan between rigid nodes."""
+        options = options or kinds.load(kinds.FRAME_OPTIONS)()
+        tables = (self.structure, self.material, *self.materials.items(), self.joints, options)
+        return self.made("frame", tables, lambda: maker_of(self.kind.frame)(self, options))
 
     @property
     def meshed_by_stones(self) -> bool:

@@ -22,6 +22,7 @@ from extrados.core.errors import Cancelled
 from extrados.decks.reader import DeckError, make_deck
 from extrados.model.errors import WHOLE
 from extrados.results.assess import StrategyVerdict
+from extrados.results.frame import FramePushover
 from extrados.results.limit import Tilt, judge_dilatant
 from extrados.results.model import Result
 from extrados.results.shell import Pushover
@@ -145,6 +146,8 @@ def row_of(
         low = verdict.ratio  # it bears so much at least
         if verdict.outcome == "stands":
             statement = f"The run passed no peak: the capacity is not known. {statement}"
+    elif verdict.bound == "lower" and isinstance(r, Sla | Pushover | FramePushover):
+        low = verdict.ratio
     elif strategy.axis in ("acceleration", "pulse", "check") or isinstance(r, SelfWeight):
         margin = None if isinstance(r, SelfWeight) and r.neglected else verdict.ratio  # of another building
     outcome, violated = outcome or verdict.outcome, list(verdict.violated)

@@ -211,7 +211,7 @@ class _Work:
         self.context.progress(1.0, 3.0, "assess")
 
     def costly(self) -> None:
-        for name in ("probability", "sla", "push-x", "push-y", "dem"):
+        for name in ("probability", "frame", "sla", "push-x", "push-y", "dem"):
             if not self.wants(name) or name in self.rows:
                 continue
             if name == "probability" and "rocking" in self.rows and self.rows["rocking"].status == "refused":

@@ -12,14 +12,18 @@ from extrados.motions.motion import Motion
 from extrados.results.assess import Reason, StrategyVerdict
 from extrados.results.codes import Check, Checked, LocalMechanism
 from extrados.results.dem import DemRun
+from extrados.results.frame import FramePushover
 from extrados.results.limit import Tilt
 from extrados.results.model import Result
 from extrados.results.rocking import Assessment, Rocking
+from extrados.results.shell import Pushover
 from extrados.results.verdict import KindResults, SelfWeight
 from extrados.views.building import Building
 
 #: Strategies that push for ever, and those that follow the motion or a part of it
 STATIC, DYNAMIC = ("tilt", "sla", "push-x", "push-y"), ("rocking", "assessment", "probability", "dem")
+#: Part by which the base shears of frame and shells may differ without a stated reason
+SHELLS_APART = 0.15
 #: The push of a building on a plan along its two axes
 PUSHES = ("push-x", "push-y")
 #: A joint that slips by this part of its length has slid; a thrust line outside by this share of the time is elsewhere
@@ -104,7 +108,7 @@ HEADLINES = {
     "drums": "blocks that move separately", "hinges-elsewhere": "hinges that form elsewhere",
     "membrane-without-sliding": "elements that cannot slide", "tension": "tensile strength of the elements",
     "mortar": "mortar", "code-factors": "the factors of codes", "code-check": "which check of the codes governs", "torn-off": "whether corners and floors hold the walls",
-    "weaker-direction": "the walls along each axis", "crack": "a crack in the buttress", "left-out": "restraints that some strategies neglect", "chance": "uncertain sizes (5 %)",
+    "weaker-direction": "the walls along each axis", "frame-and-shells": "frame and shells", "crack": "a crack in the buttress", "left-out": "restraints that some strategies neglect", "chance": "uncertain sizes (5 %)",
 }  # fmt: skip
 
 
@@ -587,11 +591,13 @@ def code_check(facts: Facts, pairs: list[Pair]) -> Reason | None:
 def torn_off(facts: Facts, pairs: list[Pair]) -> Reason | None:
     """Codes take a wall apart from its neighbours; in the push of the whole corners and floors hold it."""
     r = facts.of("code-checks")
-    mine = [p for p in pairs if "code-checks" in p and set(p) & set(PUSHES) and facts.split(p)[0] == "code-checks"]
+    mine = [
+        p for p in pairs if "code-checks" in p and set(p) & {*PUSHES, "frame"} and facts.split(p)[0] == "code-checks"
+    ]
     if not mine or not isinstance(r, LocalMechanism) or not r.walls:
         return None
     wall = r.walls[0]
-    bears = {n: c for p in mine for n in p if n in PUSHES and (c := _reached(facts, n)) is not None}
+    bears = {n: c for p in mine for n in p if n != "code-checks" and (c := _reached(facts, n)) is not None}
     if not bears or wall.multiplier >= min(bears.values()):
         return None
     weakest = min(bears, key=lambda n: bears[n])
@@ -622,6 +628,46 @@ def weaker_direction(facts: Facts, pairs: list[Pair]) -> Reason | None:
     )  # fmt: skip
 
 
+def frame_and_shells(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """The frame and the shells of one building carry base shears that differ by more than a stated part."""
+    frame = facts.of("frame")
+    if not isinstance(frame, FramePushover):
+        return None
+    told, numbers, mine = [], {}, []
+    for name, direction in zip(PUSHES, (0.0, 90.0), strict=True):
+        shells = facts.of(name)
+        if not isinstance(shells, Pushover):
+            continue
+        alike = [
+            r for r in frame.runs if r.direction_deg == direction and r.pattern == "uniform" and r.eccentricity == 0.0
+        ]
+        loads = [c.greatest_load_N for c in (shells, shells.minus) if c is not None and c.greatest_load_N is not None]
+        if not alike or not loads:
+            continue
+        one, other = min(r.peak_base_shear_N for r in alike), min(loads)
+        if max(one, other) <= (1.0 + SHELLS_APART) * min(one, other):
+            continue
+        axis = name.removeprefix("push-")
+        text = f"Along {axis} the frame carries {one / 1e3:.3g} kN and the shells {other / 1e3:.3g} kN"
+        if any(c.peak_load_N is None for c in (shells, shells.minus) if c is not None):
+            text += ", which have not passed their peak"
+        if shells.flanges is not None and shells.walls:
+            text += f"; walls across carry {100 * shells.flanges.share:.2g} % of the latter"
+            numbers[f"across_share_{axis}"] = shells.flanges.share
+        told.append(f"{text}.")
+        mine.append(next((p for p in pairs if set(p) == {"frame", name}), ("frame", name)))
+        numbers |= {f"frame_{axis}_N": one, f"shells_{axis}_N": other}
+    if not told:
+        return None
+    return reason(
+        "frame-and-shells", mine,
+        f"{' '.join(told)} Sections of the frame carry no tension, its piers slide or crack by the strengths of codes, and flanges act only "
+        "through the vertical shear at corners. Shells have the tensile strength of the masonry and bend out of their planes; they slide "
+        "only along drawn joints.",
+        **numbers,
+    )  # fmt: skip
+
+
 def _reached(facts: Facts, name: str) -> float | None:
     """The acceleration [g] up to which a push has come."""
     row = facts.rows[name]
@@ -640,7 +686,7 @@ def _governing(facts: Facts, pairs: list[Pair]) -> tuple[Checked, list[tuple[flo
 
 Rule = Callable[[Facts, list[Pair]], Reason | list[Reason] | None]
 RULES: tuple[Rule, ...] = (
-    static_peak, crack, left_out, ties_of_statics, impact_rule, last_digits, elements_of_last_digits, violated, sine_for_record, sliding, sliding_as_collapse, drums, hinges_elsewhere, membrane, mortar, code_factors, code_check, torn_off, weaker_direction,
+    static_peak, crack, left_out, ties_of_statics, impact_rule, last_digits, elements_of_last_digits, violated, sine_for_record, sliding, sliding_as_collapse, drums, hinges_elsewhere, membrane, mortar, code_factors, code_check, torn_off, weaker_direction, frame_and_shells,
     chance,
 )  # fmt: skip
 

@@ -100,7 +100,7 @@ class Strategy:
     def applies(self, building: Building) -> bool:
         """Whether it can look at the building: on a plan there are walls, which are pushed and checked, and no stones."""
         on_plan = isinstance(building.structure, Plan)
-        return self.name == "code-checks" or on_plan == (self.kind == "pushover")
+        return self.name == "code-checks" or on_plan == (self.kind in ("pushover", "frame-pushover"))
 
 
 def _as_it_is(asked: Asked) -> Choice:
@@ -163,13 +163,33 @@ def _push(asked: Asked, direction: float) -> Choice:
     events = max(int(asked.share(name) / SIDES / (PUSH_SECONDS * elements)), LEAST_EVENTS)
     keys = {
         "direction": direction, "directions": ["+", "-"], "mesh": {"size": size, "layers": LAYERS}, "ripple": 0.2,
-        "events": events, "stop_fraction": FALLEN,
+        "events": events, "stop_fraction": FALLEN, **_action(asked),
     }  # fmt: skip
     words = (
         f"forces in proportion to the masses along {'x' if direction == 0.0 else 'y'}, to both sides; elements of {size:g} m, "
         f"{LAYERS} points through the thickness, {events} events at most, until the load has fallen to {FALLEN:g} of its peak"
     )
     return Choice(keys, words)
+
+
+def _action(asked: Asked) -> dict[str, Any]:
+    """Keys by which a push has the spectrum of the assessment; that of [code] it has by itself."""
+    spectrum = asked.options.spectrum
+    return {} if spectrum is None else {"verification": {"spectrum": spectrum.model_dump(exclude_none=True)}}
+
+
+def _frame(asked: Asked) -> Choice:
+    """All pushes of a building on a plan as a frame of macro-elements."""
+    building = asked.building
+    if building.material.tensile_strength is None and not building.joints.cohesion:
+        raise LeftOut(
+            "piers need a shear strength, [material] tensile_strength or [joints] cohesion, which the deck lacks"
+        )
+    # walls out of their planes are a strategy of their own
+    return Choice(
+        {"out_of_plane": False, **_action(asked)},
+        "both directions and senses, forces by masses and by masses times height, eccentricity 0 and 5 %",
+    )
 
 
 def _codes(asked: Asked) -> Choice:
@@ -304,6 +324,7 @@ ALL = tuple(
         ("sla", "sla", "sequentially linear analysis", "acceleration", validity.Sla, _sla),
         ("push-x", "pushover", "push along x", "acceleration", validity.Pushover, lambda asked: _push(asked, 0.0)),
         ("push-y", "pushover", "push along y", "acceleration", validity.Pushover, lambda asked: _push(asked, 90.0)),
+        ("frame", "frame-pushover", "equivalent frame", "acceleration", validity.FramePushover, _frame),
         ("dem", "dem", "discrete elements", "displacement", validity.Dem, _dem),
     )
 )

@@ -9,8 +9,10 @@ from extrados.schema.spectrum import CodeSpectrum
 from extrados.schema.table import key
 
 #: Strategies in the order in which they are asked: cheap first
-STRATEGIES = ("tilt", "rocking", "assessment", "code-checks", "probability", "sla", "push-x", "push-y", "dem")
-Strategy = Literal["tilt", "rocking", "assessment", "code-checks", "probability", "sla", "push-x", "push-y", "dem"]
+STRATEGIES = ("tilt", "rocking", "assessment", "code-checks", "probability", "sla", "push-x", "push-y", "frame", "dem")
+Strategy = Literal[
+    "tilt", "rocking", "assessment", "code-checks", "probability", "sla", "push-x", "push-y", "frame", "dem"
+]
 
 
 class Assess(Analysis):
@@ -33,7 +35,7 @@ class Assess(Analysis):
         "that still runs after twice this time is stopped and reported", ge=5, le=1e6,
     )  # fmt: skip
     strategies: list[Strategy] = key(
-        list(STRATEGIES), "strategies that are run, where they apply; `probability` is `fragility` with uncertain sizes, or with the motions of a set; `push-x` and `push-y` are `pushover` of a building on a plan", min_length=1, max_length=len(STRATEGIES),
+        list(STRATEGIES), "strategies that are run, where they apply; `probability` is `fragility` with uncertain sizes, or with the motions of a set; `push-x` and `push-y` are `pushover`, `frame` is `frame-pushover` of a building on a plan", min_length=1, max_length=len(STRATEGIES),
     )  # fmt: skip
     thin: float = key(1.5, "a margin below this, or above its inverse, is thin: further runs follow", gt=1, le=10)
     apart: float = key(

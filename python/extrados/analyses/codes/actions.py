@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from extrados.analyses.codes.code_rules import Line
-from extrados.analyses.codes.tables import CodeChecks, LocalMechanism
+from extrados.analyses.codes.tables import CodeChecks, LocalMechanism, Verification
 from extrados.analyses.context import Context, Refused
 from extrados.core import motion as core_motion
 from extrados.motions.code_spectra import damping_factor
@@ -21,6 +21,8 @@ from extrados.schema.table import FloorBelow
 Spectrum = Callable[[float, float], float]
 #: The spectra that belong to a code, beside a table of the deck's own
 OWN = {"NTC": ("NTC",), "EN1998": ("EN1998-1", "EN1998-2"), "ASCE41": ("ASCE7",), "NZSEE": ("NZS1170",)}
+#: What the limit state of operation is for
+ONLY_DISPLACEMENT = "SLO is checked for the displacement of pushed buildings alone: C8.7.1 has no check of piers or local mechanisms at SLO."
 #: The rules of a deck without [code]
 NATIVE = Code(jurisdiction="NTC")
 
@@ -47,7 +49,7 @@ def code_of(context: Context) -> Code:
     return context.deck.code or NATIVE
 
 
-def actions(context: Context, options: CodeChecks | LocalMechanism) -> list[Action]:
+def actions(context: Context, options: CodeChecks | LocalMechanism | Verification) -> list[Action]:
     """The action of each limit state; what the analysis gives by itself is that of the concluding one (SLV, SD, LS, ULS)."""
     code, found = code_of(context), {}
 
@@ -55,6 +57,10 @@ def actions(context: Context, options: CodeChecks | LocalMechanism) -> list[Acti
         return None if context.deck.code is None else code.return_period(state)
 
     for state in code.states:
+        if state == "SLO" and not isinstance(options, Verification):
+            if ONLY_DISPLACEMENT not in context.warnings:
+                context.warnings.append(ONLY_DISPLACEMENT)
+            continue
         spectrum = spectrum_of(context, code.spectrum(state), "code")
         found[state] = Action(state, spectrum, None if spectrum is None else spectrum(0.0, 0.05), years(state))
     spectrum = demanded_spectrum(context, options.spectrum, options.motion_spectrum and not _given(found, code))
@@ -121,7 +127,7 @@ def fits(code: Code | None, model: CodeSpectrum) -> bool:
     return code is None or code.jurisdiction == "none" or model.code in (*OWN[code.jurisdiction], "table")
 
 
-def refuse_mixed(context: Context, options: CodeChecks | LocalMechanism) -> None:
+def refuse_mixed(context: Context, options: CodeChecks | LocalMechanism | Verification) -> None:
     """Refused where the spectrum of the analysis is of another code than [code]."""
     code = context.deck.code
     for name in ("spectrum", "collapse_spectrum"):
@@ -143,12 +149,15 @@ def demanded_spectrum(context: Context, model: CodeSpectrum | None, of_motion: b
         return code
     if context.deck.motion is None:
         raise Refused("motion_spectrum needs a [motion]", ("analysis", "motion_spectrum"))
-    motion = context.motion
-    acceleration, step = sampled(motion)
+    return spectrum_of_motion(*sampled(context.motion), context.motion.peak)
+
+
+def spectrum_of_motion(acceleration: np.ndarray, step: float, peak: float) -> Spectrum:
+    """The response spectrum of samples [m/s^2] every step [s], joined by straight lines; peak: theirs [m/s^2]."""
 
     def at(period: float, damping: float) -> float:
-        if period < 10.0 * step:  # too stiff to answer otherwise than the ground
-            return motion.peak
+        if period < step:  # too stiff to answer otherwise than the ground
+            return peak
         return float(core_motion.response_spectra(acceleration, step, [period], [damping]).psa[0, 0])
 
     return at

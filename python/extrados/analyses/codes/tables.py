@@ -85,6 +85,55 @@ class CodeChecks(BuildingAnalysis):
         return found
 
 
+class Verification(Table):
+    """Verification of a capacity curve by displacement, by the code of the deck."""
+
+    #: The action of a capacity curve is a spectrum
+    peak_acceleration: ClassVar = None
+    method: Literal["N2", "capacity-spectrum", "coefficient"] | None = key(
+        None,
+        "method of the displacement demand: N2 (EN 1998-1: its Annex B), capacity spectrum, or the coefficient method of ASCE 41; default "
+        "coefficient (ASCE41), N2 (others)",
+    )
+    secant: float = key(
+        0.7,
+        "part of the greatest base shear at which the bilinear curve has its stiffness; 0.6 is the general rule of C7.3.4.2",
+        ge=0.5,
+        le=0.9,
+        source="NTC 2018 7.8.1.6",
+    )
+    quality: float = key(
+        0.33,
+        "factor k on the hysteretic damping, of the capacity spectrum: 1, 0.66 or 0.33 of high, moderate or low dissipation",
+        ge=0,
+        le=1,
+        source="Circ. 7/2019 [C7.3.10]",
+    )
+    shape: Literal["displaced", "mode"] = key(
+        "displaced",
+        "phi of the equivalent mass: elastic displacement under the pushing forces, or the mode of greatest participating mass in "
+        "the direction, which with flexible floors may have little of it",
+        source="Circ. 7/2019 C7.3.4.2: first mode",
+    )
+    spectrum: CodeSpectrum | None = key(
+        None, "elastic spectrum of the concluding limit state; default that of [code], or of a `compatible` motion"
+    )
+    motion_spectrum: bool = key(False, "without a spectrum of a code, the response spectrum of the deck's motion")
+
+    motions: int | None = key(
+        None,
+        "motions of the set in [motion] of which N2 makes a fragility, record by record; default none",
+        ge=2,
+        le=10_000,
+    )
+
+    @model_validator(mode="after")
+    def _of_the_method(self) -> "Verification":
+        if "quality" in self.model_fields_set and self.method != "capacity-spectrum":
+            raise ValueError('quality: needs method = "capacity-spectrum"')
+        return self
+
+
 class Floor(Table):
     """A floor, roof or vault that rests on the wall."""
 

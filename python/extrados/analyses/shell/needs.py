@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 
+from extrados.analyses.codes.actions import refuse_mixed
+from extrados.analyses.codes.verification import demands
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.needs import Need
 from extrados.analyses.shell.tables import Pushover
@@ -13,6 +15,7 @@ def needs(context: Context, options: Pushover) -> Iterator[Need]:
     """Steps that raise where the deck is wrong, see `analyses.needs`."""
     building = context.building
     yield lambda: _places(building, options)
+    yield lambda: _verified(context, options)
     if not isinstance(building.structure, Plan):
         yield lambda: _refuse_floors(building, options)
     if options.frame is not None:
@@ -24,6 +27,16 @@ def _places(building: Building, options: Pushover) -> None:
     from extrados.analyses.shell.model import build
 
     build(building.shell(options.mesh), options.model_copy(update={"pattern": "mass"}))
+
+
+def _verified(context: Context, options: Pushover) -> None:
+    """The action of the verification belongs to the code of the deck, and the building has walls on a plan."""
+    refuse_mixed(context, options.verification)
+    if options.verification.model_fields_set and not isinstance(context.building.structure, Plan):
+        raise Refused(
+            "verification: displacements are verified of buildings of walls on a plan", ("analysis", "verification")
+        )
+    demands(context, options.verification)
 
 
 def _refuse_floors(building: Building, options: Pushover) -> None:

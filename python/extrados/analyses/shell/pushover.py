@@ -8,6 +8,16 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.batches import Chain
+from extrados.analyses.codes.actions import code_of
+from extrados.analyses.codes.capacity_curve import CapacityCurve
+from extrados.analyses.codes.verification import (
+    DRIFTS,
+    Push,
+    displaced_shape,
+    unverified,
+    verify,
+    with_design_strengths,
+)
 from extrados.analyses.context import Context
 from extrados.analyses.shell.frame import capacities
 from extrados.analyses.shell.model import ShellModel, build, first_mode
@@ -26,6 +36,7 @@ from extrados.model.structures.plan import Plan
 from extrados.results import shell as out
 from extrados.results.model import Array, Result, TableData
 from extrados.results.sla import PREFIXES
+from extrados.results.verification import Verification
 from extrados.results.vtu import pvd, vtu
 from extrados.views.building import Building
 
@@ -33,6 +44,8 @@ from extrados.views.building import Building
 WORKING = 0.05
 #: Forces below this part of the weight are rounding
 ROUNDING = 1e-9
+#: Cosine of the angle between a wall and the push below which the wall stands across
+ACROSS = 0.5
 #: What elements of a mesh file are called that are of no group
 NO_GROUP = "shell"
 
@@ -45,6 +58,9 @@ def run(context: Context, options: Pushover) -> Result:
 
 def _run(context: Context, options: Pushover) -> Result:
     result = Result("pushover")
+    verified = isinstance(context.building.structure, Plan) and not options.stages and not options.drives
+    if verified:
+        context = with_design_strengths(context, options.verification)
     model = build(context.building.shell(options.mesh), options)
     context.warnings += model.warnings
     if not any(g.tension is not None for g in model.groups if isinstance(g, Shells | ShellJoints)):
@@ -80,6 +96,12 @@ def _run(context: Context, options: Pushover) -> Result:
     interrupted = any(c.events.interrupted for c in curves)
     if options.variants and not interrupted:
         numbers |= _variants(context, options, result, numbers)
+    if (
+        verified
+        and not interrupted
+        and (found := _verify(context, result, model, options, curves, numbers)) is not None
+    ):
+        numbers["verification"] = found
     if options.frame is not None:
         numbers["frame"] = _frame(context, result, model, options, elastic)
     result.results = out.Pushover(**numbers)
@@ -249,7 +271,7 @@ def _numbers(
         }
         for w, wall in enumerate(model.mesh.walls)
     ]  # fmt: skip
-    across = np.abs(facing) < 0.5
+    across = np.abs(facing) < ACROSS
     if across.any() and not across.all() and base:
         change = (normal - normal0)[across]
         up, down = float(change[change > 0].sum()), float(-change[change < 0].sum())
@@ -358,6 +380,59 @@ def _frame(
         {"from": "m", "to": "m", "height": "m", "load": "N", "FEMA 356": "N", "NTC 2018": "N"},
     )
     return found
+
+
+def _verify(
+    context: Context, result: Result, model: ShellModel, options: Pushover, curves: list[Curve], numbers: dict[str, Any]
+) -> Verification | None:
+    """Displacement demand and capacity of all senses; conditions that its curves do not know."""
+    mass = model.mesh.mass()
+    with model.open(options, 1) as core_model:
+        shape, through = displaced_shape(
+            core_model, model.reference, model.control, model.along, model.freedoms.equation >= 0
+        )
+    if options.verification.shape == "mode":
+        shape, *_ = first_mode(model, options, mass)
+        c = model.control
+        shape = shape / float((c.share * model.along[c.direction]) @ shape[c.node])
+    drifts_of_piers = DRIFTS.get(code_of(context).jurisdiction)
+    pushes, violated = [], []
+    for curve in curves:
+        if curve.peak < 0:
+            violated.append(unverified(curve.sense))
+            continue
+        d, p = curve.envelope(model.unit)
+        found = CapacityCurve(d - d[0], through * p, mass, shape)
+        if drifts_of_piers is not None:
+            shear, flexure = (_drift_reached(model, curve, limit) for limit in drifts_of_piers)
+            found = replace(found, limits={} if flexure is None else {"drift": flexure - curve.before})
+            if shear is not None and shear - curve.before < found.ultimate:
+                violated.append(
+                    f"To {curve.sense} a wall reaches the limit drift of piers in shear, {100 * drifts_of_piers[0]:.2g} %, at "
+                    f"{1e3 * shear:.3g} mm, before the collapse displacement: piers that fail in shear end the curve there."
+                )
+        pushes.append(Push(curve.sense, found, float(mass.sum())))
+    for own in (numbers, numbers.get("minus")):
+        if own is not None and own["capacity_N"] is not None and own["capacity_N"] < own["greatest_load_N"]:
+            violated.append(
+                f"To {own['sense']} the building slides on {own['sliding_level']} at {own['capacity_N'] / 1e3:.3g} kN; the curve "
+                "excludes that sliding."
+            )
+    return verify(context, result, options.verification, pushes, violated)
+
+
+def _drift_reached(model: ShellModel, curve: Curve, limit: float) -> float | None:
+    """Control displacement [m] at which a storey of a wall along the push has a drift, by straight lines between the kept
+    states in equilibrium (the greatest load and the last among them); None where none reaches it."""
+    along = [w for w, wall in enumerate(model.mesh.walls) if abs(float(wall.along @ model.along[:2])) >= ACROSS]
+    at, most = [curve.before], [0.0]
+    for state in curve.states:
+        if curve.held[state.event]:
+            at.append(float(curve.events.monitors[state.event, 0]))
+            most.append(float(np.nanmax(drifts(model, state.displacement, curve.sign)[1][along], initial=0.0)))
+    order = np.argsort(at)
+    d, drift = np.array(at)[order], np.maximum.accumulate(np.array(most)[order])
+    return float(np.interp(limit, drift, d)) if drift[-1] >= limit else None
 
 
 def _variants(context: Context, options: Pushover, result: Result, numbers: dict[str, Any]) -> dict[str, Any]:

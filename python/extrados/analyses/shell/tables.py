@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from extrados import kinds
+from extrados.analyses.codes.tables import Verification
 from extrados.analyses.sla.tables import INTERFACES, MATERIAL, CrackOptions, Staged, without_effect
 from extrados.analyses.table import BuildingAnalysis
 from extrados.model.places import Range
@@ -185,6 +186,9 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     )
     probes: list[Length] = key([], "report the envelope's load at these displacements", max_length=100)
     frame: FrameRules | None = key(None, "strengths of its piers by formulas of codes, [analysis.frame]")
+    verification: Verification = key(
+        Verification(), "verification by displacement, of a building of walls on a plan, [analysis.verification]"
+    )
     variants: list[Variant] = key(
         [], "the first sense again with other assumptions: a band of curves, [[analysis.variants]]", max_length=50
     )
@@ -236,6 +240,8 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
             raise ValueError("variants: a name stands twice")
         if self.shear_retention is not None and self.cracking == "isotropic":
             raise ValueError("isotropic cracking has no shear retention")
+        if self.verification.model_fields_set and (self.stages or self.drives):
+            raise ValueError("verification: needs one push by inertia forces: remove stages and drives")
         return self
 
     @property

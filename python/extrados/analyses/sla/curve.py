@@ -20,6 +20,8 @@ FAR_ABOVE = 10.0
 #: Of the way to the peak: so much further a load must stay below a fraction of the peak to have fallen below it; what lies
 #: this much behind the furthest state is no part of the envelope (fortran/sla/events.f90 has the same)
 FURTHER = 0.1
+#: Rounding of a load that ends at a part of its peak
+ROUNDING = 1e-9
 #: How a run ends whose load fell below `stop_fraction` of its peak, one whose displacements are no longer small, and one whose constant
 #: loads are no longer carried
 FELL, TOO_FAR, AXIAL = (core.STOPS[lists.number("sla_stop", name)] for name in ("fraction", "far", "axial"))
@@ -27,8 +29,7 @@ FELL, TOO_FAR, AXIAL = (core.STOPS[lists.number("sla_stop", name)] for name in (
 
 @dataclass(frozen=True)
 class Bilinear:
-    """Elastic-plastic idealisation of equal area up to the ultimate displacement (load down to 80 % of the peak,
-    or the last); stiffness secant at 60 % of the peak."""
+    """Elastic-plastic idealisation of equal area up to the ultimate displacement; stiffness secant at a part of the peak."""
 
     stiffness: float  # [N/m]
     yield_load: float  # [N]
@@ -122,30 +123,38 @@ def fallen(d: np.ndarray, p: np.ndarray) -> bool:
 def drop_of(d: np.ndarray, p: np.ndarray) -> float | None:
     """Displacement at which an envelope has dropped to DROP times its peak; None where it does not."""
     peak = int(p.argmax())
-    below = np.flatnonzero(p[peak:] < DROP * p[peak])
+    below = np.flatnonzero(p[peak:] <= DROP * p[peak] * (1.0 + ROUNDING))
     if not len(below):
         return None
     i = peak + int(below[0])
     share = (p[i - 1] - DROP * p[peak]) / (p[i - 1] - p[i])
-    return float(d[i - 1] + share * (d[i] - d[i - 1]))
+    return float(d[i - 1] + min(share, 1.0) * (d[i] - d[i - 1]))
 
 
-def bilinear(d: np.ndarray, p: np.ndarray) -> Bilinear | None:
-    """Idealisation of an envelope that starts at the origin; None where it has no rising branch."""
+def cut_at(d: np.ndarray, p: np.ndarray, end: float) -> tuple[np.ndarray, np.ndarray]:
+    """An envelope up to a displacement between its ends."""
+    inside = d < end
+    return np.append(d[inside], end), np.append(p[inside], np.interp(end, d, p))
+
+
+def bilinear(d: np.ndarray, p: np.ndarray, secant: float = 0.6, ultimate: float | None = None) -> Bilinear | None:
+    """Idealisation of an envelope that starts at the origin; None where it has no rising branch.
+
+    secant: part of the peak at which the stiffness is taken; ultimate: displacement up to which the areas are equal [m],
+    by default where the load has fallen to DROP times its peak, or the last.
+    """
+    if ultimate is None:
+        drop = drop_of(d, p)
+        ultimate = float(d[-1]) if drop is None else drop
+    d, p = cut_at(d, p, ultimate)
     peak = int(p.argmax())
     if peak == 0 or not p[peak] > 0.0:
         return None
     rising = np.maximum.accumulate(p[: peak + 1])
-    at = float(np.interp(0.6 * p[peak], rising, d[: peak + 1]))
+    at = float(np.interp(secant * p[peak], rising, d[: peak + 1]))
     if not at > 0.0:
         return None
-    stiffness = 0.6 * p[peak] / at
-    ultimate = drop_of(d, p)
-    if ultimate is not None:
-        i = peak + int(np.flatnonzero(p[peak:] < DROP * p[peak])[0])
-        d, p = np.append(d[:i], ultimate), np.append(p[:i], DROP * p[peak])
-    else:
-        ultimate = float(d[-1])
+    stiffness = secant * p[peak] / at
     area = float(np.trapezoid(p, d))
     inside = ultimate**2 - 2.0 * area / stiffness
     yield_load = stiffness * (ultimate - np.sqrt(max(inside, 0.0)))

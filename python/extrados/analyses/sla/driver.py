@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.batches import Chain
+from extrados.analyses.codes.verification import with_design_strengths
 from extrados.analyses.context import Context
 from extrados.analyses.limit.common import loads_of
 from extrados.analyses.sla.bar_forces import bar_arrays
@@ -19,6 +20,7 @@ from extrados.analyses.sla.resume import carry_on, makeup, start_of
 from extrados.analyses.sla.stages import run_stages
 from extrados.analyses.sla.stored import curve_arrays, field_files, mesh_arrays, sections
 from extrados.analyses.sla.tables import Sla
+from extrados.analyses.sla.verified import verify_wall
 from extrados.analyses.sla.words import answer_of_stones, answer_of_wall
 from extrados.core.calls import interruptible
 from extrados.limit.answer import cannot_stand
@@ -49,6 +51,9 @@ def _film_events(events: int) -> list[int]:
 
 
 def _run(context: Context, options: Sla) -> Result:
+    verified = options.by_inertia and not context.building.meshed_by_stones
+    if verified:
+        context = with_design_strengths(context, options.verification)
     mesh = context.building.mesh(options.mesh)
     measured = read_measured(context, options.measured) if options.measured is not None else None
     result = Result("sla")
@@ -82,6 +87,9 @@ def _run(context: Context, options: Sla) -> Result:
         for curve in curves:
             carry_on(curve, earlier, model.unit)
         numbers = _describe(result, model, options, curves, stones)
+    if verified and not curves[-1].events.interrupted:
+        if (found := verify_wall(context, result, model, options, curves)) is not None:
+            numbers["verification"] = found
     if measured is not None:
         numbers["measured"] = compare(measured, *main.envelope(model.unit))
         result.arrays |= arrays(measured)

@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator
 
-from extrados.analyses.context import Context
+from extrados.analyses.codes.actions import refuse_mixed
+from extrados.analyses.context import Context, Refused
 from extrados.analyses.needs import Need
 from extrados.analyses.sla.tables import Sla
 from extrados.model.errors import BadGeometry
@@ -13,6 +14,9 @@ def needs(context: Context, options: Sla) -> Iterator[Need]:
     """Steps that raise where the deck is wrong, see `analyses.needs`."""
     building = context.building
     yield lambda: _places(building, options)
+    yield lambda: refuse_mixed(context, options.verification)
+    if options.verification.model_fields_set and building.meshed_by_stones:
+        yield _refuse_stones
     if options.measured is not None:
         from extrados.analyses.sla.measured import read_measured
 
@@ -25,6 +29,12 @@ def needs(context: Context, options: Sla) -> Iterator[Need]:
         from extrados.analyses.sla.resume import read_earlier
 
         yield lambda: read_earlier(context, options)
+
+
+def _refuse_stones() -> None:
+    raise Refused(
+        "verification: displacements are verified of walls without drawn blocks", ("analysis", "verification")
+    )
 
 
 def _places(building: Building, options: Sla) -> None:

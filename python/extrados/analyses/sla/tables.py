@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, field_validator, model_validator
 
+from extrados.analyses.codes.tables import Verification
 from extrados.analyses.table import Animated, BuildingAnalysis
 from extrados.model.places import Placed, Range
 from extrados.model.properties import NO_SLIDING, Material
@@ -329,6 +330,10 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     strength_variation: float = key(0.0, "coefficient of variation of the tensile strength (lognormal)", ge=0, le=1)
     strength_length: Length | None = key(None, "correlation length of the strength; default one element", gt=0)
     strength_seed: int = key(1, "of the strength field", ge=0, le=2**31 - 1)
+    verification: Verification = key(
+        Verification(),
+        "verification by displacement, of a wall that its own masses push to +x, [analysis.verification]",
+    )
     resume_from: str | None = key(
         None, "results folder of an earlier run of the same wall to go on from, inside the deck's folder or absolute"
     )
@@ -365,7 +370,17 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
             self.without_equilibrium not in ("continue", "load-unload") or self.states
         ):
             raise ValueError("an incremental solution has no events: without_equilibrium and states belong to events")
+        if self.verification.model_fields_set and not self.by_inertia:
+            raise ValueError("verification: needs one horizontal push by masses alone, without stages")
+        if self.verification.shape == "mode":
+            raise ValueError('verification: shape = "mode" is of buildings: remove it')
         return self
+
+    @property
+    def by_inertia(self) -> bool:
+        """Whether the wall is pushed once and horizontally by its masses."""
+        loads = self.reference or []
+        return not self.stages and all(load.kind == "gravity" and load.ay == 0.0 for load in loads)
 
     @property
     def main(self) -> int:

@@ -1,0 +1,1 @@
+"""Frames of macro-elements: modes, pushover, time history."""

@@ -1,0 +1,96 @@
+"""frame-modes: vibration of a frame of macro-elements about its equilibrium under the weight."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import eigh
+
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.frame.tables import FrameModes
+from extrados.core.errors import CoreError
+from extrados.core.frame import Frame, Rest
+from extrados.results import frame as out
+from extrados.results.model import Array, Result
+from extrados.views.frame.plan import EquivalentFrame
+
+
+@dataclass(frozen=True)
+class Mode:
+    """A shape (n), its frequency [Hz], participation factors of a unit motion along x and y, and modal mass [kg]."""
+
+    shape: np.ndarray
+    frequency: float
+    participation: np.ndarray
+    mass: float
+
+    def participating(self, way: np.ndarray) -> float:
+        """Mass [kg] that takes part in a motion along a direction on the plan."""
+        return float(way @ self.participation) ** 2 * self.mass
+
+
+def rest_of(frame: EquivalentFrame, core: Frame) -> Rest:
+    """Equilibrium under the weight; Refused where there is none."""
+    try:
+        return core.at_rest()
+    except CoreError as error:
+        raise Refused(
+            f"the frame has no equilibrium under its weight ({error}): a pier without load, or a wall that nothing joins with others",
+            ("structure", "walls"),
+        ) from None
+
+
+def modes_of(frame: EquivalentFrame, tangent: np.ndarray, count: int) -> list[Mode]:
+    """Modes of lowest frequency; freedoms without mass are condensed.
+
+    K is symmetric: under the weight alone nothing slides.
+    """
+    mass = frame.mass
+    moving = np.flatnonzero(np.diag(mass) > 0.0)
+    still = np.setdiff1d(np.arange(len(mass)), moving)
+    k = 0.5 * (tangent + tangent.T)
+    follow = -np.linalg.solve(k[np.ix_(still, still)], k[np.ix_(still, moving)])
+    own = k[np.ix_(moving, moving)] + k[np.ix_(moving, still)] @ follow
+    values, vectors = eigh(own, mass[np.ix_(moving, moving)])
+    units = [frame.unit(np.array(d)) for d in ((1.0, 0.0), (0.0, 1.0))]
+    found = []
+    for value, vector in zip(values[:count], vectors.T[:count], strict=True):
+        shape = np.zeros(len(mass))
+        shape[moving], shape[still] = vector, follow @ vector
+        load = np.array([unit @ mass @ shape for unit in units])
+        modal = float(shape @ mass @ shape)
+        found.append(Mode(shape, float(np.sqrt(max(value, 0.0)) / (2 * np.pi)), load / modal, modal))
+    return found
+
+
+def run(context: Context, options: FrameModes) -> Result:
+    """The modes of lowest frequency."""
+    result = Result("frame-modes")
+    frame = context.building.frame(options.frame)
+    context.warnings += frame.remarks
+    with frame.core() as core:
+        modes = modes_of(frame, rest_of(frame, core).tangent, options.modes)
+    total = sum(one.mass for one in frame.masses)
+    rows = [
+        {
+            "frequency_Hz": m.frequency, "period_s": 1.0 / m.frequency, "mass_ratio_x": m.participating(np.array([1.0, 0.0])) / total,
+            "mass_ratio_y": m.participating(np.array([0.0, 1.0])) / total,
+        }
+        for m in modes
+    ]  # fmt: skip
+    result.results = out.FrameModes(
+        modes=rows, moving_mass_kg=total, weight_N=frame.total_weight, piers=frame.piers,
+        spandrels=len(frame.elements) - frame.piers,
+    )  # fmt: skip
+    shapes = np.array([[one.rows @ (m.shape / np.abs(m.shape).max()) for one in frame.masses] for m in modes])
+    result.arrays["place"] = Array(
+        np.array([one.place for one in frame.masses]), ("mass", "xyz"), "m", "places of the masses"
+    )
+    result.arrays["shape"] = Array(
+        shapes, ("mode", "mass", "direction"), "", "displacements of the masses along x and y"
+    )
+    first = rows[0]
+    result.answer = (
+        f"First period {first['period_s']:.3g} s; it moves {100 * first['mass_ratio_x']:.3g} % of the mass along x and "
+        f"{100 * first['mass_ratio_y']:.3g} % along y. Stiffness of masonry: {options.frame.stiffness:.3g} of its elastic value."
+    )
+    return result

@@ -1,0 +1,269 @@
+"""frame-pushover: all pushes that a code asks for of a building as a frame of macro-elements, at once."""
+
+import itertools
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from extrados.analyses.codes.verification import confidence_factor
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.frame.modes import Mode, modes_of, rest_of
+from extrados.analyses.frame.tables import FramePushover
+from extrados.analyses.frame.verified import verify_frame
+from extrados.core.calls import interruptible
+from extrados.core.frame import STATE, STATES, Path
+from extrados.results import frame as out
+from extrados.results.model import Array, Result, TableData
+from extrados.views.frame.plan import EquivalentFrame
+
+#: Fall of the base shear at which codes take a building as failed
+DROP = 0.8
+#: Modes among which the main one of a direction is sought
+MODES = 12
+#: Walls whose direction has less than this part of that of the push are not pushed in their planes
+FACING = 0.1
+
+
+@dataclass(frozen=True)
+class Push:
+    """One of the pushes: direction [deg], sense, pattern, eccentricity over the length across; forces (n) whose sum along the
+    sense is 1 N, and the row (n) of the control displacement."""
+
+    direction: float
+    sense: str
+    pattern: str
+    eccentricity: float
+    forces: np.ndarray
+    control: np.ndarray
+    mode: Mode
+    way: np.ndarray
+
+    @property
+    def name(self) -> str:
+        """As results call it."""
+        axis = {0.0: "x", 90.0: "y"}.get(self.direction % 360.0, f"{self.direction:g} deg ")
+        shift = "" if self.eccentricity == 0.0 else f", eccentricity {100 * self.eccentricity:+.3g} %"
+        return f"{self.sense}{axis} {self.pattern}{shift}"
+
+
+def pushes_of(frame: EquivalentFrame, options: FramePushover, modes: Sequence[Mode], level: int) -> list[Push]:
+    """All combinations of direction, pattern, sense and eccentricity."""
+    found = []
+    places = np.array([one.place for one in frame.masses])
+    mass = np.array([one.mass for one in frame.masses])
+    rows = np.array([one.rows for one in frame.masses])
+    corners = np.array([end for wall in frame.plan.walls for end in (wall.start, wall.end)])
+    for direction, pattern, sense, shift in itertools.product(
+        options.directions, options.patterns, options.senses, options.eccentricities
+    ):
+        angle = np.radians(direction)
+        way = np.round(np.array([np.cos(angle), np.sin(angle)]), 15)
+        across = np.array([-way[1], way[0]])
+        mode = max(modes, key=lambda m: m.participating(way))
+        shape = {
+            "uniform": np.ones(len(mass)), "static": places[:, 2], "modal": rows @ mode.shape @ way,
+        }[pattern]  # fmt: skip
+        if pattern == "modal" and shape.sum() < 0.0:
+            shape = -shape
+        own = mass * shape
+        arm = places[:, :2] @ across
+        arm = arm - own @ arm / own.sum()
+        # Forces linear across the direction, so that their resultant lies off the centre by the eccentricity
+        lever = shift * np.ptp(corners @ across) * own.sum() / (own @ arm**2) if shift else 0.0
+        own = own * (1.0 + lever * arm) / own.sum()
+        sign = 1.0 if sense == "+" else -1.0
+        forces = sign * np.einsum("m,d,mdn->n", own, way, rows)
+        found.append(Push(direction, sense, pattern, shift, forces, sign * frame.control(way, level), mode, sign * way))
+    return found
+
+
+def run(context: Context, options: FramePushover) -> Result:
+    """All curves, their limit events, and the least of them."""
+    result = Result("frame-pushover")
+    if "confidence_factor" not in options.frame.model_fields_set:
+        divided = {"confidence_factor": confidence_factor(context, options.verification)}
+        options = options.model_copy(update={"frame": options.frame.model_copy(update=divided)})
+    frame = context.building.frame(options.frame)
+    context.warnings += frame.remarks
+    level = options.control_level or max(one.level for one in frame.masses)
+    height = float(frame.plan.levels[level])
+    with interruptible(), frame.core() as core:
+        rest = rest_of(frame, core)
+        pushes = pushes_of(frame, options, modes_of(frame, rest.tangent, MODES), level)
+        _warn_tension(context, frame, rest.force)
+        done = itertools.count(1)
+
+        def one(push: Push) -> Path:
+            path = core.push(push.forces, push.control, options.target_drift * height, options.steps, options.drop)
+            context.progress(next(done), len(pushes), push.name)
+            return path
+
+        with ThreadPoolExecutor(max(1, context.threads)) as pool:
+            paths = list(pool.map(one, pushes))
+    if any(path.stop == "no equilibrium under the weight" for path in paths):
+        raise Refused("the frame has no equilibrium under its weight", ("structure", "walls"))
+    runs = [_row(frame, push, path) for push, path in zip(pushes, paths, strict=True)]
+    peaks = [max(row["base_shear_N"]) for row in runs]
+    least = int(np.argmin(peaks))
+    result.results = out.FramePushover(
+        runs=runs, weight_N=frame.total_weight, moving_mass_kg=sum(m.mass for m in frame.masses), control_level=level,
+        control_height_m=height, base_shear_N=peaks[least], ultimate_displacement_m=runs[least]["ultimate_displacement_m"],
+        governing=runs[least]["name"], failed=runs[least]["failed"], piers=frame.piers,
+        spandrels=len(frame.elements) - frame.piers, walls=[wall.name for wall in frame.plan.walls], remarks=frame.remarks,
+    )  # fmt: skip
+    verified = verify_frame(context, result, frame, rest.tangent, options, pushes, paths)
+    if verified is not None:
+        result.results = result.results.model_copy(update={"verification": verified})
+    _arrays(result, frame, paths)
+    interrupted = any(path.stop == "interrupted" for path in paths)
+    if interrupted:
+        result.status, result.reason = "interrupted", "interrupted; the curves up to then are kept"
+    result.answer = _answer(result.results)
+    return result
+
+
+def _warn_tension(context: Context, frame: EquivalentFrame, force: np.ndarray) -> None:
+    loose = [s.name for s, f in zip(frame.strips, force, strict=True) if s.kind == "pier" and f[0] <= 0.0]
+    if loose:
+        context.warnings.append(
+            f"{len(loose)} piers carry no vertical load at rest, first {loose[0]}: they resist no horizontal force."
+        )
+    for strip, element, f in zip(frame.strips, frame.elements, force, strict=True):
+        limit = element.strength * element.depth * element.thickness
+        if strip.kind == "pier" and f[0] > 0.6 * limit:
+            context.warnings.append(
+                f"Pier '{strip.name}' carries {f[0] / limit:.0%} of its compressive strength at rest."
+            )
+
+
+def _row(frame: EquivalentFrame, push: Push, path: Path) -> dict[str, Any]:
+    """A run as results have it."""
+    shear, moved = path.multiple, path.control
+    peak = int(shear.argmax())
+    fallen = np.flatnonzero(shear[peak:] < DROP * shear[peak])
+    drop = None
+    if len(fallen):
+        k = peak + int(fallen[0])
+        part = (shear[k - 1] - DROP * shear[peak]) / (shear[k - 1] - shear[k])
+        drop = float(moved[k - 1] + part * (moved[k] - moved[k - 1]))
+    storeys = _limits(frame, push, path)
+    limits = [s["all_at_limit_m"] for s in storeys if s["all_at_limit_m"] is not None]
+    ends = [d for d in (drop, *limits) if d is not None]
+    mass = frame.mass
+    shape = push.mode.shape / float(push.control @ push.mode.shape)
+    unit = frame.unit(push.way)
+    own, square = float(shape @ mass @ unit), float(shape @ mass @ shape)
+    levels = sorted({one.level for one in frame.masses})
+    elastic = 0.1 * shear[peak]
+    ultimate = min(ends) if ends else None
+    return {
+        "name": push.name, "direction_deg": float(push.direction), "sense": push.sense, "pattern": push.pattern,
+        "eccentricity": float(push.eccentricity), "stop": path.stop, "control_displacement_m": moved, "base_shear_N": shear,
+        "peak_base_shear_N": float(shear[peak]), "displacement_at_peak_m": float(moved[peak]), "drop_displacement_m": drop,
+        "ultimate_displacement_m": ultimate,
+        "stiffness_N_per_m": float(elastic / np.interp(elastic, shear[: peak + 1], moved[: peak + 1])),
+        "period_s": 1.0 / push.mode.frequency, "equivalent_mass_kg": own, "participation_factor": own / square,
+        "level_mass_kg": [sum(one.mass for one in frame.masses if one.level == k) for k in levels],
+        "level_shape": [float(frame.control(push.way, k) @ shape) for k in levels],
+        "storeys": storeys, "failed": _failed(frame, path),
+    }  # fmt: skip
+
+
+def _limits(frame: EquivalentFrame, push: Push, path: Path) -> list[dict[str, Any]]:
+    """Of each storey of each wall along the push: control displacements at which piers reach their strength and drift limit."""
+    rows = []
+    for w, wall in enumerate(frame.plan.walls):
+        if abs(float(wall.direction @ push.way)) < FACING:
+            continue
+        for storey in range(1, frame.plan.reach(wall)[1] + 1):
+            own = [
+                k for k, s in enumerate(frame.strips) if s.kind == "pier" and s.wall == w and s.storey == storey
+            ]  # fmt: skip
+            row: dict[str, Any] = {"wall": wall.name, "storey": storey}
+            for name, least in (("strength", STATE["flexure"]), ("limit", STATE["failed_flexure"])):
+                reached = path.state[:, own] >= least
+                for word, there in (("first", reached.any(axis=1)), ("all", reached.all(axis=1))):
+                    k = np.flatnonzero(there)
+                    row[f"{word}_at_{name}_m"] = float(path.control[k[0]]) if len(k) else None
+            rows.append(row)
+    return rows
+
+
+def _failed(frame: EquivalentFrame, path: Path) -> list[dict[str, Any]]:
+    """Elements beyond their drift limits in the order in which they reach these."""
+    rows = []
+    for k, strip in enumerate(frame.strips):
+        there = np.flatnonzero(path.state[:, k] >= STATE["failed_flexure"])
+        if len(there):
+            at = int(there[0])
+            mode = "shear" if path.state[at, k] == STATE["failed_shear"] else "flexure"
+            rows.append({"element": strip.name, "mode": mode, "control_displacement_m": float(path.control[at])})
+    return sorted(rows, key=lambda row: row["control_displacement_m"])
+
+
+def _arrays(result: Result, frame: EquivalentFrame, paths: Sequence[Path]) -> None:
+    """What figures need: walls and elements once; of each run the states of its elements."""
+    plan = frame.plan
+    result.arrays["element_part"] = Array(
+        np.array([s.part for s in frame.strips]),
+        ("element", "box"),
+        "m",
+        "deformable parts: along the wall from, to, height from, to",
+    )
+    result.arrays["element_wall"] = Array(
+        np.array([s.wall for s in frame.strips]), ("element",), "", "number of the wall, from 0"
+    )
+    result.arrays["element_pier"] = Array(
+        np.array([int(e.pier) for e in frame.elements]), ("element",), "", "1: pier, 0: spandrel"
+    )
+    result.arrays["wall_length"] = Array(
+        np.array([w.length for w in plan.walls]), ("wall",), "m", "lengths of the walls"
+    )
+    result.arrays["wall_height"] = Array(
+        np.array([plan.levels[plan.reach(w)[1]] for w in plan.walls]), ("wall",), "m", "heights of the walls"
+    )
+    holes = [
+        (w, *o.x, plan.levels[o.storey - 1] + o.z[0], plan.levels[o.storey - 1] + o.z[1])
+        for w, wall in enumerate(plan.walls)
+        for o in wall.openings
+    ]
+    result.arrays["opening"] = Array(
+        np.array(holes).reshape(-1, 5), ("opening", "box"), "m", "wall, along it from, to, height from, to"
+    )
+    for k, path in enumerate(paths):
+        result.arrays[f"state_{k + 1}"] = Array(
+            path.state.astype(np.int8), (f"step_{k + 1}", "element"), "", f"states of run {k + 1}: "
+            + ", ".join(f"{n} {word}" for n, word in STATES.items()), "states of elements",
+        )  # fmt: skip
+        result.tables[f"curve_{k + 1}"] = TableData(
+            {"control_displacement": path.control, "base_shear": path.multiple},
+            {"control_displacement": "m", "base_shear": "N"},
+        )
+    result.tables["elements"] = TableData(
+        {
+            "name": [s.name for s in frame.strips], "kind": [s.kind for s in frame.strips],
+            "length": [e.length for e in frame.elements], "depth": [e.depth for e in frame.elements],
+            "thickness": [e.thickness for e in frame.elements],
+        },
+        {"length": "m", "depth": "m", "thickness": "m"},
+    )  # fmt: skip
+
+
+def _answer(r: out.FramePushover) -> str:
+    worst = next(row for row in r.runs if row.name == r.governing)
+    text = (
+        f"Least base shear of {len(r.runs)} pushovers {r.base_shear_N / 1e3:.3g} kN ({r.base_shear_N / r.weight_N:.3g} of the weight), "
+        f"{worst.name}, at a displacement of {1e3 * worst.displacement_at_peak_m:.3g} mm."
+    )
+    if worst.ultimate_displacement_m is not None:
+        text += f" Ultimate displacement of this run {1e3 * worst.ultimate_displacement_m:.3g} mm."
+    if worst.failed:
+        first = worst.failed[0]
+        text += f" First beyond its drift limit: {first.element}, in {first.mode}, at {1e3 * first.control_displacement_m:.3g} mm."
+    lost = [row.name for row in r.runs if row.stop.startswith("no equilibrium")]
+    if lost:
+        text += f" Without equilibrium at the least step ended: {', '.join(lost)}."
+    return text

@@ -1,0 +1,109 @@
+"""The deck tables of frames of macro-elements."""
+
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from extrados import kinds
+from extrados.analyses.codes.tables import Verification
+from extrados.analyses.table import BuildingAnalysis
+from extrados.schema.quantities import Angle, Time
+from extrados.schema.table import key
+from extrados.views.frame.options import FrameOptions
+
+if TYPE_CHECKING:
+    from extrados.views.building import Building
+
+#: Properties of the building that frames use
+ELASTIC = ("material.density", "material.young", "material.poisson")
+STRENGTHS = ("material.compressive_strength", "joints.cohesion")
+
+
+class FrameAnalysis(BuildingAnalysis):
+    """Base of the analyses of frames."""
+
+    view: ClassVar = "frame"
+    structures: ClassVar = tuple(kind for kind, parts in kinds.STRUCTURES.items() if isinstance(parts.frame, str))
+    uses: ClassVar = (*ELASTIC, *STRENGTHS)
+    starter_structure: ClassVar = "building"
+    frame: FrameOptions = key(FrameOptions(), "piers and spandrels, [analysis.frame]")
+
+    def rests_on(self, building: "Building") -> dict[str, str | None]:
+        """A cohesion that the key of the frame replaces is not among them."""
+        found = super().rests_on(building)
+        if self.frame.cohesion is not None:
+            found.pop("joints.cohesion", None)
+        return found
+
+
+class FrameModes(FrameAnalysis):
+    """Periods, shapes and participating masses of a building as a frame of macro-elements, under its weight."""
+
+    kind: Literal["frame-modes"]
+    uses: ClassVar = ELASTIC
+    beside: ClassVar = ("material.compressive_strength",)
+    modes: int = key(6, "how many modes", ge=1, le=100)
+
+
+class FramePushover(FrameAnalysis):
+    """Pushover of a building as a frame of macro-elements: both directions and senses, several patterns and eccentricities."""
+
+    kind: Literal["frame-pushover"]
+    directions: list[Annotated[Angle, Field(ge=-360, le=360)]] = key(
+        [0.0, 90.0], "directions on the plan, counter-clockwise from x", min_length=1, max_length=8
+    )
+    senses: list[Literal["+", "-"]] = key(["+", "-"], "senses of each direction", min_length=1, max_length=2)
+    patterns: list[Literal["uniform", "static", "modal"]] = key(
+        ["uniform", "static"],
+        "forces in proportion to the masses, to the masses times their height, or to the masses times the mode of greatest "
+        "participating mass",
+        min_length=1, max_length=3, source="NTC 2018, 7.3.4.2",
+    )  # fmt: skip
+    eccentricities: list[Annotated[float, Field(ge=-0.5, le=0.5)]] = key(
+        [0.0, 0.05, -0.05],
+        "accidental eccentricities of the forces, over the length of the building across the direction",
+        min_length=1, max_length=9, source="EN 1998-1, 4.3.2",
+    )  # fmt: skip
+    verification: Verification = key(Verification(), "verification by displacement, [analysis.verification]")
+    out_of_plane: bool = key(
+        True,
+        "with a seismic action, check every wall above the foot of each storey out of its plane by `local-mechanism`, with the "
+        "period of the frame for the floor spectrum",
+    )
+    control_level: int | None = key(
+        None,
+        "storey whose mean displacement, weighted by the masses on its top, is followed; default the highest with masses",
+        ge=1,
+    )
+    target_drift: float = key(0.02, "greatest control displacement, over the height of the control level", gt=0, le=0.2)
+    steps: int = key(200, "steps to the target; steps are cut where needed", ge=10, le=10_000)
+    drop: float = key(
+        0.5,
+        "ends where the base shear is below this part of its greatest; 0.8 is the 20 % drop of codes",
+        ge=0,
+        le=0.95,
+    )
+
+    @model_validator(mode="after")
+    def _once(self) -> "FramePushover":
+        for name in ("directions", "senses", "patterns", "eccentricities"):
+            values = getattr(self, name)
+            if len(set(values)) < len(values):
+                raise ValueError(f"{name}: each may stand once, not {values}")
+        return self
+
+
+class FrameHistory(FrameAnalysis):
+    """Motion of a building as a frame of macro-elements under a ground acceleration, by Newmark's method."""
+
+    kind: Literal["frame-history"]
+    needs_motion: ClassVar = True
+    starter_motion: ClassVar = "sine-pulse"
+    direction: Angle = key(0.0, "of the ground motion on the plan, counter-clockwise from x", ge=-360, le=360)
+    time_step: Time = key(0.005, "of the integration; steps are cut where needed", gt=0, le=0.1)
+    end_time: Time | None = key(None, "end of the calculation; default that of the motion, and two seconds more", gt=0)
+    damping_ratio: float = key(0.03, "Rayleigh damping at the two frequencies", ge=0, le=0.5)
+    damping_frequencies: list[Annotated[float, Field(gt=0)]] | None = key(
+        None, "two frequencies in Hz that have this ratio; default the first of the direction, and three times that",
+        min_length=2, max_length=2,
+    )  # fmt: skip

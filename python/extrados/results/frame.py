@@ -1,0 +1,160 @@
+"""Results of frames of macro-elements."""
+
+from typing import Literal
+
+from extrados.results.fields import ResultModel, fact, maybe
+from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, capacity_alone, judge
+from extrados.results.verification import Verification
+
+
+class FrameMode(ResultModel):
+    """A mode of vibration about the equilibrium under the weight."""
+
+    frequency_Hz: float = fact("its frequency", "Hz")
+    period_s: float = fact("its period", "s")
+    mass_ratio_x: float = fact("participating mass along x over the moving mass")
+    mass_ratio_y: float = fact("participating mass along y over the moving mass")
+
+
+class FrameModes(KindResults):
+    """frame-modes: vibration of a building as a frame of macro-elements."""
+
+    modes: list[FrameMode] = fact("modes from the lowest frequency")
+    moving_mass_kg: float = fact("masses on the levels above the ground", "kg")
+    weight_N: float = fact("weight of walls and floors", "N")
+    piers: int = fact("piers")
+    spandrels: int = fact("spandrels")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """Modes are neither a demand nor a capacity."""
+        text = f"First period {self.modes[0].period_s:.3g} s. Modes alone decide no limit state."
+        return judge(text, None, None, "", "not-applicable")
+
+
+class PierLimits(ResultModel):
+    """Control displacements at which the piers of a storey of a wall reach their strength, and their drift limit; null: never."""
+
+    wall: str = fact("its name")
+    storey: int = fact("the storey, from 1")
+    first_at_strength_m: float | None = fact("the first pier reaches its strength", "m")
+    all_at_strength_m: float | None = fact("the last pier reaches its strength", "m")
+    first_at_limit_m: float | None = fact("the first pier reaches its drift limit", "m")
+    all_at_limit_m: float | None = fact("the last pier reaches its drift limit", "m")
+
+
+class FailedElement(ResultModel):
+    """An element beyond its drift limit."""
+
+    element: str = fact("its name: wall, storey, pier or spandrel")
+    mode: Literal["flexure", "shear"] = fact("in which it failed")
+    control_displacement_m: float = fact("control displacement at which it reaches the limit", "m")
+
+
+class FramePush(ResultModel):
+    """One pushover."""
+
+    name: str = fact("direction, pattern and eccentricity")
+    direction_deg: float = fact("on the plan", "deg")
+    sense: Literal["+", "-"] = fact("along the direction or against it")
+    pattern: str = fact("of the forces")
+    eccentricity: float = fact("accidental eccentricity over the length across the direction")
+    stop: str = fact("why it ended")
+    control_displacement_m: list[float] = fact(
+        "mean displacement of the masses on the control level along the sense", "m"
+    )
+    base_shear_N: list[float] = fact("base shear along the sense", "N")
+    peak_base_shear_N: float = fact("greatest base shear", "N")
+    displacement_at_peak_m: float = fact("control displacement there", "m")
+    drop_displacement_m: float | None = fact(
+        "that at which the base shear has decreased by 20 %; null: not reached", "m"
+    )
+    ultimate_displacement_m: float | None = fact(
+        "least of that and of those at which all piers of a storey of a wall are at their drift limit; null: not reached",
+        "m",
+    )
+    stiffness_N_per_m: float = fact("secant at a tenth of the greatest base shear", "N/m")
+    period_s: float = fact("of the mode of greatest participating mass in the direction", "s")
+    equivalent_mass_kg: float = fact("m*: sum of masses times that shape, 1 at the control displacement", "kg")
+    participation_factor: float = fact("Gamma: m* over the sum of masses times the squared shape")
+    level_mass_kg: list[float] = fact("masses on the levels, from the lowest", "kg")
+    level_shape: list[float] = fact("mean of the shape on the levels along the sense")
+    storeys: list[PierLimits] = fact("limit events of the piers, by storey of each wall")
+    failed: list[FailedElement] = fact("elements beyond their drift limits, in order")
+
+
+class OutOfPlane(ResultModel):
+    """The wall of least margin out of its plane, by local-mechanism."""
+
+    factor: float | None = fact("capacity over demand of the check that governs; null without one")
+    outcome: Outcome = fact("verdict: stands, collapses, open or not-applicable")
+    building_period_s: float = fact("period of the frame, for the floor spectrum", "s")
+    statement: str = fact("verdict in words")
+
+
+class FramePushover(KindResults):
+    """frame-pushover: a building as a frame of macro-elements under growing horizontal forces."""
+
+    runs: list[FramePush] = fact("all pushovers")
+    governing: str = fact("name of the run of least base shear")
+    base_shear_N: float = fact("its greatest base shear", "N")
+    ultimate_displacement_m: float | None = fact("its ultimate displacement; null: not reached", "m")
+    failed: list[FailedElement] = fact("its elements beyond their drift limits, in order")
+    weight_N: float = fact("weight of walls and floors", "N")
+    moving_mass_kg: float = fact("masses on the levels above the ground", "kg")
+    control_level: int = fact("storey on whose top the displacement is followed")
+    control_height_m: float = fact("height of the control level", "m")
+    piers: int = fact("piers")
+    spandrels: int = fact("spandrels")
+    walls: list[str] = fact("names of the walls in the order of their numbers in the arrays")
+    remarks: list[str] = fact("parts of the building that the frame neglects")
+    out_of_plane: OutOfPlane = maybe("check of the walls out of their planes, with a seismic action")
+    verification: Verification = maybe("verification by displacement: all runs at the limit states of the code")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The verification by displacement; without one the least base shear, without an outcome."""
+        lost = [
+            row.name for row in self.runs if row.stop.startswith("no equilibrium") and row.drop_displacement_m is None
+        ]
+        text = f"The frame carries a base shear of {self.base_shear_N / 1e3:.3g} kN ({self.governing})."
+        if self.verification is not None and self.verification.decides:
+            return self.verification.judged(text)
+        if lost:
+            text += f" {len(lost)} of {len(self.runs)} curves end before a drop of 20 %."
+        return capacity_alone(text, self.base_shear_N, "N", "lower" if self.governing in lost else None)
+
+
+class FrameHistory(KindResults):
+    """frame-history: motion of a building as a frame of macro-elements."""
+
+    stop: str = fact("why it ended")
+    end_time_s: float = fact("end of the calculation", "s")
+    peak_displacement_m: float = fact(
+        "greatest displacement of the control level along the motion, relative to the ground", "m"
+    )
+    peak_base_shear_N: float = fact("greatest base shear along the motion", "N")
+    residual_displacement_m: float = fact("at the end", "m")
+    peak_drift: float = fact("greatest chord rotation of a pier")
+    peak_drift_element: str = fact("that pier")
+    failed: list[FailedElement] = fact(
+        "elements beyond their drift limits, in order; control displacements at those instants"
+    )
+    period_s: float = fact("of the mode of greatest participating mass in the direction, at rest", "s")
+    damping: list[float] = fact("Rayleigh's factors of the mass [1/s] and of the last tangent stiffness [s]")
+    weight_N: float = fact("weight of walls and floors", "N")
+    steps: int = fact("time steps")
+    first_failure_s: float = maybe("instant of the first drift limit", "s")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """Open without equilibrium; else the drifts, which decide no limit state."""
+        moved = f"greatest displacement {1e3 * self.peak_displacement_m:.3g} mm, greatest drift of a pier {100 * self.peak_drift:.3g} %"
+        if self.stop != "target displacement":
+            return judge(
+                f"The calculation ends at {self.end_time_s:.3g} s: {self.stop}; {moved}.", None, None, "", "open"
+            )
+        return judge(
+            f"The motion ends; {moved}; {len(self.failed)} elements beyond their drift limits.",
+            None,
+            None,
+            "",
+            "not-applicable",
+        )

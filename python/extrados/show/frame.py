@@ -1,0 +1,152 @@
+"""Figures of frames of macro-elements: capacity curves, walls with their damage, modes, histories."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.patches import Patch, Rectangle
+
+from extrados.results.store import Stored
+from extrados.show import style
+from extrados.show.verification import draw_verification
+
+#: Colours of the states of elements, by their numbers
+COLOURS = ("#e8e2d4", "#cfe3d6", "#f2c28b", "#e08b5a", "#e0342b", "#5b1136")
+WORDS = ("elastic", "cracked", "flexural strength", "shear strength", "drift limit in flexure", "drift limit in shear")
+#: Colours of the patterns
+PATTERNS = {"uniform": style.THRUST, "static": style.HINGE, "modal": style.SAFE}
+
+
+def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Base shear over control displacement of all runs; for each direction the walls of its weakest run, at the last state."""
+    r = run[name]
+    angles = sorted({row.direction_deg for row in r.runs})
+    made = draw_verification(run, name, folder)
+    with style.figure(7.2, 3.4, 1, len(angles), sharey=True) as (fig, axes):
+        for ax, angle in zip(axes, angles, strict=True):
+            seen = set()
+            for row in (row for row in r.runs if row.direction_deg == angle):
+                sign = 1.0 if row.sense == "+" else -1.0
+                label = row.pattern if row.pattern not in seen else None
+                seen.add(row.pattern)
+                main = row.eccentricity == 0.0
+                ax.plot(
+                    1e3 * sign * np.array(row.control_displacement_m), 1e-3 * sign * np.array(row.base_shear_N),
+                    color=PATTERNS.get(row.pattern, style.EDGE), linewidth=1.3 if main else 0.6, label=label,
+                )  # fmt: skip
+                if row.ultimate_displacement_m is not None and main:
+                    moved, shear = np.array(row.control_displacement_m), np.array(row.base_shear_N)
+                    before = shear[moved < row.ultimate_displacement_m]
+                    at = before[-1] if len(before) else shear[0]
+                    ax.plot(
+                        1e3 * sign * row.ultimate_displacement_m,
+                        1e-3 * sign * at,
+                        "o",
+                        color=style.EDGE,
+                        markersize=3.5,
+                    )
+            ax.axhline(0.0, color=style.EDGE, linewidth=0.6)
+            ax.axvline(0.0, color=style.EDGE, linewidth=0.6)
+            ax.set_xlabel("control displacement [mm]")
+            ax.set_title({0.0: "along x", 90.0: "along y"}.get(angle, f"at {angle:g} degrees"))
+        axes[0].set_ylabel("base shear [kN]")
+        style.legend_below(fig, axes[0])
+        saved = style.save(fig, folder, f"{name}-curves")
+    made.append(
+        (
+            saved,
+            f"Capacity curves of {len(r.runs)} pushovers; thin: with accidental eccentricity. Dots: ultimate displacement, by a loss of 20 % "
+            "or by the drift limits of all piers of a storey of a wall.",
+        )
+    )
+    for angle in angles:
+        number = min(
+            (k for k, row in enumerate(r.runs, 1) if row.direction_deg == angle),
+            key=lambda k: r.runs[k - 1].peak_base_shear_N,
+        )
+        row = r.runs[number - 1]
+        state = run.array(name, f"state_{number}")
+        told = f"{row.name}, {1e3 * row.control_displacement_m[-1]:.3g} mm"
+        made.append(_walls(run, name, folder, state[-1], f"{angle:g}", told))
+    return made
+
+
+def _walls(run: Stored, name: str, folder: Path, state: np.ndarray, word: str, told: str) -> tuple[str, str]:
+    """The walls unfolded side by side: nodes, piers and spandrels in the colours of their states."""
+    length, height = run.array(name, "wall_length"), run.array(name, "wall_height")
+    part, of, holes = run.array(name, "element_part"), run.array(name, "element_wall"), run.array(name, "opening")
+    gap = 0.15 * float(length.mean())
+    first = np.concatenate([[0.0], np.cumsum(length + gap)[:-1]])
+    total = float(first[-1] + length[-1])
+    wide = float(np.clip(0.55 * total, 5.0, 11.0))
+    with style.figure(wide, wide * float(height.max()) / total + 1.5) as (fig, (ax,)):
+        for w in range(len(length)):
+            ax.add_patch(
+                Rectangle(
+                    (first[w], 0.0), length[w], height[w], facecolor="#b9b2a3", edgecolor=style.EDGE, linewidth=0.6
+                )
+            )
+        for (a, b, low, high), w, value in zip(part, of.astype(int), state.astype(int), strict=True):
+            ax.add_patch(
+                Rectangle(
+                    (first[w] + a, low),
+                    b - a,
+                    high - low,
+                    facecolor=COLOURS[value],
+                    edgecolor=style.EDGE,
+                    linewidth=0.4,
+                )
+            )
+        for w, a, b, low, high in holes:
+            ax.add_patch(
+                Rectangle(
+                    (first[int(w)] + a, low), b - a, high - low, facecolor="white", edgecolor=style.EDGE, linewidth=0.6
+                )
+            )
+        for w, label in enumerate(run[name].walls):
+            ax.text(first[w] + 0.5 * length[w], 1.01 * height[w], label, ha="center", va="bottom", fontsize=8)
+        ax.set_xlim(-0.3, total + 0.3)
+        ax.set_ylim(0.0, float(height.max()) * 1.1)
+        ax.set_aspect("equal")
+        ax.grid(False)
+        ax.set_xlabel("walls side by side, along each [m]")
+        ax.set_ylabel("height [m]")
+        ax.set_title(told)
+        handles = [Patch(facecolor=c, edgecolor=style.EDGE, label=w) for c, w in zip(COLOURS, WORDS, strict=True)]
+        handles.append(Patch(facecolor="#b9b2a3", edgecolor=style.EDGE, label="rigid node"))
+        fig.legend(handles=handles, loc="outside lower center", ncols=4)
+        saved = style.save(fig, folder, f"{name}-walls-{word}")
+    return saved, f"Piers and spandrels between rigid nodes, {told}."
+
+
+def draw_modes(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Displacements of the masses on the plan in the first modes."""
+    r = run[name]
+    place, shape = run.array(name, "place"), run.array(name, "shape")
+    count = min(3, len(r.modes))
+    scale = 0.15 * float(np.ptp(place[:, :2], axis=0).max())
+    with style.figure(2.6 * count, 3.0, 1, count) as (fig, axes):
+        for k, ax in enumerate(axes):
+            ax.plot(place[:, 0], place[:, 1], ".", color=style.STONE, markersize=3)
+            ax.quiver(
+                place[:, 0], place[:, 1], scale * shape[k, :, 0], scale * shape[k, :, 1], place[:, 2], angles="xy", scale_units="xy",
+                scale=1.0, width=0.006, cmap="viridis",
+            )  # fmt: skip
+            ax.set_aspect("equal")
+            ax.margins(0.15)
+            ax.set_title(f"mode {k + 1}: {r.modes[k].period_s:.3g} s")
+        saved = style.save(fig, folder, f"{name}-modes")
+    return [(saved, "Displacements of the masses in the first modes, on the plan; the colour is their height.")]
+
+
+def draw_history(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Displacement over time, and base shear over displacement."""
+    time, moved, shear = (run.array(name, word) for word in ("time", "displacement", "base_shear"))
+    with style.figure(7.2, 2.9, 1, 2, width_ratios=[1.6, 1.0]) as (fig, (left, right)):
+        left.plot(time, 1e3 * moved, color=style.EDGE, linewidth=0.8)
+        left.set_xlabel("time [s]")
+        left.set_ylabel("control displacement [mm]")
+        right.plot(1e3 * moved, 1e-3 * shear, color=style.THRUST, linewidth=0.6)
+        right.set_xlabel("control displacement [mm]")
+        right.set_ylabel("base shear [kN]")
+        saved = style.save(fig, folder, f"{name}-history")
+    return [(saved, "Displacement of the control level relative to the ground, and base shear over it.")]

@@ -1,0 +1,1 @@
+"""Buildings on a plan as frames of macro-elements: piers, spandrels and rigid nodes."""

@@ -1,0 +1,660 @@
+"""A building on a plan as a frame of macro-elements.
+
+Each wall is a plane frame of piers and spandrels between rigid nodes. On a level all nodes of a wall have one displacement
+along it; where walls cross, both make up the displacement of the corner, and floors are membranes between corners. Walls have
+no stiffness out of their planes; their masses move with the corners.
+"""
+
+import itertools
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from extrados.core.frame import UNLIMITED, Frame, Link, MacroElement
+from extrados.model.description import Description
+from extrados.model.errors import BadGeometry, blaming
+from extrados.model.properties import Material
+from extrados.model.structures.plan import (
+    MEETS,
+    PARALLEL,
+    Plan,
+    PlanWall,
+    StoreyFloor,
+    WallOpening,
+    meeting,
+    nearly_meeting,
+)
+from extrados.schema.constants import GRAVITY
+from extrados.views.frame.options import FrameOptions
+from extrados.views.frame.rules import Side, deformable
+from extrados.views.mesh.triangles import fill_ring
+from extrados.views.shell.plan import RIGID_THICKNESS, RIGID_YOUNG
+
+#: Share of the compressive strength in the stress block of codes
+BLOCK = 0.85
+#: Shear factor of rectangles
+SHEAR_FACTOR = 1.2
+#: Piers above each other belong to one node where they overlap by more than this part of the narrower
+OVERLAP = 0.25
+#: Stiffness of props that do not move [N/m]
+HELD = 1e12
+
+
+@dataclass(frozen=True)
+class Strip:
+    """A pier or spandrel: its wall, storey (a spandrel's is that below its level), what it is called, its whole masonry and its
+    deformable part as s from, to and z from, to [m]."""
+
+    kind: str
+    name: str
+    wall: int
+    storey: int
+    masonry: tuple[float, float, float, float]
+    part: tuple[float, float, float, float]
+    thickness: float
+    nodes: tuple[int, int]
+
+
+@dataclass
+class Node:
+    """A rigid node of a wall on a level, its extent along the wall, its freedoms (w, rotation)."""
+
+    wall: int
+    level: int
+    start: float
+    end: float
+    freedoms: tuple[int, int] = (-1, -1)
+
+    @property
+    def s(self) -> float:
+        """Its middle along the wall [m]."""
+        return 0.5 * (self.start + self.end)
+
+
+@dataclass(frozen=True)
+class PointMass:
+    """A mass [kg] at a place x, y, z [m] and the rows (2, n) by which freedoms displace it along x and y."""
+
+    mass: float
+    place: tuple[float, float, float]
+    rows: np.ndarray
+    level: int
+
+
+@dataclass
+class EquivalentFrame:
+    """`strips` goes with `elements`. inertia (n): masses of the nodes that move up and down, and turn; `remarks` states what is
+    neglected."""
+
+    plan: Plan
+    nodes: list[Node]
+    strips: list[Strip]
+    elements: list[MacroElement]
+    links: list[Link]
+    linear: np.ndarray
+    weight: np.ndarray
+    masses: list[PointMass]
+    inertia: np.ndarray
+    total_weight: float
+    remarks: list[str] = field(default_factory=list)
+
+    @property
+    def piers(self) -> int:
+        """How many of the elements are piers."""
+        return len(self.piers_at)
+
+    @property
+    def piers_at(self) -> list[int]:
+        """Their numbers among the elements."""
+        return [k for k, e in enumerate(self.elements) if e.pier]
+
+    @property
+    def mass(self) -> np.ndarray:
+        """Masses (n, n) [kg] that move horizontally, by the freedoms."""
+        total = np.zeros_like(self.linear)
+        for one in self.masses:
+            total += one.mass * one.rows.T @ one.rows
+        return total
+
+    def unit(self, direction: np.ndarray) -> np.ndarray:
+        """Displacements (n) of a unit motion along a direction on the plan."""
+        found = np.zeros(len(self.weight))
+        for (wall, _), freedom in self.along.items():
+            found[freedom] = self.plan.walls[wall].direction @ direction
+        return found
+
+    #: Wall and level: freedom of its displacement along the wall
+    along: dict[tuple[int, int], int] = field(default_factory=dict)
+
+    def core(self) -> Frame:
+        """The frame in the core."""
+        return Frame(self.elements, self.links, self.linear, self.weight, self.mass + np.diag(self.inertia))
+
+    def control(self, direction: np.ndarray, level: int) -> np.ndarray:
+        """Row (n) that gives the displacement along a direction of the masses on a level, their mean."""
+        own = [one for one in self.masses if one.level == level]
+        return sum(one.mass * direction @ one.rows for one in own) / sum(one.mass for one in own)
+
+
+def frame_of_plan(building: Description, options: FrameOptions) -> EquivalentFrame:
+    """Piers, spandrels and rigid nodes of walls on a plan, with floors, loads and ties; BadGeometry names what does not fit."""
+    assert isinstance(building.structure, Plan)
+    return _Maker(building, building.structure, options).made()
+
+
+class _Maker:
+    def __init__(self, building: Description, plan: Plan, options: FrameOptions):
+        self.building, self.plan, self.options = building, plan, options
+        self.remarks: list[str] = []
+        self.nodes: list[Node] = []
+        self.at: dict[tuple[int, int], list[int]] = {}  # wall and level: its nodes from start to end
+        self.strips: list[Strip] = []
+        self.junctions = {
+            (a, b): at
+            for a, b in itertools.combinations(range(len(plan.walls)), 2)
+            if (at := meeting(plan.walls[a], plan.walls[b])) is not None
+        }
+
+    def made(self) -> EquivalentFrame:
+        plan = self.plan
+        for a, b in itertools.combinations(range(len(plan.walls)), 2):
+            if (a, b) not in self.junctions and (gap := nearly_meeting(plan.walls[a], plan.walls[b])) is not None:
+                self.remarks.append(
+                    f"Walls '{plan.walls[a].name}' and '{plan.walls[b].name}' end {gap:.3g} m apart and do not meet: nothing joins them."
+                )
+        if plan.beds:
+            self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own strength.")
+        for w, wall in enumerate(plan.walls):
+            with blaming("walls", w):
+                if plan.reach(wall)[0] != 1:
+                    raise BadGeometry(f"wall '{wall.name}' does not reach the ground: a frame has no pier below it")
+                self._divide(w, wall)
+        n = self._number()
+        self.linear, self.weight = np.zeros((n, n)), np.zeros(n)
+        self.masses: list[PointMass] = []
+        self.inertia = np.zeros(n)
+        self.total = 0.0
+        for strip in self.strips:
+            self._weigh(strip)
+        for k, floor in enumerate(plan.floors):
+            with blaming("floors", k):
+                self._floor(floor)
+        for load in plan.prestress:
+            w = self._named(load.wall)
+            self._load(w, load.level or plan.reach(plan.walls[w])[1], 0.0, plan.walls[w].length, load.force, False)
+        for prop in plan.props:
+            w = self._named(prop.wall)
+            row = self._vector(w, 0.5 * plan.walls[w].length, prop.storey)[
+                int(np.abs(plan.walls[w].direction).argmin())
+            ]
+            self.linear += HELD * np.outer(row, row)
+        if plan.foundation_stiffness is not None:
+            self._ground(plan.foundation_stiffness)
+        elements = [self._element(strip) for strip in self.strips]
+        return EquivalentFrame(
+            plan, self.nodes, self.strips, elements, [*self._corners(), *self._rods()], self.linear, self.weight, self.masses, self.inertia,
+            self.total, self.remarks, self.along,
+        )  # fmt: skip
+
+    def _named(self, name: str) -> int:
+        return next(w for w, wall in enumerate(self.plan.walls) if wall.name == name)
+
+    # Piers, nodes, spandrels of one wall
+
+    def _divide(self, w: int, wall: PlanWall) -> None:
+        plan, (_, last) = self.plan, self.plan.reach(wall)
+        pieces = {storey: _between(wall, storey, plan.storeys[storey - 1]) for storey in range(1, last + 1)}
+        for storey, found in pieces.items():
+            if not found:
+                raise BadGeometry(f"wall '{wall.name}', storey {storey}: its openings leave no pier")
+        for level in range(last + 1):
+            below, above = pieces.get(level, []), pieces.get(level + 1, [])
+            groups = _groups([p[:2] for p in below], [p[:2] for p in above])
+            if level and any(len(g) > 2 for g in groups):
+                self.remarks.append(
+                    f"Wall '{wall.name}', level {level}: piers above and below do not match; those that overlap share one rigid node."
+                )
+            for group in groups:
+                if level and not any(side == 0 for side, _ in group):
+                    ends = [above[k][:2] for _, k in group]
+                    self.remarks.append(
+                        f"Wall '{wall.name}', level {level}: the pier at {ends[0][0]:.3g} to {ends[0][1]:.3g} m stands above an opening; "
+                        "only spandrels carry it."
+                    )
+                ends = [(below, above)[side][k][:2] for side, k in group]
+                self.at.setdefault((w, level), []).append(len(self.nodes))
+                self.nodes.append(Node(w, level, min(e[0] for e in ends), max(e[1] for e in ends)))
+            self.at[w, level].sort(key=lambda k: self.nodes[k].start)
+        for storey, found in pieces.items():
+            tall, foot = plan.storeys[storey - 1], float(plan.levels[storey - 1])
+            for k, (start, end, left, right) in enumerate(found):
+                low, height = deformable(self.options.heights, end - start, tall, left, right)
+                s = 0.5 * (start + end)
+                self.strips.append(
+                    Strip(
+                        "pier", f"{wall.name}, storey {storey}, pier {k + 1}", w, storey, (start, end, foot, foot + tall),
+                        (start, end, foot + low, foot + low + height), _thickness(plan, wall, storey),
+                        (self._node(w, storey - 1, s), self._node(w, storey, s)),
+                    )
+                )  # fmt: skip
+        for level in range(1, last + 1):
+            own = self.at[w, level]
+            for k, (i, j) in enumerate(itertools.pairwise(own)):
+                self._spandrel(w, wall, level, k, i, j)
+
+    def _node(self, w: int, level: int, s: float) -> int:
+        """The node at or nearest to a place along a wall."""
+        return min(self.at[w, level], key=lambda k: max(self.nodes[k].start - s, s - self.nodes[k].end, 0.0))
+
+    def _spandrel(self, w: int, wall: PlanWall, level: int, k: int, i: int, j: int) -> None:
+        plan = self.plan
+        gap = (self.nodes[i].end, self.nodes[j].start)
+        below = [o for o in wall.openings if o.storey == level and o.x[0] < gap[1] - MEETS and o.x[1] > gap[0] + MEETS]
+        above = [
+            o for o in wall.openings if o.storey == level + 1 and o.x[0] < gap[1] - MEETS and o.x[1] > gap[0] + MEETS
+        ]
+        z = float(plan.levels[level])
+        low = max((float(plan.levels[level - 1]) + o.z[1] for o in below), default=z)
+        high = min((z + o.z[0] for o in above), default=z)
+        if high - low < MEETS or not (below or above):
+            return
+        held = [o for o in below if o.lintel is not None]
+        if self.options.spandrels == "none" or (self.options.spandrels == "lintels" and below and not held):
+            return
+        edges = [(min(o.x[0] for o in group), max(o.x[1] for o in group)) for group in (below, above) if group]
+        start, end = (float(np.mean([edge[side] for edge in edges])) for side in (0, 1))
+        self.strips.append(
+            Strip(
+                "spandrel", f"{wall.name}, level {level}, spandrel {k + 1}", w, level, (*gap, low, high), (start, end, low, high),
+                _thickness(plan, wall, level), (i, j),
+            )
+        )  # fmt: skip
+
+    # Freedoms
+
+    def _number(self) -> int:
+        """Numbers of the freedoms: displacements of walls along themselves, those of nodes; the ground is held."""
+        plan = self.plan
+        line = list(range(len(plan.walls)))  # walls in one line that meet move along it together
+        for a, b in self.junctions:
+            if abs(float(plan.walls[a].direction @ plan.walls[b].direction)) > 1.0 - 1e-9:
+                old, new = line[b], line[a]
+                line = [new if k == old else k for k in line]
+        self.along: dict[tuple[int, int], int] = {}
+        self.turned = {
+            w: float(np.sign(plan.walls[w].direction @ plan.walls[line[w]].direction)) for w in range(len(line))
+        }
+        if any(sign < 0.0 for sign in self.turned.values()):
+            w = next(w for w, sign in self.turned.items() if sign < 0.0)
+            raise BadGeometry(
+                f"walls '{plan.walls[w].name}' and '{plan.walls[line[w]].name}' lie in one line and run against each other; give them one "
+                "sense", ("structure", "walls", w)
+            )  # fmt: skip
+        count = 0
+        of: dict[tuple[int, int], int] = {}
+        for w, wall in enumerate(plan.walls):
+            for level in range(1, plan.reach(wall)[1] + 1):
+                if (line[w], level) not in of:
+                    of[line[w], level] = count
+                    count += 1
+                self.along[w, level] = of[line[w], level]
+        for node in self.nodes:
+            if node.level or plan.foundation_stiffness is not None:
+                node.freedoms = (count, count + 1)
+                count += 2
+        return count
+
+    def _vector(self, w: int, s: float, level: int) -> np.ndarray:
+        """Rows (2, n) of the displacement of a place of a wall on a level: along the wall its own, across it that of the corners,
+        linear between them."""
+        n = len(self.weight)
+        d = self.plan.walls[w].direction
+        normal = np.array([-d[1], d[0]])
+        own = np.zeros(n)
+        own[self.along[w, level]] = 1.0
+        corners = []
+        for (a, b), (sa, sb) in self.junctions.items():
+            if w not in (a, b):
+                continue
+            other, place = (b, sa) if w == a else (a, sb)
+            e = self.plan.walls[other].direction
+            if (other, level) not in self.along or abs(float(d @ e)) > PARALLEL:
+                continue
+            row = -float(d @ e) * own
+            row[self.along[other, level]] += 1.0
+            corners.append((place, row / float(e @ normal)))
+        across = np.zeros(n)
+        if corners:
+            corners.sort(key=lambda corner: corner[0])
+            places = np.array([c[0] for c in corners])
+            shares = [np.interp(s, places, np.eye(len(places))[k]) for k in range(len(places))]
+            across = sum(share * c[1] for share, c in zip(shares, corners, strict=True))
+        return np.outer(d, own) + np.outer(normal, across)
+
+    # Loads
+
+    def _load(self, w: int, level: int, start: float, end: float, force: float, massive: bool = True) -> None:
+        """A vertical force spread along a wall on a level: on its nodes, up to the middles of the gaps between them."""
+        self.total += force if massive else 0.0
+        own = self.at[w, level]
+        bounds = [-np.inf]
+        bounds += [0.5 * (self.nodes[i].end + self.nodes[j].start) for i, j in itertools.pairwise(own)]
+        bounds += [np.inf]
+        for k, (low, high) in zip(own, itertools.pairwise(bounds), strict=True):
+            a, b = max(start, low), min(end, high)
+            if b <= a:
+                continue
+            node, share, s = self.nodes[k], force * (b - a) / (end - start), 0.5 * (a + b)
+            if node.freedoms[0] >= 0:
+                self.weight[node.freedoms[0]] -= share
+                self.weight[node.freedoms[1]] -= share * (s - node.s)
+                if massive:
+                    self.inertia[node.freedoms[0]] += share / GRAVITY
+                    self.inertia[node.freedoms[1]] += share / GRAVITY * ((s - node.s) ** 2 + (b - a) ** 2 / 12.0)
+            if level and massive:
+                x, y = np.asarray(self.plan.walls[w].start) + s * self.plan.walls[w].direction
+                self.masses.append(
+                    PointMass(
+                        share / GRAVITY,
+                        (float(x), float(y), float(self.plan.levels[level])),
+                        self._vector(w, s, level),
+                        level,
+                    )
+                )
+
+    def _weigh(self, strip: Strip) -> None:
+        """Weight of a pier: half on each of its levels. Of masonry above and below openings: on the level that it reaches."""
+        wall = self.plan.walls[strip.wall]
+        if strip.kind != "pier":
+            return
+        density = self._material(wall).density
+        start, end, low, high = strip.masonry
+        force = density * GRAVITY * strip.thickness * (end - start) * (high - low)
+        for level in (strip.storey - 1, strip.storey):
+            self._load(strip.wall, level, start, end, 0.5 * force)
+        if strip.name.endswith("pier 1"):  # once for each storey of a wall
+            for start, end, height, upper in _around_openings(wall, strip.storey, high - low):
+                level = strip.storey if upper else strip.storey - 1
+                self._load(strip.wall, level, start, end, density * GRAVITY * strip.thickness * (end - start) * height)
+
+    def _floor(self, floor: StoreyFloor) -> None:
+        plan, level = self.plan, floor.storey
+        around = plan.around(floor)
+        corners, rows = [], []
+        for w, _, s in around:
+            if (w, level) not in self.along:
+                raise BadGeometry(f"floor on storey {level}: wall '{plan.walls[w].name}' has no masonry there")
+            corners.append(np.asarray(plan.walls[w].start) + s * plan.walls[w].direction)
+            rows.append(self._vector(w, s, level))
+        outline = np.array(corners)
+        x, y = outline.T
+        area = 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+        if area < 0.0:
+            outline, rows, area = outline[::-1], rows[::-1], -area
+        if floor.load > 0.0:
+            bearing = [part for part in around if plan.walls[part[0]].name in floor.bears_on] or around
+            length = sum(abs(b - a) for _, a, b in bearing)
+            for w, a, b in bearing:
+                self._load(w, level, min(a, b), max(a, b), floor.load * area * abs(b - a) / length)
+        if floor.kind == "none":
+            return
+        if floor.kind == "joists":
+            across = plan.wall(floor.bears_on[0]).direction
+            way = np.array([-across[1], across[0]])
+            assert floor.young and floor.joist_area and floor.joist_spacing
+            turn = np.array([way[0] ** 2, way[1] ** 2, way[0] * way[1]])  # strain along the joists of exx, eyy, gamma
+            law = floor.young * floor.joist_area / floor.joist_spacing * np.outer(turn, turn)
+        else:
+            young, thickness = (
+                (RIGID_YOUNG, RIGID_THICKNESS) if floor.kind == "rigid" else (floor.young, floor.thickness)
+            )
+            assert young and thickness
+            nu = floor.poisson
+            law = young * thickness / (1 - nu**2) * np.array([[1, nu, 0], [nu, 1, 0], [0, 0, (1 - nu) / 2]])
+        _, triangles = fill_ring(outline, 10.0 * float(np.ptp(outline, axis=0).max()))
+        for triangle in triangles:
+            p = outline[triangle]
+            double = float((p[1, 0] - p[0, 0]) * (p[2, 1] - p[0, 1]) - (p[2, 0] - p[0, 0]) * (p[1, 1] - p[0, 1]))
+            strain = np.zeros((3, len(self.weight)))
+            for k in range(3):
+                by, bx = (p[k - 2, 1] - p[k - 1, 1]) / double, (p[k - 1, 0] - p[k - 2, 0]) / double
+                own = rows[triangle[k]]
+                strain += np.array([by * own[0], bx * own[1], bx * own[0] + by * own[1]])
+            self.linear += 0.5 * double * strain.T @ law @ strain
+
+    def _ground(self, stiffness: float) -> None:
+        """Springs under the soles of the piers on the ground."""
+        for strip in self.strips:
+            if strip.kind == "pier" and strip.storey == 1:
+                start, end = strip.masonry[:2]
+                w, turn = self.nodes[strip.nodes[0]].freedoms
+                own = stiffness * strip.thickness * (end - start)
+                arm = 0.5 * (start + end) - self.nodes[strip.nodes[0]].s
+                self.linear[w, w] += own
+                self.linear[w, turn] += own * arm
+                self.linear[turn, w] += own * arm
+                self.linear[turn, turn] += own * (arm**2 + (end - start) ** 2 / 12.0)
+
+    # Elements
+
+    def _material(self, wall: PlanWall) -> Material:
+        if wall.material is None:
+            return self.building.material
+        if wall.material not in self.building.materials:
+            raise BadGeometry(f"wall '{wall.name}': there is no [materials.{wall.material}]")
+        return self.building.materials[wall.material]
+
+    def _element(self, strip: Strip) -> MacroElement:
+        o, wall = self.options, self.plan.walls[strip.wall]
+        material = self._material(wall)
+        i, j = (self.nodes[k] for k in strip.nodes)
+        u = tuple(self.along.get((strip.wall, node.level), -1) for node in (i, j))
+        freedoms = (u[0], *i.freedoms, u[1], *j.freedoms)
+        start, end, low, high = strip.part
+        young = o.stiffness * material.young
+        shear = young / (2.0 * (1.0 + material.poisson))
+        cohesion = (o.cohesion or self.building.joints.cohesion) / o.confidence_factor
+        tension = 1.5 * (o.diagonal_strength or 0.0) / o.confidence_factor
+        strength = material.compressive_strength
+        pressed = UNLIMITED if strength is None else BLOCK * strength / o.confidence_factor
+        levels = self.plan.levels
+        if strip.kind == "pier":
+            s = 0.5 * (start + end)
+            depth, length = end - start, high - low
+            law = _law(o.shear, cohesion, tension)
+            return MacroElement(
+                freedoms, length, depth, strip.thickness, young,
+                shear * depth * strip.thickness / ((1.0 if law == "damage" else SHEAR_FACTOR) * length), pressed,
+                (s - i.s, low - float(levels[i.level]), s - j.s, high - float(levels[j.level])), shear=law, cohesion=cohesion,
+                friction=o.friction, tension=tension, slenderness=float(np.clip(length / depth, 1.0, 1.5)),
+                damage=(o.damage_compliance / shear, o.softening), drifts=(o.drift_flexure, o.drift_shear), sections=o.sections,
+                second_order=o.second_order,
+            )  # fmt: skip
+        z = 0.5 * (low + high) - float(levels[i.level])
+        depth, length = high - low, end - start
+        moment, by_shear = self._spandrel_strength(strip, depth, length, cohesion, tension, pressed)
+        held = any(
+            x.lintel is not None for x in wall.openings if x.storey == strip.storey and x.x[0] < end and x.x[1] > start
+        )
+        residual = o.spandrel_residual if o.spandrel_residual is not None else 0.6 if held else 0.1
+        return MacroElement(
+            freedoms, length, depth, strip.thickness, young, shear * depth * strip.thickness / (SHEAR_FACTOR * length), pressed,
+            (start - i.s, z, end - j.s, z), pier=False, upright=False, moment=moment, by_shear=by_shear,
+            drifts=(o.spandrel_drift_flexure, o.spandrel_drift_shear), kept=residual, second_order=False,
+        )  # fmt: skip
+
+    def _spandrel_strength(
+        self, strip: Strip, depth: float, length: float, cohesion: float, tension: float, pressed: float
+    ) -> tuple[float, bool]:  # fmt: skip
+        """Moment of its hinges [N m] without a normal force, and whether shear limits it.
+
+        Flexure: rectangular stress blocks, in tension f_ft = min(f_b t/2, f_v0 + mu sigma_y/phi) with sigma_y half the pressure of
+        the neighbours. Shear: h t f_v0, and of diagonal cracking h t f_t/b. M = min(M_u, V l/2).
+        """
+        sound = [x for x in (cohesion, tension) if x > 0.0]
+        if not sound:
+            return 1e-3, False
+        pull = min(sound)
+        area = depth * strip.thickness
+        flexure = area * depth / 2.0 * pull * (1.0 if pressed >= UNLIMITED else pressed / (pull + pressed))
+        limits = []
+        if cohesion > 0.0:
+            limits.append(area * cohesion)
+        if tension > 0.0:
+            limits.append(area * tension / float(np.clip(length / depth, 1.0, 1.5)))
+        shear = min(limits) * length / 2.0
+        return (shear, True) if shear < flexure else (flexure, False)
+
+    # Corners and rods
+
+    def _corners(self) -> list[Link]:
+        """Vertical links where walls meet, on each level; strength by the shear of the section along which they hang together."""
+        plan, o, links = self.plan, self.options, []
+        for (a, b), (s, t) in self.junctions.items():
+            one, two = plan.walls[a], plan.walls[b]
+            bond = plan.bond(one.name, two.name)
+            if bond is not None and bond.bond in ("open", "joint"):
+                continue
+            for level in range(1, min(plan.reach(one)[1], plan.reach(two)[1]) + 1):
+                p, q = self.nodes[self._node(a, level, s)], self.nodes[self._node(b, level, t)]
+                if not (p.start - MEETS <= s <= p.end + MEETS and q.start - MEETS <= t <= q.end + MEETS):
+                    continue
+                tall = 0.5 * (plan.storeys[level - 1] + (plan.storeys[level] if level < len(plan.storeys) else 0.0))
+                thin = min(_thickness(plan, wall, level) for wall in (one, two))
+                material = self._material(one)
+                shear = o.stiffness * material.young / (2.0 * (1.0 + material.poisson))
+                f = o.flange_strength or o.cohesion or self.building.joints.cohesion
+                strength = f / o.confidence_factor * thin * tall if f else UNLIMITED
+                if bond is not None:
+                    strength *= bond.strength
+                links.append(
+                    Link(
+                        (*p.freedoms, *q.freedoms), (1.0, s - p.s, -1.0, q.s - t), shear * tall, (strength, strength)
+                    )
+                )  # fmt: skip
+        return links
+
+    def _rods(self) -> list[Link]:
+        """Tie rods between two places on walls: they yield where their material has a strength, and carry no pressure."""
+        links = []
+        for k, rod in enumerate(self.plan.rods):
+            ends = [np.asarray(rod.start), np.asarray(rod.end)]
+            way = (ends[1] - ends[0])[:2]
+            length = float(np.linalg.norm(ends[1] - ends[0]))
+            if rod.material not in self.building.materials:
+                raise BadGeometry(
+                    f"rod {k + 1}: there is no [materials.{rod.material}]", ("structure", "rods", k, "material")
+                )
+            steel = self.building.materials[rod.material]
+            row = np.zeros(len(self.weight))
+            for sign, end in ((-1.0, ends[0]), (1.0, ends[1])):
+                level = int(np.abs(self.plan.levels - end[2]).argmin())
+                found = [
+                    (float(np.linalg.norm(np.asarray(wall.start) + s * wall.direction - end[:2])), w, s)
+                    for w, wall in enumerate(self.plan.walls)
+                    if (w, level) in self.along
+                    and (s := float(np.clip((end[:2] - wall.start) @ wall.direction, 0.0, wall.length))) is not None
+                ]
+                if not found or min(found)[0] > 0.5:
+                    raise BadGeometry(
+                        f"rod {k + 1}: its end at {', '.join(f'{v:g}' for v in end)} m is not on a wall",
+                        ("structure", "rods", k),
+                    )
+                _, w, s = min(found)
+                row += sign * way / length @ self._vector(w, s, level)
+            own = np.flatnonzero(np.abs(row) > 1e-12)
+            if not len(own):
+                self.remarks.append(
+                    f"Rod {k + 1} runs along a wall whose nodes move together: it has no effect on the frame."
+                )
+                continue
+            if len(own) > 8:
+                raise BadGeometry(f"rod {k + 1}: expected ends at corners of walls", ("structure", "rods", k))
+            pull = UNLIMITED if steel.tensile_strength is None else rod.area * steel.tensile_strength
+            links.append(
+                Link(
+                    tuple(own.tolist()),
+                    tuple(row[own].tolist()),
+                    steel.young * rod.area / length,
+                    (0.0, pull),
+                    rod.prestress,
+                )
+            )
+        return links
+
+
+def _thickness(plan: Plan, wall: PlanWall, storey: int) -> float:
+    return wall.thickness or wall.thicknesses[storey - plan.reach(wall)[0]]
+
+
+def _law(wanted: str, cohesion: float, tension: float) -> str:
+    """The law of shear that the strengths allow."""
+    if wanted in ("mohr-coulomb", "damage", "none"):
+        return wanted
+    if wanted == "least" and not tension > 0.0:
+        return "mohr-coulomb"
+    if not tension > 0.0:
+        raise BadGeometry(
+            "turnsek-cacovic needs diagonal_strength",
+            ("analysis", "frame", "shear"),
+        )
+    return "turnsek-cacovic" if wanted == "turnsek-cacovic" or not cohesion > 0.0 else "least"
+
+
+def _between(wall: PlanWall, storey: int, tall: float) -> list[tuple[float, float, Side, Side]]:
+    """Piers of a storey from start to end: s from, to, and what stands beside them."""
+    merged: list[list[float]] = []
+    for opening in sorted((o for o in wall.openings if o.storey == storey), key=lambda o: o.x[0]):
+        if merged and opening.x[0] < merged[-1][1] + MEETS:
+            last = merged[-1]
+            merged[-1] = [last[0], max(last[1], opening.x[1]), min(last[2], opening.z[0]), max(last[3], opening.z[1])]
+        else:
+            merged.append([*opening.x, *opening.z])
+    found, start, left = [], 0.0, Side()
+    for a, b, sill, head in [*merged, [wall.length, wall.length, np.nan, np.nan]]:
+        right = Side() if np.isnan(sill) else Side(sill, head)
+        if a - start > MEETS:
+            found.append((start, a, left, right))
+        start, left = b, right
+    return found
+
+
+def _around_openings(wall: PlanWall, storey: int, tall: float) -> list[tuple[float, float, float, bool]]:
+    """Masonry above and below the openings of a storey: s from, to, height, whether above."""
+    own: list[WallOpening] = [o for o in wall.openings if o.storey == storey]
+    breaks = sorted({x for o in own for x in o.x})
+    found = []
+    for a, b in itertools.pairwise(breaks):
+        over = sorted((o.z[0], o.z[1]) for o in own if o.x[0] < b - MEETS and o.x[1] > a + MEETS)
+        if not over:
+            continue
+        low, high = over[0][0], max(z[1] for z in over)
+        found += [(a, b, height, upper) for height, upper in ((low, False), (tall - high, True)) if height > MEETS]
+        between, top = 0.0, over[0][1]
+        for sill, head in over[1:]:
+            between += max(sill - top, 0.0)
+            top = max(top, head)
+        if between > MEETS:
+            found.append((a, b, between, True))
+    return found
+
+
+def _groups(below: list[tuple[float, float]], above: list[tuple[float, float]]) -> list[list[tuple[int, int]]]:
+    """Piers below (0, k) and above (1, k) a level that share a node: those that overlap."""
+    members = [(0, k) for k in range(len(below))] + [(1, k) for k in range(len(above))]
+    owner = {one: one for one in members}
+
+    def root(one: tuple[int, int]) -> tuple[int, int]:
+        while owner[one] != one:
+            one = owner[one]
+        return one
+
+    for i, p in enumerate(below):
+        for j, q in enumerate(above):
+            common = min(p[1], q[1]) - max(p[0], q[0])
+            if common > OVERLAP * min(p[1] - p[0], q[1] - q[0]):
+                owner[root((1, j))] = root((0, i))
+    groups: dict[tuple[int, int], list[tuple[int, int]]] = {}
+    for one in members:
+        groups.setdefault(root(one), []).append(one)
+    return list(groups.values())
