@@ -41,7 +41,6 @@ class FrameModes(FrameAnalysis):
 
     kind: Literal["frame-modes"]
     uses: ClassVar = ELASTIC
-    beside: ClassVar = ("material.compressive_strength",)
     modes: int = key(6, "how many modes", ge=1, le=100)
 
 
