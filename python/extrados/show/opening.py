@@ -29,7 +29,8 @@ TITLES = {
     "code-checks": "Checks of codes", "local-mechanism": "Local mechanism by codes", "motion": "Ground motion",
     "shake-table": "Shake table", "sla": "Sequentially linear analysis", "pushover": "Pushover", "dem": "Discrete elements",
     "dem-domain": "Failure domain of discrete elements", "assess": "Comparison of the strategies", "strengthen": "Strengthening",
-    "dem-parameters": "Parameters of discrete elements",
+    "dem-parameters": "Parameters of discrete elements", "frame-modes": "Modes of the frame",
+    "frame-pushover": "Pushover of the frame", "frame-history": "Response of the frame to the motion",
 }  # fmt: skip
 #: A safety factor below this is thin
 THIN = 1.5
