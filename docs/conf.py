@@ -32,7 +32,7 @@ project = "extrados"
 author = copyright = "the authors of extrados"
 version = release = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
 extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx_copybutton", "drawings"]
-exclude_patterns = ["_made"]
+exclude_patterns = ["_made", "paper"]
 source_suffix = {".md": "myst-nb"}
 myst_heading_anchors = 4
 autodoc_typehints = "none"

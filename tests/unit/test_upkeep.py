@@ -137,6 +137,25 @@ def test_every_way_to_install_asks_for_the_same() -> None:
     assert set(PROJECT["build-system"]["requires"]) <= listed(recipe, "host")
 
 
+def test_forms_of_the_issue_tracker_ask_for_deck_result_source_and_version() -> None:
+    forms = {
+        path.stem: path.read_text(encoding="utf-8") for path in (ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml")
+    }
+    assert set(forms) == {"config", "fault", "question", "wish"}
+    assert re.findall(r"^    id: (\w+)$", forms["fault"], re.M) == ["deck", "found", "expected", "version", "system"]
+    assert forms["fault"].count("required: true") == 4
+
+
+def test_the_citation_and_the_paper_name_the_dissertation() -> None:
+    """And every source that the paper cites is in its list."""
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    title = "Seismic assessment strategies for masonry structures"
+    assert f'title: "{title}"' in citation
+    paper, sources = ((ROOT / "docs" / "paper" / f"paper.{end}").read_text(encoding="utf-8") for end in ("md", "bib"))
+    known = set(re.findall(r"^@\w+\{(\w+),", sources, re.M))
+    assert set(re.findall(r"@([A-Z]\w+\d{4})", paper)) == known and title.lower() in sources.lower()
+
+
 def test_an_installed_copy_tells_the_commit_that_it_was_built_from(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
