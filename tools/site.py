@@ -6,6 +6,7 @@ that leads nowhere; nothing is loaded from the network, so that the site and its
 """
 
 import html
+import json
 import os
 import re
 import shutil
@@ -106,7 +107,7 @@ def gallery() -> None:
             deck = f"{{download}}`cases/{case}.toml <../cases/{case}.toml>`"
             lines += [
                 f"```{{figure}} _gallery/{thumbnail.name}",
-                f":alt: {made.caption}",
+                f":alt: {json.dumps(made.caption, ensure_ascii=False)}",
                 f":target: _images/{thumbnail.name}",
                 f"**{made.title}.** {first_sentence(made.conclusion)} {deck}, `{analysis}`, {made.seconds:.2g} s",
                 "```",
