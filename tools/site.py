@@ -117,8 +117,8 @@ def gallery() -> None:
 
 
 def first_sentence(text: str) -> str:
-    """Of a conclusion, as text of Markdown."""
-    found = re.split(r"(?<=[.;]) (?=[A-Z])|\n", text, maxsplit=1)[0].rstrip(";:. ")
+    """Of a conclusion, without parentheses, as text of Markdown."""
+    found = re.split(r"(?<=[.;]) (?=[A-Za-z])|\n", re.sub(r" \([^)]*\)", "", text), maxsplit=1)[0].rstrip(";:. ")
     return re.sub(r"([*_`<\[{])", r"\\\1", found) + "."
 
 
