@@ -160,9 +160,6 @@ def test_type_checkers_know_the_keys_of_tables(tmp_path: Path) -> None:
     """The stub of the build, before mypy: a misspelt key, a missing one and a wrong type are errors, a right call is none."""
     package = ROOT / "python" / "extrados"
     (tmp_path / "extrados").mkdir()
-    for part in package.iterdir():
-        if part.name != "__pycache__":
-            (tmp_path / "extrados" / part.name).symlink_to(part)
     command = [sys.executable, ROOT / "python" / "make_stub.py", package, tmp_path / "extrados" / "__init__.pyi"]
     subprocess.run(command, check=True)
     lines = [
@@ -175,7 +172,7 @@ def test_type_checkers_know_the_keys_of_tables(tmp_path: Path) -> None:
     ]
     (tmp_path / "calls.py").write_text("import extrados\n" + "\n".join(lines) + "\n")
     checked = subprocess.run(
-        [sys.executable, "-m", "mypy", "--config-file=", "--follow-imports=silent", "--ignore-missing-imports", "calls.py"],
+        [sys.executable, "-m", "mypy", "--config-file=", "--follow-imports=skip", "--ignore-missing-imports", "calls.py", "extrados/__init__.pyi"],
         cwd=tmp_path, capture_output=True, text=True, env={**os.environ, "MYPYPATH": str(tmp_path)},
     )  # fmt: skip
     wrong = {int(line.split(":")[1]) for line in checked.stdout.splitlines() if ": error: " in line}
