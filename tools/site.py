@@ -175,8 +175,8 @@ def broken(site: Path) -> list[str]:
                 continue
             to = (page.parent / unquote(parts.path)).resolve() if parts.path else page
             to = to / "index.html" if to.is_dir() else to
-            mark = unquote(parts.fragment)
-            if not to.exists() or (mark not in ("", "top") and to in places and mark not in places[to]):
+            marks = {parts.fragment, unquote(parts.fragment)}  # a browser tries the one, then the other
+            if not to.exists() or (not marks & {"", "top"} and to in places and not marks & places[to]):
                 wrong.append(f"{page.relative_to(site.resolve())}: {link} leads nowhere")
     return wrong
 

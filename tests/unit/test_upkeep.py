@@ -104,7 +104,7 @@ def test_every_room_of_the_core_has_tests_that_seeded_faults_run(monkeypatch: py
 def test_a_site_with_a_broken_link_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(ROOT / "tools"))
     (tmp_path / "a.html").write_text(
-        '<h1 id="here">a</h1> <a href="#here">b</a> <img src="data:,"> <a href="https://x">c</a>'
+        '<h1 id="here">a</h1> <a href="#here">b</a> <h2 id="o%28-%29">d</h2> <a href="#o%28-%29">e</a> <img src="data:,"> <a href="https://x">c</a>'
     )
     (tmp_path / "b.html").write_text('<a href="gone.html">a</a> <a href="a.html#gone">b</a> <script src="https://x"></script>')  # fmt: skip
     wrong = ["gone.html leads nowhere", "a.html#gone leads nowhere", "https://x is loaded from the network"]
