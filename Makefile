@@ -43,10 +43,10 @@ coverage: setup  ## share of lines of Python, Fortran and C that the quick suite
 release: setup  ## VERSION=0.2.0: sets the version in all files, dates the changelog, commits, tags, packs the sources
 	@$(PYTHON) tools/release.py $(VERSION)
 
-docs: setup  ## the documentation site in build/site, with offline search; installs its requirements
+docs: setup  ## the documentation site in build/site/VERSION: pictures by their decks, notebooks executed, offline search; installs its requirements
 	@$(PYTHON) tools/site.py
 
-pictures: setup  ## pictures of README and docs (docs/pictures) from decks of cases/; NAME="arch page" selects some
+pictures: setup  ## pictures of the README (docs/pictures) from decks of cases/; NAME="strip-arch page" selects some
 	@$(PYTHON) tools/pictures.py $(NAME)
 
 table-5-3: setup  ## refit the assessment criterion (thesis Table 5.3); RULE=inelastic prints the fit by another impact rule

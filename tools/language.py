@@ -78,7 +78,11 @@ NOT_LINTED = {
 def pages() -> list[Path]:
     """README, CONTRIBUTING and the written pages of docs."""
     pages = sorted((ROOT / "docs").rglob("*.md"))
-    written = [page for page in pages if page.name not in GENERATED | RECORDS and page.parent.name != "verification"]
+    written = [
+        page
+        for page in pages
+        if page.name not in GENERATED | RECORDS and page.parent.name not in ("verification", "_made")
+    ]
     return [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *written]
 
 

@@ -1,7 +1,7 @@
-"""Make the pictures of README and docs, docs/pictures/*.png, by running decks of `cases/`: `make pictures`.
+"""Make the pictures of the README, docs/pictures/*.png, by running decks of `cases/`: `make pictures`.
 
-Each is a figure of one analysis; the page is photographed in chromium. The pictures are kept in git, so that README and pages show them
-without a build. NAME makes that one alone.
+Each is a figure of one analysis; the page is photographed in chromium. They are kept in git, so that the README shows them without a
+build; `make docs` draws all others. NAME makes that one alone.
 """
 
 import io
@@ -15,28 +15,8 @@ ROOT = Path(__file__).resolve().parents[1]
 PLACE = ROOT / "docs" / "pictures"
 #: Picture: deck, analysis, figure ("" is the first), axes shown (none: all), width in pixels
 FIGURES: dict[str, tuple[str, str, str, tuple[int, ...], int]] = {
-    "section": ("vault/vezelay-like", "tilt", "tilt-collapse", (), 900),
-    "margins": ("assess/facade", "assess", "assess-margins", (), 800),
     "strip-arch": ("arch/readme", "tilt", "tilt-collapse", (0,), 560),
     "strip-house": ("building/two-rooms", "pushover", "pushover-space", (1, 2), 560),
-    "arch": ("arch/readme", "tilt", "tilt-collapse", (0, 1), 900),
-    "house": ("building/two-rooms", "pushover", "pushover-space", (), 900),
-    "verification": ("building/verification", "pushover", "pushover-verification", (), 900),
-    "bridge": ("bridge/road", "moving-load", "", (), 900),
-    "corner": ("solid/corner", "tilt", "", (), 800),
-    "survey": ("limit/church", "tilt", "tilt-collapse", (), 900),
-    "rocking": ("arch/readme", "rocking", "rocking-history", (), 900),
-    "hand-over": ("vault/hand-over", "rocking", "rocking-history", (), 900),
-    "domain": ("arch/oppenheim-domain", "failure-domain", "", (), 800),
-    "motion": ("motion/el-centro", "motion", "", (), 900),
-    "facade": ("codes/facade", "local-mechanism", "", (), 900),
-    "elements": ("dem/oppenheim", "dem", "", (), 900),
-    "wall": ("sla/yi-wall-1", "sla", "sla-cracks", (), 900),
-    "frame": ("frame/two-rooms", "frame-pushover", "frame-pushover-walls-0", (), 900),
-    "frame-curves": ("frame/two-rooms", "frame-pushover", "frame-pushover-curves", (), 800),
-    "strengthened": ("strengthen/nave", "strengthen", "strengthen-mechanisms", (), 900),
-    "fragility-pair": ("strengthen/pinnacle", "strengthen", "strengthen-fragility", (), 700),
-    "fragility": ("fragility/annual-rate", "fragility", "fragility-curve", (), 800),
 }
 #: The page: the deck that it opens
 PAGE = "vault/vezelay-like"

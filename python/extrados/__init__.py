@@ -119,14 +119,15 @@ def load(folder: str | Path) -> "Run":
     return Run.read(folder)
 
 
-def widget(deck: str | Path | None = None, *, height: int = 680) -> "Page":
+def widget(deck: "str | Path | dict[str, Any] | Deck | None" = None, *, height: int = 680) -> "Page":
     """The interactive page as a widget of a notebook (needs anywidget: pip install "extrados[notebook]"), `height` in pixels.
 
-    deck: a file, default a new arch. `widget(...).deck` is the text of the deck as it stands in the page.
+    deck: as `run` takes it, default a new arch. `widget(...).deck` is the text of the deck as it stands in the page. DeckError
+    lists what is wrong with a dictionary; the page itself shows what is wrong with a file.
     """
     from extrados.explore.widget import Page
 
-    return Page.of(None if deck is None else Path(deck), height)
+    return Page.of(Path(deck) if isinstance(deck, str | Path) else None if deck is None else _checked(deck), height)
 
 
 def _checked(deck: Any) -> Any:

@@ -50,3 +50,20 @@ def test_the_widget_answers_like_the_page(tmp_path: Path) -> None:
     (length,) = struct.unpack_from("<I", sent[-1])
     assert b'"capacity"' in sent[-1][4 : 4 + length]
     assert "thickness = 0.9" in page.deck
+
+
+def test_the_widget_takes_what_a_run_takes(tmp_path: Path) -> None:
+    """A file, a dictionary, a deck of objects, or none: the deck of the page gives the same results."""
+    pytest.importorskip("anywidget")
+    arch = extrados.Arch(radius=5.0, thickness="80 cm", embrace=150.0, voussoirs=9)
+    deck = extrados.deck(arch, extrados.Tilt(), joints=extrados.Joints(friction=0.5), folder=tmp_path)
+    wanted = extrados.run(deck)["tilt"].collapse_acceleration_g
+    (tmp_path / "mine.toml").write_text(extrados.widget(deck).session.first_text)
+    for given in (deck, deck.data, tmp_path / "mine.toml", str(tmp_path / "mine.toml")):
+        page = extrados.widget(given)
+        page.send = lambda content, buffers: None
+        page._answer(page, {"do": "hello", "of": 1}, [])
+        assert extrados.run(tomllib.loads(page.deck))["tilt"].collapse_acceleration_g == wanted
+    assert extrados.widget().session.first_text == NEW_DECK
+    with pytest.raises(extrados.DeckError, match="raduis"):
+        extrados.widget({"structure": {"kind": "arch", "raduis": 5.0}})

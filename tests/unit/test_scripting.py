@@ -4,6 +4,7 @@ import inspect
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 import tomllib
@@ -17,7 +18,8 @@ import extrados
 from extrados import kinds, objects
 from extrados.decks.reader import PROPERTIES, make_deck, read_deck
 
-CASES = Path(__file__).resolve().parents[2] / "cases"
+ROOT = Path(__file__).resolve().parents[2]
+CASES = ROOT / "cases"
 DECKS = sorted(p for p in CASES.rglob("*.toml") if not p.name.endswith(".expect.toml"))
 ARCH = extrados.Arch(radius=10.0, thickness="1.5 m", embrace=157.5, voussoirs=7)
 PULSE = extrados.StepPulse(amplitude="1.0 g", duration=0.2)
@@ -106,18 +108,76 @@ def test_a_sweep_is_a_frame_and_a_dataset_with_units() -> None:
     over = {"structure.thickness": ["1.2 m", 1.5, 1.8], "motion.duration": np.array([0.1, 0.2])}
     swept = extrados.sweep(DECK, over=over, progress=False)
     frame, data = swept.frame(), swept.dataset()
-    assert len(frame) == 6 and frame.attrs["units"]["thickness"] == "m"
-    assert data["tilt.collapse_acceleration_g"].dims == ("thickness", "duration")
-    assert data["thickness"].attrs["units"] == "m" and data["duration"].attrs["units"] == "s"
+    assert len(frame) == 6 and frame.attrs["units"]["structure.thickness"] == "m"
+    assert data["tilt.collapse_acceleration_g"].dims == ("structure.thickness", "motion.duration")
+    assert data["structure.thickness"].attrs["units"] == "m" and data["motion.duration"].attrs["units"] == "s"
     assert data["tilt.collapse_acceleration_g"].attrs["units"] == "g"
     for thickness, duration in [(1.2, 0.1), (1.8, 0.2)]:
         deck = {**DECK.data, "structure": {**DECK.data["structure"], "thickness": thickness}}
         run = extrados.run({**deck, "motion": {**DECK.data["motion"], "duration": duration}})
-        here = data.sel(thickness=thickness, duration=duration)
+        here = data.sel({"structure.thickness": thickness, "motion.duration": duration})
         assert here["tilt.collapse_acceleration_g"].item() == run["tilt"].collapse_acceleration_g
         assert here["rocking.peak_rotation_rad"].item() == run["rocking"].peak_rotation_rad
         assert here["rocking.outcome"].item() == run["rocking"].outcome
         assert here["rocking.verdict.outcome"].item() == run.analysis("rocking")["verdict"]["outcome"]
+
+
+def test_columns_keep_their_names_whatever_else_is_varied() -> None:
+    """Also beside another key of the same last word."""
+    bridge = {"kind": "bridge", "spans": [{"span": 8.0, "rise": 2.5, "thickness": 0.5, "voussoirs": 12}] * 2,
+              "piers": [{"width": 1.6, "height": 5.0}]}  # fmt: skip
+    deck = {"structure": bridge, "analysis": {"kind": "thrust"}}
+    first, second = "structure.spans.0.thickness", "structure.spans.1.thickness"
+    alone, beside = (
+        extrados.sweep(deck, over={key: [0.6] for key in keys}, progress=False) for keys in ([first], [first, second])
+    )
+    assert alone.columns[0] == first and beside.columns[:2] == [first, second]
+    assert set(alone.columns) == set(beside.columns) - {second}
+
+
+def test_a_sweep_shows_its_first_members_in_a_notebook() -> None:
+    swept = extrados.sweep(DECK, over={"structure.thickness": np.linspace(1.2, 1.8, 14)}, progress=False)
+    page = swept._repr_html_()
+    assert page.count("<tr>") == 13 and "2 more members" in page
+    assert (
+        "structure.thickness [m]" in page and "tilt.verdict.outcome" in page and "rocking.peak_rotation_rad" not in page
+    )
+
+
+def test_an_analysis_without_results_raises_its_reason() -> None:
+    """What proves that a structure cannot stand is a result."""
+    arch = extrados.Arch(radius=10.0, thickness=1.5, embrace=157.5, voussoirs=7)
+    run = extrados.run(extrados.deck(arch, extrados.Tilt(), material=extrados.Material(density=0.0)))
+    row = run.analysis("tilt")
+    assert row["status"] == "refused"
+    with pytest.raises(extrados.Refused, match=re.escape(f"tilt: refused: {row['reason']}")):
+        print(run["tilt"])
+    thin = extrados.Arch(radius=10.0, thickness=0.2, embrace=157.5, voussoirs=7)
+    assert extrados.run(extrados.deck(thin, extrados.Tilt()))["tilt"].collapse_acceleration_g == 0.0
+
+
+def test_type_checkers_know_the_keys_of_tables(tmp_path: Path) -> None:
+    """The stub of the build, before mypy: a misspelt key, a missing one and a wrong type are errors, a right call is none."""
+    package = ROOT / "python" / "extrados"
+    (tmp_path / "extrados").mkdir()
+    command = [sys.executable, ROOT / "python" / "make_stub.py", package, tmp_path / "extrados" / "__init__.pyi"]
+    subprocess.run(command, check=True)
+    lines = [
+        'extrados.Arch(radius=10.0, thickness="150 cm", embrace=157.5, voussoirs=7)',
+        "extrados.Arch(raduis=10.0, thickness=1.5, embrace=157.5, voussoirs=7)",
+        "extrados.Arch(thickness=1.5, embrace=157.5, voussoirs=7)",
+        "extrados.Arch(radius=10.0, thickness=1.5, embrace=157.5, voussoirs=7.5)",
+        'extrados.Tilt(friction_rule="asociated")',
+        "extrados.run(extrados.deck(extrados.Block(width=1.0, height=2.0), extrados.Tilt()), outt=1)",
+    ]
+    (tmp_path / "calls.py").write_text("import extrados\n" + "\n".join(lines) + "\n")
+    checked = subprocess.run(
+        [sys.executable, "-m", "mypy", "--config-file=", "--follow-imports=skip", "--ignore-missing-imports", "calls.py", "extrados/__init__.pyi"],
+        cwd=tmp_path, capture_output=True, text=True, env={**os.environ, "MYPYPATH": str(tmp_path)},
+    )  # fmt: skip
+    wrong = {int(line.split(":")[1]) for line in checked.stdout.splitlines() if ": error: " in line}
+    assert wrong == {3, 4, 5, 6, 7}, checked.stdout + checked.stderr
+    assert 'Unexpected keyword argument "raduis"' in checked.stdout
 
 
 def test_processes_give_the_bits_of_one() -> None:
@@ -134,9 +194,9 @@ def test_rows_that_belong_together_and_what_is_refused() -> None:
     assert (
         swept.rows[0]["tilt.status"] == "ok" and swept.rows[1]["tilt.status"] != "ok" and swept.rows[1]["tilt.reason"]
     )
-    assert swept.shape is None and swept.dataset()["radius"].dims == ("member",) and told[-1] == 2
+    assert swept.shape is None and swept.dataset()["structure.radius"].dims == ("member",) and told[-1] == 2
     assert np.isnan(swept.column("tilt.collapse_acceleration_g")[1]) and "2 of 2 members" in repr(swept)
-    with pytest.raises(KeyError, match="there are radius, thickness"):
+    with pytest.raises(KeyError, match=r"there are structure\.radius, structure\.thickness"):
         swept.column("raduis")
 
 

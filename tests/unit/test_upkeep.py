@@ -104,7 +104,7 @@ def test_every_room_of_the_core_has_tests_that_seeded_faults_run(monkeypatch: py
 def test_a_site_with_a_broken_link_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(ROOT / "tools"))
     (tmp_path / "a.html").write_text(
-        '<h1 id="here">a</h1> <a href="#here">b</a> <img src="data:,"> <a href="https://x">c</a>'
+        '<h1 id="here">a</h1> <a href="#here">b</a> <h2 id="o%28-%29">d</h2> <a href="#o%28-%29">e</a> <img src="data:,"> <a href="https://x">c</a>'
     )
     (tmp_path / "b.html").write_text('<a href="gone.html">a</a> <a href="a.html#gone">b</a> <script src="https://x"></script>')  # fmt: skip
     wrong = ["gone.html leads nowhere", "a.html#gone leads nowhere", "https://x is loaded from the network"]
@@ -135,6 +135,25 @@ def test_every_way_to_install_asks_for_the_same() -> None:
     run = {re.sub(r"^[\w-]+", lambda name: renamed.get(name[0], name[0]), line) for line in listed(recipe, "run")}
     assert run == {*project["dependencies"], f"python{project['requires-python']}"}
     assert set(PROJECT["build-system"]["requires"]) <= listed(recipe, "host")
+
+
+def test_forms_of_the_issue_tracker_ask_for_deck_result_source_and_version() -> None:
+    forms = {
+        path.stem: path.read_text(encoding="utf-8") for path in (ROOT / ".github" / "ISSUE_TEMPLATE").glob("*.yml")
+    }
+    assert set(forms) == {"config", "fault", "question", "wish"}
+    assert re.findall(r"^    id: (\w+)$", forms["fault"], re.M) == ["deck", "found", "expected", "version", "system"]
+    assert forms["fault"].count("required: true") == 4
+
+
+def test_the_citation_and_the_paper_name_the_dissertation() -> None:
+    """And every source that the paper cites is in its list."""
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    title = "Seismic assessment strategies for masonry structures"
+    assert f'title: "{title}"' in citation
+    paper, sources = ((ROOT / "docs" / "paper" / f"paper.{end}").read_text(encoding="utf-8") for end in ("md", "bib"))
+    known = set(re.findall(r"^@\w+\{(\w+),", sources, re.M))
+    assert set(re.findall(r"@([A-Z]\w+\d{4})", paper)) == known and title.lower() in sources.lower()
 
 
 def test_an_installed_copy_tells_the_commit_that_it_was_built_from(

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from extrados import kinds
-from extrados.decks import explain, manual, synonyms
+from extrados.decks import explain, glossary, manual, synonyms
 from extrados.results import explain as result_models
 from extrados.results import manual as of_results
 
@@ -39,6 +39,25 @@ def test_words_stand_in_one_line_each() -> None:
 )  # fmt: skip
 def test_a_word_of_the_trade_is_known(word: str) -> None:
     assert "Read docs/" in manual.explain(word, TABLES)
+
+
+def test_terms_of_five_languages_lead_to_what_explain_knows() -> None:
+    """Each English word is known; each term has a word in every language; no word of a language is in two terms."""
+    assert len(glossary.TERMS) > 60
+    for term in glossary.TERMS:
+        assert len(term.words) == len(glossary.LANGUAGES) and all(all(words) for words in term.words), term
+        assert manual.explain(term.english, TABLES)
+    for k, language in enumerate(glossary.LANGUAGES):
+        words = [glossary.bare(word) for term in glossary.TERMS for word in term.words[k]]
+        assert sorted(words) == sorted(set(words)), language
+
+
+@pytest.mark.parametrize(
+    ("word", "place"),
+    [("catena", "[[ties]]"), ("tirants", "[[ties]]"), ("Bogen", 'kind = "arch"'), ("boveda", 'kind = "vault"'), ("flèche", "rise"), ("cupola", 'kind = "dome"')],
+)  # fmt: skip
+def test_a_word_of_another_language_is_explained(word: str, place: str) -> None:
+    assert place in manual.explain(word, TABLES)
 
 
 def test_a_misspelt_word_of_the_trade_names_the_nearest() -> None:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from extrados import kinds
-from extrados.decks import synonyms
+from extrados.decks import glossary, synonyms
 
 
 @dataclass(frozen=True)
@@ -37,7 +37,7 @@ def explain(word: str, tables: Sequence[TableFacts]) -> str:
     """What a key, a kind or a section means; KeyError with the nearest known word where there is none.
 
     A key may follow its table or its kind: "friction", "joints.friction", "analysis.tilt", "tilt.fracture". Another word
-    for a thing ("backfill", "PGA") leads to where the thing is found.
+    for a thing ("backfill", "PGA") leads to where the thing is found, and so does one of another language ("catena").
     """
     if word == "materials":
         return "[materials.NAME]: Further materials, with the keys of [material], for the parts that name them."
@@ -59,6 +59,11 @@ def explain(word: str, tables: Sequence[TableFacts]) -> str:
             if any(name == one or name.startswith(f"{one}.") for one in asked)
         ]
     found += [_pointed(line, tables) for line in synonyms.meanings(word)]
+    foreign: dict[str, list[str]] = {}
+    for language, term in glossary.translated(word):
+        if term.english != word:
+            foreign.setdefault(term.english, []).append(language)
+    found += [f"{word} ({', '.join(of)}): {english}\n{explain(english, tables)}" for english, of in foreign.items()]
     if not found:
         known |= set(synonyms.words())
         close = difflib.get_close_matches(word, sorted(known), n=3, cutoff=0.4)

@@ -31,15 +31,15 @@ kind = "tilt"
 class Desk:
     """A deck and how it is looked at.
 
-    folder, first: the working folder, and the deck of it that is opened first. place, name: where the files lie that the
-    deck names, and how the deck is called. document, live: its text, written when it is asked for, and its model; both
-    always say the same. view, picture, handles: what is drawn, and what hands can take hold of. anchor: the place of the
-    building that is the origin of the drawing [m]; held: the same, as long as a hand holds it. maps: maps of pulses by
+    folder, first: the working folder, and the deck of it that is opened first; first_text: the deck that is opened if `first` names
+    none. place, name: where the files lie that the deck names, and how the deck is called. document, live: its text, written when it is
+    asked for, and its model; both always say the same. view, picture, handles: what is drawn, and what hands can take hold of. anchor:
+    the place of the building that is the origin of the drawing [m]; held: the same, as long as a hand holds it. maps: maps of pulses by
     what they were made of.
     """
 
     def __init__(self, folder: Path, first: str | None = None):
-        self.folder, self.first = Folder(folder), first
+        self.folder, self.first, self.first_text = Folder(folder), first, NEW_DECK
         self.place: Path = folder
         self.name = "deck.toml"
         self.document = Document(NEW_DECK)

@@ -1,6 +1,7 @@
 """The text of a deck that a hand changes: values are put in their places, all else stays as its author wrote it."""
 
 import re
+from collections.abc import Mapping
 from typing import Any
 
 import tomlkit
@@ -9,6 +10,17 @@ from tomlkit.items import AoT, Item
 from extrados.schema.quantities import factor
 
 QUANTITY = re.compile(r"\s*([-+0-9.eE]+)\s*([^\d\s].*?)\s*")
+
+
+def text_of(data: Mapping[str, Any]) -> str:
+    """A deck in memory as TOML; keys without a value are not written."""
+
+    def given(value: Any) -> Any:
+        if isinstance(value, Mapping):
+            return {key: given(one) for key, one in value.items() if one is not None}
+        return [given(one) for one in value] if isinstance(value, list | tuple) else value
+
+    return tomlkit.dumps(given(data))
 
 
 class Document:

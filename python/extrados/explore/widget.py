@@ -10,6 +10,8 @@ try:
 except ImportError:
     raise ImportError('the page in a notebook needs anywidget: pip install "extrados[notebook]"') from None
 
+from extrados.decks.reader import Deck
+from extrados.explore.document import text_of
 from extrados.explore.session import Session
 
 STATIC = Path(__file__).parent / "static"
@@ -66,11 +68,16 @@ class Page(anywidget.AnyWidget):
     height = traitlets.Int(680).tag(sync=True)
 
     @classmethod
-    def of(cls, deck: Path | None, height: int) -> "Page":
-        """The page with a deck, or with a new arch; its folder is that of the deck, else the present one."""
-        place = None if deck is None else deck.resolve()
+    def of(cls, deck: Path | Deck | None, height: int) -> "Page":
+        """The page with a deck, a file or one in memory, or with a new arch; its folder is that of the deck, else the present one."""
         made = cls(modules=modules(), look=(STATIC / "style.css").read_text("utf-8"), height=height)
-        made.session = Session(Path.cwd() if place is None else place.parent, None if place is None else place.name)
+        if isinstance(deck, Path):
+            place = deck.resolve()
+            made.session = Session(place.parent, place.name)
+        else:
+            made.session = Session(Path.cwd() if deck is None else deck.folder)
+            if deck is not None:
+                made.session.first_text = text_of(deck.data)
         made.on_msg(made._answer)
         return made
 

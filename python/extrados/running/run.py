@@ -9,12 +9,13 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from extrados.analyses.context import Context
+from extrados.analyses.context import Context, Refused
 from extrados.analyses.sequence import run_analyses
 from extrados.decks.reader import Deck
 from extrados.results import checkpoint, store
 from extrados.results.model import Result, Streamed
 from extrados.results.store import Stored
+from extrados.results.verdict import KindResults
 from extrados.running.described import described
 from extrados.running.notebook import page_of
 from extrados.running.provenance import computed, provenance
@@ -52,6 +53,17 @@ class Run(Stored):
         """The run that a `folder` holds; StoreError where it is damaged."""
         found = store.read(folder)
         return cls(found.folder, found.head, found.analyses, found.arrays)
+
+    def __getitem__(self, name: str) -> KindResults:
+        """The results of an analysis by its name, for instance run["tilt"].collapse_acceleration_g, or as of a mapping.
+
+        An analysis without results raises its reason: Refused if it was refused, RuntimeError if it failed or was
+        interrupted. KeyError if there is no such analysis; StoreError if stored results are not what this version gives.
+        """
+        row = self.analysis(name)
+        if row["status"] != "ok" and not row["results"]:
+            raise (Refused if row["status"] == "refused" else RuntimeError)(f"{name}: {row['status']}: {row['reason']}")
+        return super().__getitem__(name)
 
     def _repr_html_(self) -> str:
         """In a notebook: a short table and the main figure, never the arrays."""

@@ -24,6 +24,7 @@ from extrados.results.explain import facts
 from extrados.results.typed import shapes
 from extrados.results.verdict import KindResults
 from extrados.running.live import Live
+from extrados.running.notebook import table_of
 from extrados.running.progress import Progress
 from extrados.schema.quantities import unit_of
 from extrados.schema.table import Table
@@ -122,13 +123,11 @@ def _holder(deck: Deck, names: Sequence[str], key: str) -> tuple[Any, str]:
 class Sweep:
     """What a sweep gave: `frame()` for pandas, `dataset()` for xarray, `rows` for plain Python.
 
-    keys: those of the deck that were varied; names: what columns and axes call them (the last word, where it is alone);
-    shape: values of each where every one met every other, None for rows; rows: of each member its values and results by
+    keys: those of the deck that were varied, which are also names of columns and axes; shape: values of each where every one met every other, None for rows; rows: of each member its values and results by
     name, in SI; units and about: of the columns, by name; members: how many were asked for.
     """
 
     keys: list[str]
-    names: list[str]
     shape: tuple[int, ...] | None
     rows: list[dict[str, Any]] = field(repr=False)
     units: dict[str, str] = field(repr=False)
@@ -140,14 +139,18 @@ class Sweep:
         return len(self.rows)
 
     def __repr__(self) -> str:
-        over = ", ".join(self.names)
+        over = ", ".join(self.keys)
         told = f"; {self.stopped}" if self.stopped else ""
         return f"<Sweep over {over}: {len(self)} of {self.members} members, {len(self.columns)} columns{told}>"
+
+    def _repr_html_(self) -> str:
+        """In a notebook: the first members, with their verdicts."""
+        return table_of(repr(self)[1:-1], self.keys, self.rows, self.units)
 
     @cached_property
     def columns(self) -> list[str]:
         """All that any member gave, varied keys first."""
-        return list(dict.fromkeys([*self.names, *(name for row in self.rows for name in row)]))
+        return list(dict.fromkeys([*self.keys, *(name for row in self.rows for name in row)]))
 
     def column(self, name: str) -> np.ndarray:
         """The values of a name, one of each member (members,), in the unit that `units[name]` says: numbers with NaN where
@@ -178,18 +181,18 @@ class Sweep:
         dims: tuple[str, ...] = ("member",)
         shape: tuple[int, ...] = (len(self.rows),)
         if self.shape is None:
-            coords = {name: (dims, self.column(name), self._told(name)) for name in self.names}
+            coords = {name: (dims, self.column(name), self._told(name)) for name in self.keys}
         elif len(self.rows) < self.members:
             raise ValueError(
                 f"{self.members - len(self.rows)} members are missing ({self.stopped}): no grid; see frame()"
             )
         else:
-            dims, shape = tuple(self.names), self.shape
+            dims, shape = tuple(self.keys), self.shape
             coords = {}
-            for axis, name in enumerate(self.names):
+            for axis, name in enumerate(self.keys):
                 along = np.moveaxis(self.column(name).reshape(shape), axis, 0).reshape(shape[axis], -1)[:, 0]
                 coords[name] = ((name,), along, self._told(name))
-        data = {n: (dims, self.column(n).reshape(shape), self._told(n)) for n in self.columns if n not in self.names}
+        data = {n: (dims, self.column(n).reshape(shape), self._told(n)) for n in self.columns if n not in self.keys}
         return xarray.Dataset(data, coords)
 
     def _told(self, name: str) -> dict[str, str]:
@@ -291,28 +294,26 @@ def _refuse(deck: Deck, keys: list[str], rows: list[list[Any]], shape: tuple[int
 
 def _told(deck: Deck, job: Members, shape: tuple[int, ...] | None, found: Swept) -> Sweep:
     """Rows under the names of their columns, with what is known of each."""
-    last = [key.rsplit(".", 1)[-1] for key in job.keys]
-    names = [short if last.count(short) == 1 else key for short, key in zip(last, job.keys, strict=True)]
     rows = []
     for member, text in zip(found.members, found["row"] if len(found.members) else (), strict=True):
         row = json.loads(bytes(text))
         values = {}
-        for name, key, given in zip(names, job.keys, job.rows[member], strict=True):
+        for key, given in zip(job.keys, job.rows[member], strict=True):
             taken = row.pop(_at(key), None)
-            values[name] = given if taken is None else taken
+            values[key] = given if taken is None else taken
         rows.append(values | row)
     analyses = Live(deck, 1).names
     units, about = {}, {}
-    for name, key in zip(names, job.keys, strict=True):
+    for key in job.keys:
         holder, at = _holder(deck, analyses, key)
         if isinstance(holder, Table) and at in type(holder).model_fields:
-            units[name] = unit_of(type(holder), at)
-            about[name] = type(holder).model_fields[at].description or ""
+            units[key] = unit_of(type(holder), at)
+            about[key] = type(holder).model_fields[at].description or ""
     for analysis, options in zip(analyses, deck.analyses, strict=True):
         for fact in (fact for model in shapes(options.kind) for fact in facts(model)):
             units[f"{analysis}.{fact.key}"], about[f"{analysis}.{fact.key}"] = fact.unit, fact.about
     columns = {name for row in rows for name in row}
     return Sweep(
-        job.keys, names, shape, rows, {n: u for n, u in units.items() if n in columns}, {n: a for n, a in about.items() if n in columns},
+        job.keys, shape, rows, {n: u for n, u in units.items() if n in columns}, {n: a for n, a in about.items() if n in columns},
         len(job.rows), found.stopped,
     )  # fmt: skip

@@ -55,7 +55,9 @@ def hello(desk: Desk, message: Message) -> Iterator[Reply]:
     elif desk.first is not None:
         yield from open_deck(desk, {"path": desk.first})
     else:
-        yield from open_deck(desk, {"text": NEW_DECK, "name": "new-arch.toml"})
+        yield from open_deck(
+            desk, {"text": desk.first_text, "name": "new-arch.toml" if desk.first_text == NEW_DECK else "deck.toml"}
+        )
 
 
 def list_folder(desk: Desk, _: Message) -> Iterator[Reply]:
