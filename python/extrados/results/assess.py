@@ -106,6 +106,33 @@ class TurningValue(ResultModel):
     )
 
 
+class Contribution(ResultModel):
+    """Probability of collapse by one strategy, from its agreement with tests."""
+
+    strategy: str = fact("strategy")
+    quantity: str = fact("quantity of the verification book that the tests measured")
+    count: int = fact("number of tests")
+    bias: float = fact("geometric mean of computed over measured values")
+    scatter: float = fact("standard deviation of the natural logarithm of computed over measured values")
+    margin: float = fact("critical scale factor of the hazard by the strategy")
+    probability: float = fact("probability that the true critical scale factor is below 1")
+    low: float = fact("lower end of its 90 % confidence interval")
+    high: float = fact("upper end of its 90 % confidence interval")
+    weight: float = fact("weight in the overall probability: its share of the tests")
+
+
+class CollapseProbability(ResultModel):
+    """Probability of collapse under the hazard, from the model uncertainty of the strategies."""
+
+    probability: float | None = fact("weighted mean over the contributions; 1 for a certificate; null: no contribution")
+    low: float | None = fact("least lower end of the contributions' 90 % confidence intervals; null: no contribution")
+    high: float | None = fact("greatest upper end of the contributions' 90 % confidence intervals; null: no contribution")
+    contributions: list[Contribution] = fact("strategies with tests in the verification book")
+    without: dict[str, str] = fact("strategies that contribute nothing, with the reason")
+    statement: str = fact("the probability in words")
+    method: str = fact("derivation of the probability in words")
+
+
 class Advice(ResultModel):
     """What to do, by limit analysis: interventions that carry the peak of the hazard as a sustained load."""
 
@@ -129,6 +156,7 @@ class Assess(KindResults):
     agreement: dict[str, dict[str, Agreement]] = fact(
         "of each pair of strategies with a verdict: the same verdict, the same with margins far apart, another one, or open"
     )
+    collapse_probability: CollapseProbability = fact("probability of collapse from the model uncertainty of the strategies")
     reasons: list[Reason] = fact("why strategies differ")
     unexplained: list[list[str]] = fact("pairs that differ without a reason that any rule has found")
     parts: dict[str, str] = fact("analyses of this run that the assessment requested: name -> description")

@@ -128,6 +128,7 @@ def _assessed(run: Stored, name: str) -> list[Block]:
             "The margin is the critical scale factor of the hazard: below 1 the strategy gives collapse under the hazard itself."
         )
     )
+    found.append(Words(f"{r.collapse_probability.statement} {r.collapse_probability.method}"))
     found += _advice(r)
     if r.reasons:
         found.append(Heading("Why they differ", 2))

@@ -20,6 +20,7 @@ from extrados.analyses.assess.asking import (
     row_of,
     scaled_margin,
 )
+from extrados.analyses.assess.model_uncertainty import estimate_collapse
 from extrados.analyses.assess.reasons import SLID, Facts, Pair, explained
 from extrados.analyses.assess.strategies import Asked, Choice, LeftOut, Strategy
 from extrados.analyses.assess.tables import Assess
@@ -588,6 +589,9 @@ class _Work:
                    or row.margin is not None]  # fmt: skip
         least = min(margins, default=(None, None), key=lambda m: m[0] if m[0] is not None else np.inf)
         overall, statement = conclusion(facts, reasons, unexplained, self.context.building.structure.word, least, rows)
+        chance = estimate_collapse(rows)
+        if overall != "cannot stand":
+            statement += f" {chance.statement}"
         impulse = hazard.primary(facts.motion)
         model = self.context.deck.motion
         result.results = out.Assess(
@@ -597,7 +601,7 @@ class _Work:
                 peak_ground_acceleration_g=self.peak, peak_told=self.peak_told,
                 pulse_amplitude_g=impulse and impulse[0], pulse_period_s=impulse and impulse[1],
             ),
-            verdicts=rows, agreement=agreement, reasons=reasons, unexplained=[list(p) for p in unexplained],
+            verdicts=rows, agreement=agreement, collapse_probability=chance, reasons=reasons, unexplained=[list(p) for p in unexplained],
             parts=dict(zip(names, (words for _, words, _ in self.parts), strict=True)), probes=self.probes,
             **({"sensitivity": self._sensitivity()} if self.moved or self.shaken else {}),
             **({"advice": self.advice} if self.advice is not None else {}), not_done=self.not_done, least_margin=least[0], least_margin_strategy=least[1], budget_s=self.options.budget,
