@@ -126,7 +126,9 @@ class CollapseProbability(ResultModel):
 
     probability: float | None = fact("weighted mean over the contributions; 1 for a certificate; null: no contribution")
     low: float | None = fact("least lower end of the contributions' 90 % confidence intervals; null: no contribution")
-    high: float | None = fact("greatest upper end of the contributions' 90 % confidence intervals; null: no contribution")
+    high: float | None = fact(
+        "greatest upper end of the contributions' 90 % confidence intervals; null: no contribution"
+    )
     contributions: list[Contribution] = fact("strategies with tests in the verification book")
     without: dict[str, str] = fact("strategies that contribute nothing, with the reason")
     statement: str = fact("the probability in words")
@@ -156,7 +158,9 @@ class Assess(KindResults):
     agreement: dict[str, dict[str, Agreement]] = fact(
         "of each pair of strategies with a verdict: the same verdict, the same with margins far apart, another one, or open"
     )
-    collapse_probability: CollapseProbability = fact("probability of collapse from the model uncertainty of the strategies")
+    collapse_probability: CollapseProbability = fact(
+        "probability of collapse from the model uncertainty of the strategies"
+    )
     reasons: list[Reason] = fact("why strategies differ")
     unexplained: list[list[str]] = fact("pairs that differ without a reason that any rule has found")
     parts: dict[str, str] = fact("analyses of this run that the assessment requested: name -> description")

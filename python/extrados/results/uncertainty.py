@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from scipy.special import ndtr, nctdtrinc, stdtr
+from scipy.special import nctdtrinc, ndtr, stdtr
 
 #: Probability outside each end of the interval of a probability: 90 % lie between
 TAIL = 0.05

@@ -75,7 +75,9 @@ def _conclusion(run: Stored, lead: dict[str, Any]) -> str:
     first, *rest = re.split(r"(?<=\.) (?=[A-Z])", str(lead["verdict"]["statement"]))
     # the strategies one by one and their reasons follow in the table and behind the contents
     least = (
-        [one for one in rest if one.startswith(("The least critical scale factor", "Probability of collapse"))] if isinstance(r, Assess) else rest
+        [one for one in rest if one.startswith(("The least critical scale factor", "Probability of collapse"))]
+        if isinstance(r, Assess)
+        else rest
     )
     return " ".join([first, *least])
 
