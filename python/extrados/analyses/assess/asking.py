@@ -29,8 +29,8 @@ from extrados.results.sla import Sla
 from extrados.results.statistics import Ensemble, OverLevels
 from extrados.results.verdict import SelfWeight, judge_acceleration
 
-#: A strategy is stopped where it takes this many budgets
-STOPPED_AFTER = 2.0
+#: Strategies are stopped after this many budgets
+STOPPED_AFTER = 1.0
 
 
 class Interrupted(Exception):
@@ -81,7 +81,10 @@ class Asker:
         self, kind: str, keys: dict[str, Any], motion: dict[str, Any] | None = None, changes: dict[str, Any] | None = None,
         without: tuple[str, ...] = (),
     ) -> tuple[Result, str]:  # fmt: skip
-        """The result of an analysis of the building, and its deck as text; Refused where the deck is wrong."""
+        """The result of an analysis of the building, and its deck as text; Refused where the deck is wrong, OutOfTime after the
+        deadline."""
+        if self.clock() >= self.deadline:
+            raise OutOfTime
         data = self.data(kind, keys, self.motion if motion is None else motion, changes or {}, without)
         whole = self.context
         try:

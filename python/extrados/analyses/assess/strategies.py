@@ -21,7 +21,7 @@ from extrados.views.building import Building
 #: Shares of the budget that a strategy may take
 SHARES = {"probability": 0.15, "sla": 0.2, "push-x": 0.3, "push-y": 0.3, "dem": 0.15}
 #: What of the budget is left to learn more where strategies differ or a margin is thin
-REFINING = 0.5
+REFINING = 0.3
 #: Factors on the hazard that rocking is tried at, and those of a set, whose motions are many
 LEVELS = [round(float(v), 4) for v in np.geomspace(0.25, 4.0, 33)]
 LEVELS_OF_A_SET = [0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0, 3.0]
