@@ -4,7 +4,7 @@ from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.strengthen import Intervention
-from extrados.results.verdict import Bound, Demand, KindResults, Outcome, Verdict, judge
+from extrados.results.verdict import Bound, Demand, KindResults, Outcome, Verdict, judge, outcome_words
 
 Axis = Literal["acceleration", "pulse", "displacement", "probability", "check"]
 Overall = Literal["stands under all", "collapses under all", "cannot stand", "depends", "open"]
@@ -48,6 +48,11 @@ class StrategyVerdict(ResultModel):
     parameters: str = fact("settings of the strategy, and the rule that gave them")
     assumes: str = fact("assumptions of the strategy")
     statement: str = fact("its verdict in one sentence")
+
+    @property
+    def verdict_words(self) -> str:
+        """Its outcome in words, or why it has none."""
+        return outcome_words(self.outcome, self.axis == "check") if self.status == "ok" else self.status
 
     def margin_told(self, nothing: str = "not known") -> str:
         """The margin in words: a factor, or between which ones it lies; `nothing` where none is known."""

@@ -5,6 +5,7 @@ from typing import Any
 from extrados.decks.reader import Deck
 from extrados.model.dimensions import dimensions
 from extrados.model.errors import BadGeometry
+from extrados.motions.floors import floor_condition
 from extrados.schema.quantities import unit_of
 from extrados.schema.table import Table
 
@@ -15,8 +16,11 @@ QUIET: tuple[Any, ...] = (None, [], False)
 
 
 def described(deck: Deck) -> dict[str, Any]:
-    """`dimensions` of the drawing [m], and `properties`: a row for each, with its unit and who set it."""
-    return {"dimensions": _dimensions(deck), "properties": _properties(deck)}
+    """`dimensions` of the drawing [m], `properties`: a row for each, with its unit and who set it, and `conditions` that hold for all
+    analyses."""
+    floor = None if deck.motion is None else deck.motion.floor
+    conditions = [] if floor is None else [floor_condition(floor)]
+    return {"dimensions": _dimensions(deck), "properties": _properties(deck), "conditions": conditions}
 
 
 def _dimensions(deck: Deck) -> list[dict[str, Any]]:

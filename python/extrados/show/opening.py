@@ -8,13 +8,10 @@ from extrados.results.assess import Assess
 from extrados.results.codes import Checked, LocalMechanism
 from extrados.results.store import Stored
 from extrados.results.strengthen import Strengthen
+from extrados.results.verdict import OUTCOMES
 from extrados.show.document import Block, Figure, Table, Words
 
 Figures = list[tuple[str, str]]
-#: Outcomes of verdicts in words, the gravest first
-OUTCOMES = {
-    "cannot-stand": "cannot stand", "collapses": "collapses", "open": "open", "stands": "stands", "not-applicable": "no verdict",
-}  # fmt: skip
 #: Ends of the names of figures that show a mechanism
 MECHANISMS = ("-collapse", "-mechanism")
 #: A safety factor below this is thin
@@ -93,7 +90,7 @@ def _comparison(run: Stored, lead: dict[str, Any]) -> Table:
 
     if isinstance(r, Assess):
         rows = [
-            (s.label, OUTCOMES[s.outcome] if s.status == "ok" else s.status, number(s.demand, s.unit), number(s.capacity, s.unit), s.margin_told(""))
+            (s.label, s.verdict_words, number(s.demand, s.unit), number(s.capacity, s.unit), s.margin_told(""))
             for s in r.verdicts
         ]  # fmt: skip
         return Table(("strategy", "verdict", "demand", "capacity", "margin"), rows, (2.4, 1.2, 1.2, 1.2, 1.2))
@@ -111,7 +108,7 @@ def _confidence(run: Stored, lead: dict[str, Any]) -> str:
         judged = [s for s in r.verdicts if s.status == "ok" and s.outcome != "not-applicable"]
         groups: dict[str, int] = {}
         for s in judged:
-            groups[OUTCOMES[s.outcome]] = groups.get(OUTCOMES[s.outcome], 0) + 1
+            groups[s.verdict_words] = groups.get(s.verdict_words, 0) + 1
         told = ", ".join(f"{n} {word}" for word, n in groups.items()) or "none"
         said.append(f"{len(judged)} of {len(r.verdicts)} strategies have a verdict: {told}.")
         said.append(

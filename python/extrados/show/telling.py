@@ -12,8 +12,9 @@ from extrados.results.fields import ResultModel
 from extrados.results.store import STORE, SUMMARY, Stored
 from extrados.results.strengthen import size_told
 from extrados.results.validity import validity_of
+from extrados.results.verdict import OUTCOMES, outcome_words
 from extrados.show.document import Block, Code, Document, Figure, Heading, Table, Words
-from extrados.show.opening import OUTCOMES, governing_figure, opening
+from extrados.show.opening import governing_figure, opening
 
 Figures = list[tuple[str, str]]
 #: Values of a list that are shown, and rows of a list of tables
@@ -89,7 +90,7 @@ def _verdicts(run: Stored) -> list[Block]:
             rows.append(
                 (
                     a["name"],
-                    OUTCOMES[v["outcome"]],
+                    outcome_words(v["outcome"], isinstance(run[a["name"]], Checked)),
                     cell(v["demand"]),
                     cell(v["capacity"]),
                     v["unit"],
@@ -111,7 +112,7 @@ def _assessed(run: Stored, name: str) -> list[Block]:
         factor = v.margin_told("")
         if v.status == "ok":
             rows.append(
-                (v.label, OUTCOMES[v.outcome], cell(v.demand, ""), cell(v.capacity, ""), v.unit, factor, v.statement)
+                (v.label, v.verdict_words, cell(v.demand, ""), cell(v.capacity, ""), v.unit, factor, v.statement)
             )
         else:
             rows.append((v.label, v.status, "", "", "", "", v.reason))
@@ -247,7 +248,7 @@ def _hazard(run: Stored, deck: dict[str, Any]) -> list[Block]:
     rows = [p for p in deck.get("properties", []) if p["table"] == "motion"]
     if not rows:
         return []
-    found: list[Block] = [Heading("Hazard")]
+    found: list[Block] = [Heading("Hazard"), *(Words(text) for text in deck.get("conditions", []))]
     for a in run.analyses:
         if a["kind"] == "assess" and a["results"]:
             h = run[a["name"]].hazard

@@ -303,7 +303,10 @@ class _Work:
     def _run_until(self, name: str, end: float) -> bool:
         """Replace the run of a strategy by one until `end` [s]; False if the longer run has no result, and the former stays."""
         choice, place = self.choices[name], [s for s, _, _ in self.parts].index(name)
-        words = f"{choice.words}; continued until {end:.3g} s, because the structure still moved at {0.5 * end:.3g} s"
+        former = self.rows[name]
+        words = (
+            f"{former.parameters}; continued until {end:.3g} s, because the structure still moved at {0.5 * end:.3g} s"
+        )
         keys = choice.keys | {"end_time": round(end, 3)}
         without = self.bare.get(name, ())
         strategy = strategies.of(name)
@@ -316,7 +319,7 @@ class _Work:
         if result.status != "ok":
             self.not_done.append(f"{strategy.label} until {end:.3g} s: {result.reason}")
             return False
-        former, words = self.rows[name], words.removeprefix("; ")
+        words = words.removeprefix("; ")
         row = row_of(
             strategy, result, words, self.asker.demand(self.peak), self.options.acceptable_probability,
             self.context.building.supports.abutting_wall, without,
@@ -333,7 +336,7 @@ class _Work:
     def check_finer(self) -> None:
         """Where two strategies contradict each other without a reason: rigid contacts, half the step, perturbed motions."""
         facts = self.facts()
-        _, unexplained = explained(facts, lambda rule, error: self._failed(f"reason {rule}", error))
+        _, unexplained = explained(facts, lambda rule, error: None)  # `conclude` reports a rule that fails
         names = {n for p in unexplained if facts.relation(*p) == "disagree" for n in p}
         try:
             for name in (n for n in ("rocking", "dem") if n in names and n in self.results):

@@ -16,6 +16,7 @@ from extrados.model.structures.plan import Plan
 from extrados.motions.tables import Compatible
 from extrados.results import validity
 from extrados.schema.constants import GRAVITY
+from extrados.schema.quantities import engineering
 from extrados.views.building import Building
 
 #: Shares of the budget that a strategy may take
@@ -277,14 +278,18 @@ def _dem(asked: Asked) -> Choice:
         stiffness = least
     elif stiffness < least:
         raise LeftOut(
-            _too_long(seconds(factor), share, f"even with joints of {least:.2g} Pa/m, the least that is stiff enough")
+            _too_long(
+                seconds(factor),
+                share,
+                f"even with joints of {engineering(least, 'Pa/m')}, the least that is stiff enough",
+            )
         )
     taken = max(share, seconds(factor)) if stiffness == least else share
     stiffness = float(f"{stiffness:.1e}")
     keys["joints"] = {"normal_stiffness": stiffness}
     return Choice(
-        keys, f"{words}; joints of {stiffness:.2g} Pa/m, the stiffest that fit into {100 * SHARES['dem']:g} % of the budget (E over "
-        f"the stones' length gives {float(np.median(values.stiffness)):.2g}; {least:.1g} would do)",
+        keys, f"{words}; joints of {engineering(stiffness, 'Pa/m')}, the stiffest that fit into {100 * SHARES['dem']:g} % of the budget (E over "
+        f"the stones' length gives {engineering(float(np.median(values.stiffness)), 'Pa/m')}; {engineering(least, 'Pa/m')} would do)",
         taken,
     )  # fmt: skip
 
