@@ -486,3 +486,66 @@ def test_analyses_of_solids_are_refused_with_the_reason():
     dome = {"kind": "dome", "radius": 10.0, "thickness": 1.0, "rings": 4, "lunes": 6}
     result = run({"structure": dome, "analysis": [{"kind": "strengthen", "acceleration": "0.3 g"}]})
     assert result.status == "refused" and "no plane section" in result.reason
+
+
+#: A block that leans to -x and falls so at rest; its tie to the right holds it, and a load to +x sets it upright
+LEANING = {
+    "kind": "blocks",
+    "depth": 1.0,
+    "block": [{"name": "leaning", "points": [[0, 0], [1, 0], [-0.4, 2], [-1.4, 2]]}],
+}
+STAY = {"name": "stay", "start": [-0.27, 1.8], "start_stone": "leaning", "ground": [3.0, 1.8]}
+
+
+def test_a_load_in_one_sense_still_needs_the_tie_of_rest():
+    """At 0.3 g to +x the block leans against nothing; at rest its weight turns it to -x with W 0.2 m about its left toe."""
+    asked = {"kind": "strengthen", "acceleration": "0.3 g", "direction": "+x", "ties": [STAY]}
+    r = run({"structure": LEANING, "joints": {"friction": "no-sliding"}, "analysis": [asked]}).results
+    (one,) = r.interventions
+    weight = 2000.0 * 2.0 * G
+    assert r.value_before == 0.0 and one.meets_target
+    assert one.required_N == pytest.approx(weight * 0.2 / 1.8, rel=1e-6)
+    # towards -x the tie resists the load as well: W (0.2 + 0.3)/1.8
+    (other,) = run({"structure": LEANING, "joints": {"friction": "no-sliding"}, "analysis": [{**asked, "direction": "-x"}]}).results.interventions  # fmt: skip
+    assert other.required_N == pytest.approx(weight * 0.5 / 1.8, rel=1e-6)
+
+
+@pytest.mark.parametrize(("works_in", "sense"), [("tension", "-x"), ("compression", "+x")])
+def test_a_tie_that_the_mechanism_leaves_slack_has_no_slope(works_in, sense):
+    """A tie to the left shortens where the wall turns to the left, a strut lengthens where the wall turns to the right."""
+    tie = {**ANCHOR, "works_in": works_in}
+    asked = {"kind": "strengthen", "acceleration": "0.3 g", "direction": sense, "ties": [tie]}
+    deck = make_deck({"structure": WALL, "joints": {"friction": "no-sliding"}, "analysis": [asked]}, Path.cwd())
+    statics = Statics(Context(deck, 1), deck.analyses[0])
+    (one,) = tie_alternatives(deck.building, deck.analyses[0])
+    for force in (1e3, 5e3):
+        point = statics.point(one, 0, force)
+        assert (point.slope, point.capacity) == (0.0, pytest.approx(0.2, rel=1e-6))
+    assert statics.force(one, 0, 0.3) == np.inf and statics.force(one, 0, 0.19) == pytest.approx(0.0, abs=1.0)
+
+
+def test_a_spreader_between_abutments_carries_the_push_of_both():
+    """Two walls of 0.6 x 3 m, 4 m apart, with a strut at 2.5 m: under 0.3 g one wall leans on the other, whose reserve it uses up."""
+    walls = [
+        {"name": n, "points": [[x, 0], [x + 0.6, 0], [x + 0.6, 3], [x, 3]]} for n, x in (("left", 0.0), ("right", 4.6))
+    ]
+    strut = {"name": "spreader", "start": [0.59, 2.5], "end": [4.61, 2.5], "works_in": "compression"}
+    asked = {"kind": "strengthen", "acceleration": "0.15 g", "ties": [strut]}
+    data = {
+        "structure": {"kind": "blocks", "depth": 1.0, "block": walls},
+        "joints": {"friction": "no-sliding"},
+        "analysis": [asked],
+    }
+    weight = 2000.0 * 0.6 * 3.0 * G
+    r = run({**data, "analysis": [{**asked, "acceleration": "0.19 g"}]}).results
+    assert r.met_before, "each wall carries 0.2 g by itself"
+    (one,) = run(
+        {**data, "material": {"density": 2000.0}, "analysis": [{**asked, "acceleration": "0.21 g"}]}
+    ).results.interventions
+    assert not one.meets_target and one.greatest_capacity == pytest.approx(0.2, rel=1e-6), (
+        "equal walls do not help each other"
+    )
+    thick = [walls[0], {"name": "right", "points": [[4.6, 0], [6.1, 0], [6.1, 3], [4.6, 3]]}]
+    data["structure"] = {"kind": "blocks", "depth": 1.0, "block": thick}
+    (one,) = run({**data, "analysis": [{**asked, "acceleration": "0.3 g", "direction": "+x"}]}).results.interventions
+    assert one.required_N == pytest.approx(weight * (0.3 * 1.5 - 0.3) / 2.5, rel=1e-6)
