@@ -549,3 +549,36 @@ def test_a_spreader_between_abutments_carries_the_push_of_both():
     data["structure"] = {"kind": "blocks", "depth": 1.0, "block": thick}
     (one,) = run({**data, "analysis": [{**asked, "acceleration": "0.3 g", "direction": "+x"}]}).results.interventions
     assert one.required_N == pytest.approx(weight * (0.3 * 1.5 - 0.3) / 2.5, rel=1e-6)
+
+
+def test_the_advice_states_the_least_tie_by_rocking():
+    """With the least force rocking recovers, with 10 % less the wall overturns; the sustained peak needs far more."""
+    motion = {"kind": "sine-pulse", "amplitude": "0.6 g", "period": 1.0}
+    wall = {"structure": {"kind": "block", "width": 0.5, "height": 2.0}, "joints": {"friction": 0.9}, "motion": motion}
+    result = run({**wall, "analysis": [{"kind": "assess", "strategies": ["tilt", "rocking"], "budget": 60}]})
+    advice = result.results.advice
+    least, static = advice.by_rocking, advice.interventions[0]
+    assert least.meets_target and 0.0 < least.required_N < static.required_N
+    tie = {"start": static.start_m, "ground": static.end_m, "works_in": "both", "stiffness": static.stiffness_N_m}
+    outcome = {
+        share: run(
+            {**wall, "ties": [{**tie, "yield_force": share * least.required_N}], "analysis": [{"kind": "rocking"}]}
+        )
+        for share in (1.0, 0.9)
+    }
+    assert outcome[1.0].verdict.outcome == "stands" and outcome[0.9].verdict.outcome == "collapses"
+    assert f"{least.required_N / 1e3:.3g} kN" in advice.statement and "this one motion" in advice.statement
+
+
+def test_an_open_outcome_of_rocking_meets_no_target():
+    """The chaotic wall has a safety factor above 1 in this one run, and no verdict: the target is not met."""
+    asked = {
+        "kind": "strengthen", "by": "rocking", "safety_factor": 1.0,
+        "ties": [{**ANCHOR, "start": [-0.2, 1.9], "ground": [-2.0, 1.9], "yield_force": "2 kN"}],
+    }  # fmt: skip
+    record = {"kind": "record", "file": "extrados:el-centro-1940"}
+    wall = {"structure": {"kind": "block", "width": 0.4, "height": 2.0}, "motion": record}
+    alone = run({**wall, "analysis": [{"kind": "rocking"}]})
+    assert alone.verdict.outcome == "open" and alone.verdict.ratio > 1.0
+    result = run({**wall, "analysis": [asked]})
+    assert not result.results.met_before and "is open" in result.warnings[0]

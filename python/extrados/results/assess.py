@@ -147,6 +147,7 @@ class Advice(ResultModel):
     capacity_g: float | None = fact("capacity of the existing building; null: none", "g")
     mechanism: str = fact("governing mechanism of the existing building")
     interventions: list[Intervention] = fact("alternatives, the cheapest that meets the target first")
+    by_rocking: Intervention = maybe("the first tie, with the least force by which rocking under the hazard stands")
     rocking: dict[str, str] = fact("outcome of rocking under the hazard with each intervention that meets the target")
     statement: str = fact("recommendation in words")
 

@@ -32,6 +32,8 @@ MOST_NAMED = 6
 #: Keys of an analysis that limit analysis takes from this table
 OWN = ("friction_rule", "starts", "load", "material", "joints", "supports", "initial")
 Bound = Literal["exact", "upper"]
+#: Analyses of a motion, whose open outcome meets no target
+DYNAMIC = ("rocking", "dem")
 
 
 @dataclass(frozen=True)
@@ -263,6 +265,8 @@ class Runs:
         if verdict is None or verdict.ratio is None:
             told = "" if verdict is None else f": {verdict.statement}"
             return Worth(None, reason=f"{self.options.by} gives no safety factor{told}")
+        if verdict.outcome == "open" and self.options.by in DYNAMIC:  # one run as a sample, or a run that still moves
+            return Worth(None, reason=f"the outcome of {self.options.by} is open: {verdict.statement.rstrip('.')}")
         return Worth(verdict.ratio, verdict.statement.rstrip("."))
 
 
