@@ -73,9 +73,12 @@ class _Sized:
     costs: list[float] = field(default_factory=list)
 
 
-def run(context: Context, options: Strengthen) -> Result:
-    """Sizes of all alternatives, their costs and adverse effects, the mechanisms that govern before and after."""
-    building, measure = context.building, measure_of(context, options)
+def run(context: Context, options: Strengthen, closely: bool = True) -> Result:
+    """Sizes of all alternatives, their costs and adverse effects, the mechanisms that govern before and after.
+
+    closely: False takes the upper bound by dilatant friction where pressed joints slide, in a fraction of the time.
+    """
+    building, measure = context.building, measure_of(context, options, closely)
     result = Result("strengthen")
     before = (
         measure.of(building, picture=True) if isinstance(measure, Statics) else measure.of_data(plain_data(context))

@@ -59,8 +59,8 @@ class Statics:
 
     higher_is_safer = True
 
-    def __init__(self, context: Context, options: Strengthen):
-        self.context, self.options = context, options
+    def __init__(self, context: Context, options: Strengthen, closely: bool = True):
+        self.context, self.options, self.closely = context, options, closely
         wall = context.building.supports.abutting_wall
         given = {"both": (1, -1), "+x": (1,), "-x": (-1,)}[options.direction]
         self.senses = tuple(s for s in given if {"left": -1, "right": 1}.get(wall or "") != s)
@@ -82,7 +82,9 @@ class Statics:
             try:
                 state, mechanism = limit.collapse(sense)
                 value = sense * state.gamma
-                value, bound = self._least(limit, mechanism, sense, value, picture or value >= self.target)
+                value, bound = self._least(
+                    limit, mechanism, sense, value, self.closely and (picture or value >= self.target)
+                )
             except Immovable as error:
                 values.append(np.inf)
                 told.append(f"none to {_word(sense)}: {error}")
@@ -273,9 +275,9 @@ class Runs:
 Measure = Statics | Runs
 
 
-def measure_of(context: Context, options: Strengthen) -> Measure:
-    """The measure of the target."""
-    return Statics(context, options) if options.by == "tilt" else Runs(context, options)
+def measure_of(context: Context, options: Strengthen, closely: bool = True) -> Measure:
+    """The measure of the target; closely: of limit analysis also the least state without dilatancy, where pressed joints slide."""
+    return Statics(context, options, closely) if options.by == "tilt" else Runs(context, options)
 
 
 def nested(context: Context, deck: Deck) -> Context:
