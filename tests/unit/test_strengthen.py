@@ -582,3 +582,59 @@ def test_an_open_outcome_of_rocking_meets_no_target():
     assert alone.verdict.outcome == "open" and alone.verdict.ratio > 1.0
     result = run({**wall, "analysis": [asked]})
     assert not result.results.met_before and "is open" in result.warnings[0]
+
+
+def test_a_ring_beam_is_a_tie_with_its_weight():
+    """Moments about the right toe: half of the beam rests on the wall at its anchorage, and sways at 2.9 m."""
+    beam = {"start": [-0.2, 2.9], "start_stone": "block", "ground": [-4.0, 2.9], "beam_weight": "6 kN"}
+    asked = {"kind": "strengthen", "acceleration": "0.3 g", "direction": "+x", "ties": [beam]}
+    data = {"structure": WALL, "joints": {"friction": "no-sliding"}, "analysis": [asked]}
+    (one,) = run(data).results.interventions
+    weight, half = 2000.0 * 0.6 * 3.0 * G, 3e3
+    force = (0.3 * (weight * 1.5 + half * 2.9) - weight * 0.3 - half * 0.5) / 2.9
+    assert (one.kind, one.name) == ("ring-beam", "ring beam 1")
+    assert one.required_N == pytest.approx(force, rel=1e-6)
+    assert any("6.00 kN" in text for text in one.adverse)
+    # the same load by hand in the table of the analysis
+    loaded = {**asked, "load": [{"x": -0.2, "y": 2.9, "force": half, "sways": True}]}
+    plain = run({**data, "analysis": [{**loaded, "ties": [{k: v for k, v in beam.items() if k != "beam_weight"}]}]})
+    assert plain.results.interventions[0].required_N == pytest.approx(one.required_N, rel=1e-9)
+
+
+def test_a_heavy_ring_beam_needs_more_force():
+    beam = {"start": [-0.2, 2.9], "start_stone": "block", "ground": [-4.0, 2.9]}
+    force = {}
+    for weight in (1e3, 20e3):
+        asked = {
+            "kind": "strengthen",
+            "acceleration": "0.3 g",
+            "direction": "+x",
+            "ties": [{**beam, "beam_weight": weight}],
+        }
+        force[weight] = run({"structure": WALL, "joints": {"friction": "no-sliding"}, "analysis": [asked]}).results.interventions[0].required_N  # fmt: skip
+    # per kN of weight on the wall 0.3 2.9 - 0.5 m over 2.9 m
+    assert force[20e3] - force[1e3] == pytest.approx(9.5e3 * (0.3 * 2.9 - 0.5) / 2.9, rel=1e-5)
+
+
+def test_a_fill_is_sized_as_any_key_of_the_structure():
+    """The least cover on a bridge for a target between its capacities at two covers; `tilt` at the size, and 2 % less, says so."""
+    fill = {"cover": 0.2, "density": 1900.0, "friction_angle": 32.0}
+    span = {"span": 6.0, "rise": 2.0, "thickness": 0.6, "voussoirs": 16}
+    bridge = {"kind": "bridge", "depth": 4.0, "spans": [span], "abutments": {"width": 3.0, "height": 1.5}}
+
+    def carried(cover: float) -> float:
+        r = run({"structure": {**bridge, "fill": {**fill, "cover": cover}}, "joints": {"friction": "no-sliding"}, "analysis": [{"kind": "tilt"}]})  # fmt: skip
+        return min(r["collapse_acceleration_g"], r["collapse_acceleration_opposite_g"])
+
+    low, high = carried(0.2), carried(1.2)
+    assert abs(high - low) > 0.01 * low, "the fill matters"
+    start, stop = (0.2, 1.2) if high > low else (1.2, 0.2)
+    target = 0.5 * (low + high)
+    asked = {
+        "kind": "strengthen", "acceleration": f"{target!r} g",
+        "changes": [{"vary": "structure.fill.cover", "start": start, "stop": stop}],
+    }  # fmt: skip
+    data = {"structure": {**bridge, "fill": {**fill, "cover": start}}, "joints": {"friction": "no-sliding"}}
+    (one,) = run({**data, "analysis": [asked]}).results.interventions
+    assert one.meets_target and min(start, stop) < one.required_size < max(start, stop)
+    assert carried(one.required_size) >= target > carried(one.required_size + 0.02 * (start - stop))

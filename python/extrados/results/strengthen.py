@@ -41,8 +41,8 @@ class Intervention(ResultModel):
     """One alternative: its least size, its cost, and what governs then."""
 
     name: str = fact("its name")
-    kind: Literal["tie", "strut", "spring", "change"] = fact(
-        "tie, strut, spring that works both ways, or change of a key"
+    kind: Literal["tie", "strut", "spring", "ring-beam", "change"] = fact(
+        "tie, strut, spring that works both ways, ring beam with its weight, or change of a key"
     )
     key: str = maybe("key of the deck that is changed")
     place: str = fact("place, or value from which the key is changed")

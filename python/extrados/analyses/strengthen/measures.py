@@ -159,6 +159,13 @@ class Statics:
             return Worth(None, reason="; ".join(error.complaints))
         return self.of(deck.buildings[0], picture)
 
+    def carrying(self, one: TieAlternative, place: int) -> "Statics":
+        """Itself with the weight of a ring beam among the loads."""
+        if not (loads := one.loads(place)):
+            return self
+        options = self.options.model_copy(update={"load": [*self.options.load, *loads]})
+        return Statics(self.context, options, self.closely)
+
     def point(self, one: TieAlternative, place: int, force: float) -> Point:
         """A point of the capacity curve over the force of a tie, with dilatant friction; Immovable where nothing moves."""
         building = self.context.building
