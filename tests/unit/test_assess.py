@@ -10,7 +10,7 @@ import pytest
 from test_every_strategy import quick_save
 
 import extrados
-from extrados.analyses.assess import driver, hazard, reasons, sensitivity, strategies
+from extrados.analyses.assess import asking, driver, hazard, reasons, sensitivity, strategies
 from extrados.analyses.assess.reasons import Facts
 from extrados.analyses.assess.words import conclusion, table_of
 from extrados.analyses.context import Context
@@ -199,6 +199,27 @@ def test_a_deadline_stops_the_core_and_leaves_no_flag() -> None:
     with within(60.0) as time:
         pass
     assert not time.passed
+
+
+def test_the_stopwatch_leaves_out_the_time_of_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Idle, 60 s of one thread; 60 s of four threads; of a machine that gives a fifth; of a child process that is waited for."""
+    now = {"clock": 5.0, "processor": 3.0}
+    monkeypatch.setattr(asking.time, "monotonic", lambda: now["clock"])
+    monkeypatch.setattr(asking.time, "process_time", lambda: now["processor"])
+    for clock, processor, counted in ((60.0, 60.0, 60.0), (60.0, 240.0, 60.0), (60.0, 12.0, 12.0), (60.0, 0.0, 6.0)):
+        now.update(clock=5.0, processor=3.0)
+        watch = asking.Stopwatch()
+        now.update(clock=5.0 + clock, processor=3.0 + processor)
+        assert watch() == pytest.approx(counted)
+
+
+def test_a_deadline_follows_its_clock() -> None:
+    """A clock that stands still is never over; one that has passed is over at once."""
+    with within(0.01, lambda: 0.0) as limit:
+        assert not limit.over.wait(0.2)
+    ticks = iter(range(100))
+    with within(2.0, lambda: float(next(ticks))) as limit:
+        assert limit.over.wait(5.0)
 
 
 def test_elements_of_a_wall_have_a_capacity_without_a_verdict() -> None:

@@ -1,6 +1,5 @@
 """assess: every strategy that applies to a building under one hazard, cheap first, compared, with reasons."""
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -16,6 +15,7 @@ from extrados.analyses.assess.asking import (
     Asker,
     Interrupted,
     OutOfTime,
+    Stopwatch,
     no_row,
     row_of,
     scaled_margin,
@@ -103,8 +103,8 @@ class _Work:
         self.asker = Asker(
             context,
             dict(context.deck.data["motion"]),
-            time.monotonic() + STOPPED_AFTER * options.budget,
-            time.monotonic,
+            STOPPED_AFTER * options.budget,
+            Stopwatch(),
         )
         self.peak, self.peak_told = hazard.peak_of(context)
 
@@ -581,7 +581,7 @@ class _Work:
                 "sensitivity: limit analysis and rocking do not look at a building on a plan; `pushover` has variants"
             )
             return
-        self.asker.deadline = time.monotonic() + STOPPED_AFTER * self.options.budget
+        self.asker.deadline = self.asker.clock() + STOPPED_AFTER * self.options.budget
         rocked = self.results.get("rocking")
         restitution = rocked.results.restitution if rocked is not None else None
         keys = sensitivity.varied(self.context.building, self.options.vary, restitution)
