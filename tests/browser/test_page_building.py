@@ -325,3 +325,29 @@ damping = 1e5
 [[analysis]]
 kind = "tilt"
 """
+
+
+def test_what_is_needed_is_sized_and_put_in(page: Any) -> None:
+    """The page sizes interventions for 1.3 times the capacity; each number is that of the analysis, and put in it is enough."""
+    target = round(1.3 * capacity(page), 3)
+    page.fill("#needed-g", str(target))
+    page.click("text=What is needed")
+    page.wait_for_selector("[data-intervention]")
+    told = page.locator("section.needed").inner_text()
+    asked = {"kind": "strengthen", "acceleration": f"{target} g"}
+    bare = {**data_of(settled(page)), "joints": {"friction": "no-sliding"}}
+    own = extrados.run({**bare, "analysis": [asked]})["strengthen"]
+    rows = {one.name: one for one in own.interventions}
+    thickness = next(one for one in rows.values() if one.key == "structure.thickness")
+    assert thickness.meets_target and f"structure.thickness = {thickness.required_size:.3g}" in told
+    page.locator("[data-intervention] button").last.scroll_into_view_if_needed()
+    SHOTS.mkdir(parents=True, exist_ok=True)
+    page.screenshot(path=SHOTS / "what-is-needed.png")
+    page.locator(f"[data-intervention='{thickness.name}'] button").click()
+    text = settled(page)
+    assert data_of(text)["structure"]["thickness"] == pytest.approx(thickness.required_size, rel=1e-3)
+    assert capacity(page) >= target
+    assert page.locator("[data-intervention]").count() == 0, "the sizes are those of the structure before"
+    page.fill("#needed-g", "much")
+    page.click("text=What is needed")
+    until(page, "document.querySelector('section.needed').innerText.includes('above 0')")

@@ -10,7 +10,7 @@ import pytest
 from test_every_strategy import quick_save
 
 import extrados
-from extrados.analyses.assess import driver, hazard, reasons, sensitivity, strategies
+from extrados.analyses.assess import asking, driver, hazard, reasons, sensitivity, strategies
 from extrados.analyses.assess.reasons import Facts
 from extrados.analyses.assess.words import conclusion, table_of
 from extrados.analyses.context import Context
@@ -148,6 +148,48 @@ def test_the_clock_stops_what_takes_too_long(monkeypatch: pytest.MonkeyPatch) ->
     assert any("stopped at the time limit" in text for text in r.not_done)
 
 
+def test_a_run_that_ends_while_blocks_move_is_prolonged() -> None:
+    """A run cut at 1.2 s has no verdict; the assessment follows the blocks until they rest, as a long run by itself does."""
+    block = {"kind": "block", "width": 0.6, "height": 2.4}
+    asked = {"strategies": ["rocking", "dem"], "options": {n: {"end_time": 1.2} for n in ("rocking", "dem")}}
+    shaken = {"structure": block, "joints": {"friction": 0.9}, "motion": {**PULSE, "amplitude": "0.5 g"}}
+    whole = extrados.run(shaken | {"analysis": {"kind": "assess", "budget": 20, **asked}})
+    short = extrados.run(shaken | {"analysis": [{"kind": n, "end_time": 1.2} for n in ("rocking", "dem")]})
+    assert not short["rocking"].settled
+    rows = {v.strategy: v for v in whole["assess"].verdicts}
+    for name in ("rocking", "dem"):
+        assert rows[name].outcome != "open" and "continued until" in rows[name].parameters, rows[name]
+    assert whole["rocking"].settled and not whole["dem"].still_moving
+
+
+def test_an_unexplained_contradiction_is_checked_finer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without any rule a contradiction has no reason: finer runs follow, and the statement names them."""
+    monkeypatch.setattr(reasons, "RULES", ())
+    r = extrados.run(deck(motion={**PULSE, "amplitude": "0.6 g"}, assess={"strategies": ["tilt", "dem"]}))["assess"]
+    assert r.overall == "depends" and r.unexplained == [["tilt", "dem"]]
+    changed = {p.changed for p in r.probes}
+    assert {"rigid contacts", "half the time step", "the motion times 0.999", "the motion times 1.001"} <= changed
+    assert "Finer checks of the contradiction ran for discrete elements with rigid contacts (" in r.statement
+
+
+def test_a_finer_check_with_another_outcome_opens_the_verdict(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reasons, "RULES", ())
+    probe = driver._Work._probe
+
+    def other(work, strategy, changed, kind, keys, *rest, **more):
+        found = probe(work, strategy, changed, kind, keys, *rest, **more)
+        if changed == "half the time step":
+            work.probes[-1] = work.probes[-1].model_copy(update={"outcome": "collapses"})
+        return found
+
+    monkeypatch.setattr(driver._Work, "_probe", other)
+    r = extrados.run(deck(motion={**PULSE, "amplitude": "0.6 g"}, assess={"strategies": ["tilt", "dem"]}))["assess"]
+    row = next(v for v in r.verdicts if v.strategy == "dem")
+    assert row.outcome == "open" and row.violated == [
+        "A finer check gives another outcome: half the time step (collapses)."
+    ]
+
+
 def test_a_deadline_stops_the_core_and_leaves_no_flag() -> None:
     from extrados.core.calls import cancel_requested
 
@@ -157,6 +199,27 @@ def test_a_deadline_stops_the_core_and_leaves_no_flag() -> None:
     with within(60.0) as time:
         pass
     assert not time.passed
+
+
+def test_the_stopwatch_leaves_out_the_time_of_others(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Idle, 60 s of one thread; 60 s of four threads; of a machine that gives a fifth; of a child process that is waited for."""
+    now = {"clock": 5.0, "processor": 3.0}
+    monkeypatch.setattr(asking.time, "monotonic", lambda: now["clock"])
+    monkeypatch.setattr(asking.time, "process_time", lambda: now["processor"])
+    for clock, processor, counted in ((60.0, 60.0, 60.0), (60.0, 240.0, 60.0), (60.0, 12.0, 12.0), (60.0, 0.0, 6.0)):
+        now.update(clock=5.0, processor=3.0)
+        watch = asking.Stopwatch()
+        now.update(clock=5.0 + clock, processor=3.0 + processor)
+        assert watch() == pytest.approx(counted)
+
+
+def test_a_deadline_follows_its_clock() -> None:
+    """A clock that stands still is never over; one that has passed is over at once."""
+    with within(0.01, lambda: 0.0) as limit:
+        assert not limit.over.wait(0.2)
+    ticks = iter(range(100))
+    with within(2.0, lambda: float(next(ticks))) as limit:
+        assert limit.over.wait(5.0)
 
 
 def test_elements_of_a_wall_have_a_capacity_without_a_verdict() -> None:

@@ -79,6 +79,27 @@ def test_arching_between_side_walls_by_moments_of_half_a_strip() -> None:
     assert low / high == pytest.approx((0.45 - 0.045) / 0.45), "90 kN compress 45 mm of 2 m at 1 MPa"
 
 
+def test_a_flanked_strip_arches_until_it_crushes() -> None:
+    """Side walls that do not move: of all compressed depths a the moment f h a (t - a) is greatest at t/2, by a search here."""
+    table = {
+        "kind": "local-mechanism", "mechanism": "horizontal-bending", "height": 2.0, "thickness": 0.45, "width": 6.0,
+        "peak_acceleration": "0.2 g",
+    }  # fmt: skip
+    material = {"density": 1800.0, "compressive_strength": 0.2e6}
+    r = extrados.run({"material": material, "analysis": table})["local-mechanism"]
+    weight = 1800.0 * GRAVITY * 0.45 * 2.0 * 6.0
+    most = max(0.2e6 * 2.0 * 0.45 * k / 1000 * (0.45 - 0.45 * k / 1000) for k in range(1, 1000))
+    assert r.multiplier == pytest.approx(8.0 * most / (weight * 6.0), rel=1e-9)
+    assert r.zero_displacement_m is None, "blocks that crush are not rigid: the linear check decides"
+    checks = {name for name, c in r.checks.items() if c.verdict in ("holds", "fails")}
+    assert checks and not any("nonlinear" in name for name in checks)
+    held = extrados.run({"material": material, "analysis": {**table, "abutment_force": "50 kN"}})["local-mechanism"]
+    assert held.multiplier < r.multiplier, "a force that the side walls limit is less than what crushing allows"
+    bare = extrados.run({"material": {"density": 1800.0}, "analysis": table})
+    assert bare.summary["analyses"][0]["status"] == "refused"
+    assert "compressive_strength" in bare.summary["analyses"][0]["reason"]
+
+
 def test_wings_of_a_facade_are_weights_about_its_hinge() -> None:
     wings = [
         {"height": 4.0, "thickness": 0.5, "width": 2.0},

@@ -431,3 +431,30 @@ def test_a_block_tilted_beyond_its_capacity_falls_as_it_turns_about_its_toe(sess
     expected = np.interp(time[early], step * np.arange(8001), found)
     np.testing.assert_allclose(pose[early, 0, 2], expected, rtol=0.02)
     assert abs(pose[-1, 0, 2] - np.pi / 2) < 0.02, "it lies on its side"
+
+
+@pytest.mark.parametrize("preset", ["limit/arch-120", "vault/dejong-a"])
+def test_what_is_needed_carries_the_acceleration_once_it_is_put_in(session: Session, preset: str) -> None:
+    do(session, do="open", preset=preset)
+    first = do(session, do="show")[-1].words["scene"]["capacity"]
+    target = 1.3 * min(first["plus_g"], first["minus_g"])
+    (reply,) = do(session, do="needed", acceleration=target)
+    told = reply.words["needed"]
+    assert not told["met"] and told["capacity_g"] == pytest.approx(min(first["plus_g"], first["minus_g"]), rel=1e-6)
+    met = [one for one in told["interventions"] if one["met"]]
+    assert met and any("ties" in one["changes"] for one in met) == (preset != "limit/arch-120"), (
+        "a flat arch needs thickness"
+    )
+    for one in met:
+        text = session.document.text
+        after = do(session, do="set", changes=one["changes"])[-1].words["scene"]["capacity"]
+        assert min(after["plus_g"], after["minus_g"]) >= target * (1 - 1e-9), one
+        do(session, do="open", text=text, here="same")
+    (reply,) = do(session, do="needed", acceleration=0.5 * target)
+    assert reply.words["needed"]["met"] and not reply.words["needed"]["interventions"]
+
+
+@pytest.mark.parametrize("given", [0.0, -1.0, "0.3 g", None, True, 1e9, float("nan")])
+def test_a_wrong_acceleration_is_refused(session: Session, given: Any) -> None:
+    (reply,) = do(session, do="needed", acceleration=given)
+    assert "acceleration" in reply.words["bad"]

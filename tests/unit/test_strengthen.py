@@ -486,3 +486,155 @@ def test_analyses_of_solids_are_refused_with_the_reason():
     dome = {"kind": "dome", "radius": 10.0, "thickness": 1.0, "rings": 4, "lunes": 6}
     result = run({"structure": dome, "analysis": [{"kind": "strengthen", "acceleration": "0.3 g"}]})
     assert result.status == "refused" and "no plane section" in result.reason
+
+
+#: A block that leans to -x and falls so at rest; its tie to the right holds it, and a load to +x sets it upright
+LEANING = {
+    "kind": "blocks",
+    "depth": 1.0,
+    "block": [{"name": "leaning", "points": [[0, 0], [1, 0], [-0.4, 2], [-1.4, 2]]}],
+}
+STAY = {"name": "stay", "start": [-0.27, 1.8], "start_stone": "leaning", "ground": [3.0, 1.8]}
+
+
+def test_a_load_in_one_sense_still_needs_the_tie_of_rest():
+    """At 0.3 g to +x the block leans against nothing; at rest its weight turns it to -x with W 0.2 m about its left toe."""
+    asked = {"kind": "strengthen", "acceleration": "0.3 g", "direction": "+x", "ties": [STAY]}
+    r = run({"structure": LEANING, "joints": {"friction": "no-sliding"}, "analysis": [asked]}).results
+    (one,) = r.interventions
+    weight = 2000.0 * 2.0 * G
+    assert r.value_before == 0.0 and one.meets_target
+    assert one.required_N == pytest.approx(weight * 0.2 / 1.8, rel=1e-6)
+    # towards -x the tie resists the load as well: W (0.2 + 0.3)/1.8
+    (other,) = run({"structure": LEANING, "joints": {"friction": "no-sliding"}, "analysis": [{**asked, "direction": "-x"}]}).results.interventions  # fmt: skip
+    assert other.required_N == pytest.approx(weight * 0.5 / 1.8, rel=1e-6)
+
+
+@pytest.mark.parametrize(("works_in", "sense"), [("tension", "-x"), ("compression", "+x")])
+def test_a_tie_that_the_mechanism_leaves_slack_has_no_slope(works_in, sense):
+    """A tie to the left shortens where the wall turns to the left, a strut lengthens where the wall turns to the right."""
+    tie = {**ANCHOR, "works_in": works_in}
+    asked = {"kind": "strengthen", "acceleration": "0.3 g", "direction": sense, "ties": [tie]}
+    deck = make_deck({"structure": WALL, "joints": {"friction": "no-sliding"}, "analysis": [asked]}, Path.cwd())
+    statics = Statics(Context(deck, 1), deck.analyses[0])
+    (one,) = tie_alternatives(deck.building, deck.analyses[0])
+    for force in (1e3, 5e3):
+        point = statics.point(one, 0, force)
+        assert (point.slope, point.capacity) == (0.0, pytest.approx(0.2, rel=1e-6))
+    assert statics.force(one, 0, 0.3) == np.inf and statics.force(one, 0, 0.19) == pytest.approx(0.0, abs=1.0)
+
+
+def test_a_spreader_between_abutments_carries_the_push_of_both():
+    """Two walls of 0.6 x 3 m, 4 m apart, with a strut at 2.5 m: under 0.3 g one wall leans on the other, whose reserve it uses up."""
+    walls = [
+        {"name": n, "points": [[x, 0], [x + 0.6, 0], [x + 0.6, 3], [x, 3]]} for n, x in (("left", 0.0), ("right", 4.6))
+    ]
+    strut = {"name": "spreader", "start": [0.59, 2.5], "end": [4.61, 2.5], "works_in": "compression"}
+    asked = {"kind": "strengthen", "acceleration": "0.15 g", "ties": [strut]}
+    data = {
+        "structure": {"kind": "blocks", "depth": 1.0, "block": walls},
+        "joints": {"friction": "no-sliding"},
+        "analysis": [asked],
+    }
+    weight = 2000.0 * 0.6 * 3.0 * G
+    r = run({**data, "analysis": [{**asked, "acceleration": "0.19 g"}]}).results
+    assert r.met_before, "each wall carries 0.2 g by itself"
+    (one,) = run(
+        {**data, "material": {"density": 2000.0}, "analysis": [{**asked, "acceleration": "0.21 g"}]}
+    ).results.interventions
+    assert not one.meets_target and one.greatest_capacity == pytest.approx(0.2, rel=1e-6), (
+        "equal walls do not help each other"
+    )
+    thick = [walls[0], {"name": "right", "points": [[4.6, 0], [6.1, 0], [6.1, 3], [4.6, 3]]}]
+    data["structure"] = {"kind": "blocks", "depth": 1.0, "block": thick}
+    (one,) = run({**data, "analysis": [{**asked, "acceleration": "0.3 g", "direction": "+x"}]}).results.interventions
+    assert one.required_N == pytest.approx(weight * (0.3 * 1.5 - 0.3) / 2.5, rel=1e-6)
+
+
+def test_the_advice_states_the_least_tie_by_rocking():
+    """With the least force rocking recovers, with 10 % less the wall overturns; the sustained peak needs far more."""
+    motion = {"kind": "sine-pulse", "amplitude": "0.6 g", "period": 1.0}
+    wall = {"structure": {"kind": "block", "width": 0.5, "height": 2.0}, "joints": {"friction": 0.9}, "motion": motion}
+    result = run({**wall, "analysis": [{"kind": "assess", "strategies": ["tilt", "rocking"], "budget": 60}]})
+    advice = result.results.advice
+    least, static = advice.by_rocking, advice.interventions[0]
+    assert least.meets_target and 0.0 < least.required_N < static.required_N
+    tie = {"start": static.start_m, "ground": static.end_m, "works_in": "both", "stiffness": static.stiffness_N_m}
+    outcome = {
+        share: run(
+            {**wall, "ties": [{**tie, "yield_force": share * least.required_N}], "analysis": [{"kind": "rocking"}]}
+        )
+        for share in (1.0, 0.9)
+    }
+    assert outcome[1.0].verdict.outcome == "stands" and outcome[0.9].verdict.outcome == "collapses"
+    assert f"{least.required_N / 1e3:.3g} kN" in advice.statement and "this one motion" in advice.statement
+
+
+def test_an_open_outcome_of_rocking_meets_no_target():
+    """The chaotic wall has a safety factor above 1 in this one run, and no verdict: the target is not met."""
+    asked = {
+        "kind": "strengthen", "by": "rocking", "safety_factor": 1.0,
+        "ties": [{**ANCHOR, "start": [-0.2, 1.9], "ground": [-2.0, 1.9], "yield_force": "2 kN"}],
+    }  # fmt: skip
+    record = {"kind": "record", "file": "extrados:el-centro-1940"}
+    wall = {"structure": {"kind": "block", "width": 0.4, "height": 2.0}, "motion": record}
+    alone = run({**wall, "analysis": [{"kind": "rocking"}]})
+    assert alone.verdict.outcome == "open" and alone.verdict.ratio > 1.0
+    result = run({**wall, "analysis": [asked]})
+    assert not result.results.met_before and "is open" in result.warnings[0]
+
+
+def test_a_ring_beam_is_a_tie_with_its_weight():
+    """Moments about the right toe: half of the beam rests on the wall at its anchorage, and sways at 2.9 m."""
+    beam = {"start": [-0.2, 2.9], "start_stone": "block", "ground": [-4.0, 2.9], "beam_weight": "6 kN"}
+    asked = {"kind": "strengthen", "acceleration": "0.3 g", "direction": "+x", "ties": [beam]}
+    data = {"structure": WALL, "joints": {"friction": "no-sliding"}, "analysis": [asked]}
+    (one,) = run(data).results.interventions
+    weight, half = 2000.0 * 0.6 * 3.0 * G, 3e3
+    force = (0.3 * (weight * 1.5 + half * 2.9) - weight * 0.3 - half * 0.5) / 2.9
+    assert (one.kind, one.name) == ("ring-beam", "ring beam 1")
+    assert one.required_N == pytest.approx(force, rel=1e-6)
+    assert any("6.00 kN" in text for text in one.adverse)
+    # the same load by hand in the table of the analysis
+    loaded = {**asked, "load": [{"x": -0.2, "y": 2.9, "force": half, "sways": True}]}
+    plain = run({**data, "analysis": [{**loaded, "ties": [{k: v for k, v in beam.items() if k != "beam_weight"}]}]})
+    assert plain.results.interventions[0].required_N == pytest.approx(one.required_N, rel=1e-9)
+
+
+def test_a_heavy_ring_beam_needs_more_force():
+    beam = {"start": [-0.2, 2.9], "start_stone": "block", "ground": [-4.0, 2.9]}
+    force = {}
+    for weight in (1e3, 20e3):
+        asked = {
+            "kind": "strengthen",
+            "acceleration": "0.3 g",
+            "direction": "+x",
+            "ties": [{**beam, "beam_weight": weight}],
+        }
+        force[weight] = run({"structure": WALL, "joints": {"friction": "no-sliding"}, "analysis": [asked]}).results.interventions[0].required_N  # fmt: skip
+    # per kN of weight on the wall 0.3 2.9 - 0.5 m over 2.9 m
+    assert force[20e3] - force[1e3] == pytest.approx(9.5e3 * (0.3 * 2.9 - 0.5) / 2.9, rel=1e-5)
+
+
+def test_a_fill_is_sized_as_any_key_of_the_structure():
+    """The least cover on a bridge for a target between its capacities at two covers; `tilt` at the size, and 2 % less, says so."""
+    fill = {"cover": 0.2, "density": 1900.0, "friction_angle": 32.0}
+    span = {"span": 6.0, "rise": 2.0, "thickness": 0.6, "voussoirs": 16}
+    bridge = {"kind": "bridge", "depth": 4.0, "spans": [span], "abutments": {"width": 3.0, "height": 1.5}}
+
+    def carried(cover: float) -> float:
+        r = run({"structure": {**bridge, "fill": {**fill, "cover": cover}}, "joints": {"friction": "no-sliding"}, "analysis": [{"kind": "tilt"}]})  # fmt: skip
+        return min(r["collapse_acceleration_g"], r["collapse_acceleration_opposite_g"])
+
+    low, high = carried(0.2), carried(1.2)
+    assert abs(high - low) > 0.01 * low, "the fill matters"
+    start, stop = (0.2, 1.2) if high > low else (1.2, 0.2)
+    target = 0.5 * (low + high)
+    asked = {
+        "kind": "strengthen", "acceleration": f"{target!r} g",
+        "changes": [{"vary": "structure.fill.cover", "start": start, "stop": stop}],
+    }  # fmt: skip
+    data = {"structure": {**bridge, "fill": {**fill, "cover": start}}, "joints": {"friction": "no-sliding"}}
+    (one,) = run({**data, "analysis": [asked]}).results.interventions
+    assert one.meets_target and min(start, stop) < one.required_size < max(start, stop)
+    assert carried(one.required_size) >= target > carried(one.required_size + 0.02 * (start - stop))

@@ -152,6 +152,8 @@ def _tell(run: "Run", title: str, count: int | None = None) -> None:
     """The answers of a run, of its first `count` analyses: those of the deck, without what these have asked for."""
     if title:
         out_console.say(title, "bold")
+    for condition in run.summary["deck"]["conditions"]:
+        out_console.say(f"condition: {condition}")
     for row in run.analyses[:count]:
         if row["status"] != "ok":
             out_console.say(f"{row['name']}: {row['status']}: {row['reason']}")

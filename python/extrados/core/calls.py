@@ -4,6 +4,7 @@ import contextlib
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -118,13 +119,18 @@ _AGAIN = 0.05
 
 
 @contextlib.contextmanager
-def within(seconds: float) -> Iterator[Deadline]:
-    """Stop what the core computes in this block once the seconds are over, as Ctrl-C would; the Deadline then says so."""
+def within(seconds: float, clock: Callable[[], float] = time.monotonic) -> Iterator[Deadline]:
+    """Stop what the core computes in this block once the seconds are over, as Ctrl-C would; the Deadline then says so.
+
+    clock: counts the seconds, no faster than time passes.
+    """
     deadline, left = Deadline(), threading.Event()
+    end = clock() + seconds
 
     def watch() -> None:
-        if left.wait(max(seconds, 0.0)):
-            return
+        while (rest := end - clock()) > 0.0:
+            if left.wait(rest):
+                return
         deadline.over.set()
         while not left.wait(_AGAIN):
             _core.api_support.set_cancel(1)

@@ -16,6 +16,7 @@ from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoAnsw
 from extrados.limit.systems import Sparse
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.model.geometry.chains import inner_stones
+from extrados.schema.quantities import engineering
 
 Found = TypeVar("Found")
 TOUCH = 1e-6  # of a joint's length: the thrust line touches its end
@@ -225,9 +226,7 @@ def why_not(limit: LimitAnalysis) -> str:
     except NoAnswer:
         return "no thrust line stays inside the structure"
     if part < 1.0 and limit.strength is not None:
-        return (
-            f"a thrust line keeps to {part:.3f} of the joints, but the strength {limit.strength:g} Pa does not carry it"
-        )
+        return f"a thrust line keeps to {part:.3f} of the joints, but the strength of {engineering(limit.strength, 'Pa')} does not carry it"
     if limit.friction is not None and LimitAnalysis(assembly, loads=limit.loads).stands():
         return _slides(limit)
     off = 2.0 * np.abs(state.position - 0.5)

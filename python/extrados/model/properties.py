@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from extrados.model.places import Placed
-from extrados.schema.quantities import Angle, Density, Energy, Length, Stiffness, Stress, Time
+from extrados.schema.quantities import Angle, Density, Energy, Length, Stiffness, Stress, Time, engineering
 from extrados.schema.table import Table, key
 
 #: Coefficient of friction that excludes sliding
@@ -98,8 +98,8 @@ class Material(Table):
         most = (self.tensile_strength * self.tensile_strength_parallel) ** 0.5
         if self.shear_strength is not None and self.shear_strength > most * (1.0 + 1e-9):
             raise ValueError(
-                f"shear_strength is {self.shear_strength:g} Pa, at most the root of the product of both tensile strengths, "
-                f"{most:g} Pa"
+                f"shear_strength is {engineering(self.shear_strength, 'Pa')}, at most the root of the product of both tensile strengths, "
+                f"{engineering(most, 'Pa')}"
             )
 
 

@@ -7,7 +7,6 @@ from scipy.signal import cont2discrete, lfilter
 
 from extrados.core.ground import Ground
 from extrados.motions.motion import Motion
-from extrados.schema.constants import GRAVITY
 from extrados.schema.table import FloorBelow
 
 #: A building swings on after the ground has come to rest, until this part of its motion is left
@@ -54,10 +53,14 @@ def on_floor(motion: Motion, floor: FloorBelow | None) -> Motion:
     time = start + step * np.arange(int(np.ceil((motion.end - start + sway.tail) / step)) + 1)
     rows = np.stack([motion.sample(time, k) for k in range(motion.ground.channels)])
     rows[0] = sway.accelerations(rows[0], step)
-    told = (
-        f"A floor at {floor.height:g} m in a building of {floor.building_height:g} m with T_1 {sway.period:.3g} s carries the structure. The motion "
-        f"of the floor has a peak of {np.abs(rows[0]).max() / GRAVITY:.3g} g, that of the ground {motion.peak / GRAVITY:.3g} g."
-    )
     return replace(
-        motion, ground=Ground(samples=rows, step=step, start=start), notes=[*motion.notes, told], horizontal=None, name=f"{motion.name} on a floor"
-    )  # fmt: skip
+        motion, ground=Ground(samples=rows, step=step, start=start), horizontal=None, name=f"{motion.name} on a floor"
+    )
+
+
+def floor_condition(floor: FloorBelow) -> str:
+    """The condition under which all analyses of a deck with a floor run, in words."""
+    return (
+        f"A floor at {floor.height:g} m in a building of {floor.building_height:g} m with T_1 {sway_of(floor).period:.3g} s carries the structure. "
+        "All analyses take the motion of this floor."
+    )

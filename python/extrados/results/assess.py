@@ -4,7 +4,7 @@ from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.strengthen import Intervention
-from extrados.results.verdict import Bound, Demand, KindResults, Outcome, Verdict, judge
+from extrados.results.verdict import Bound, Demand, KindResults, Outcome, Verdict, judge, outcome_words
 
 Axis = Literal["acceleration", "pulse", "displacement", "probability", "check"]
 Overall = Literal["stands under all", "collapses under all", "cannot stand", "depends", "open"]
@@ -48,6 +48,11 @@ class StrategyVerdict(ResultModel):
     parameters: str = fact("settings of the strategy, and the rule that gave them")
     assumes: str = fact("assumptions of the strategy")
     statement: str = fact("its verdict in one sentence")
+
+    @property
+    def verdict_words(self) -> str:
+        """Its outcome in words, or why it has none."""
+        return outcome_words(self.outcome, self.axis == "check") if self.status == "ok" else self.status
 
     def margin_told(self, nothing: str = "not known") -> str:
         """The margin in words: a factor, or between which ones it lies; `nothing` where none is known."""
@@ -106,6 +111,35 @@ class TurningValue(ResultModel):
     )
 
 
+class Contribution(ResultModel):
+    """Probability of collapse by one strategy, from its agreement with tests."""
+
+    strategy: str = fact("strategy")
+    quantity: str = fact("quantity of the verification book that the tests measured")
+    count: int = fact("number of tests")
+    bias: float = fact("geometric mean of computed over measured values")
+    scatter: float = fact("standard deviation of the natural logarithm of computed over measured values")
+    margin: float = fact("critical scale factor of the hazard by the strategy")
+    probability: float = fact("probability that the true critical scale factor is below 1")
+    low: float = fact("lower end of its 90 % confidence interval")
+    high: float = fact("upper end of its 90 % confidence interval")
+    weight: float = fact("weight in the overall probability: its share of the tests")
+
+
+class CollapseProbability(ResultModel):
+    """Probability of collapse under the hazard, from the model uncertainty of the strategies."""
+
+    probability: float | None = fact("weighted mean over the contributions; 1 for a certificate; null: no contribution")
+    low: float | None = fact("least lower end of the contributions' 90 % confidence intervals; null: no contribution")
+    high: float | None = fact(
+        "greatest upper end of the contributions' 90 % confidence intervals; null: no contribution"
+    )
+    contributions: list[Contribution] = fact("strategies with tests in the verification book")
+    without: dict[str, str] = fact("strategies that contribute nothing, with the reason")
+    statement: str = fact("the probability in words")
+    method: str = fact("derivation of the probability in words")
+
+
 class Advice(ResultModel):
     """What to do, by limit analysis: interventions that carry the peak of the hazard as a sustained load."""
 
@@ -113,6 +147,7 @@ class Advice(ResultModel):
     capacity_g: float | None = fact("capacity of the existing building; null: none", "g")
     mechanism: str = fact("governing mechanism of the existing building")
     interventions: list[Intervention] = fact("alternatives, the cheapest that meets the target first")
+    by_rocking: Intervention = maybe("the first tie, with the least force by which rocking under the hazard stands")
     rocking: dict[str, str] = fact("outcome of rocking under the hazard with each intervention that meets the target")
     statement: str = fact("recommendation in words")
 
@@ -128,6 +163,9 @@ class Assess(KindResults):
     verdicts: list[StrategyVerdict] = fact("one row a strategy")
     agreement: dict[str, dict[str, Agreement]] = fact(
         "of each pair of strategies with a verdict: the same verdict, the same with margins far apart, another one, or open"
+    )
+    collapse_probability: CollapseProbability = fact(
+        "probability of collapse from the model uncertainty of the strategies"
     )
     reasons: list[Reason] = fact("why strategies differ")
     unexplained: list[list[str]] = fact("pairs that differ without a reason that any rule has found")

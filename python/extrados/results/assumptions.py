@@ -3,6 +3,7 @@
 from typing import Any, Literal
 
 from extrados.results.fields import ResultModel, fact
+from extrados.schema.quantities import ENGINEERING, engineering
 
 #: The key that every answer which rests on it tells, whatever its value
 FRICTION = "joints.friction"
@@ -36,7 +37,10 @@ def _silent(one: Assumption) -> bool:
 
 def _words(name: str, one: Assumption) -> str:
     word = name.rpartition(".")[2].replace("_", " ")
-    said = "no sliding" if one.value == NO_SLIDING else f"{word} {shown(one.value)}{f' {one.unit}' if one.unit else ''}"
+    if one.unit in ENGINEERING and isinstance(one.value, int | float):
+        said = f"{word} {engineering(one.value, one.unit)}"
+    else:
+        said = "no sliding" if one.value == NO_SLIDING else f"{word} {shown(one.value)} {one.unit}".rstrip()
     return f"{said} ({one.origin}{', some differ' if one.exceptions else ''})"
 
 

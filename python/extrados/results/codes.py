@@ -116,7 +116,7 @@ class Checked(KindResults):
                     f"The outcome is open.{remarks}"
                 )
             return judge(
-                f"{worst.words} governs and {worst.verdict}, by {name}: demand {worst.demand:.3g}, capacity {worst.capacity:.3g}{unit}."
+                f"{worst.words} governs and is {'satisfied' if holds else 'not satisfied'}, by {name}: demand {worst.demand:.3g}, capacity {worst.capacity:.3g}{unit}."
                 f"{remarks}",
                 worst.demand, worst.capacity, worst.unit, outcome, self.bound,
                 (self.violated or ()) if holds else (),

@@ -4,6 +4,7 @@ from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judge
+from extrados.schema.quantities import engineering
 
 
 class GoverningRange(ResultModel):
@@ -40,8 +41,8 @@ class Intervention(ResultModel):
     """One alternative: its least size, its cost, and what governs then."""
 
     name: str = fact("its name")
-    kind: Literal["tie", "strut", "spring", "change"] = fact(
-        "tie, strut, spring that works both ways, or change of a key"
+    kind: Literal["tie", "strut", "spring", "ring-beam", "change"] = fact(
+        "tie, strut, spring that works both ways, ring beam with its weight, or change of a key"
     )
     key: str = maybe("key of the deck that is changed")
     place: str = fact("place, or value from which the key is changed")
@@ -154,5 +155,4 @@ def size_told(one: Intervention) -> str:
         depth = getattr(one, "depth_m", None)
         per = "" if depth is None else f" for the depth of {depth:.3g} m ({size / 1e3 / depth:.3g} kN/m)"
         return f"{size / 1e3:.3g} kN{per} {one.place}"
-    scale, unit = {"Pa": (1e6, "MPa"), "N": (1e3, "kN")}.get(one.unit, (1.0, one.unit))
-    return f"{one.key} = {size / scale:.3g} {unit}".rstrip()
+    return f"{one.key} = {engineering(size, one.unit)}"

@@ -4,6 +4,13 @@ import csv
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+from scipy.special import nctdtrinc, ndtr, stdtr
+
+#: Probability outside each end of the interval of a probability: 90 % lie between
+TAIL = 0.05
+#: Standardised margins beyond this have the ends of their interval there
+_FARTHEST = 12.0
 _TABLE = Path(__file__).with_name("model_uncertainty.csv")
 
 
@@ -40,3 +47,21 @@ def read_uncertainties() -> list[ModelUncertainty]:
 def uncertainties_of(analysis: str, comparison: str = "experiment") -> list[ModelUncertainty]:
     """The entries of an analysis of this kind, by quantity; empty where nothing was compared in this way."""
     return [row for row in read_uncertainties() if analysis in row.analyses and row.comparison == comparison]
+
+
+def collapse_probability(margin: float, row: ModelUncertainty) -> tuple[float, float, float]:
+    """Probability that the true capacity lies below the demand, with the ends of its 90 % interval; margin: computed capacity over
+    demand.
+
+    Computed over true capacity is lognormal; bias and scatter are estimates from `count` tests. With k = ln(margin/bias)/scatter
+    the probability is that of one more test, 1 - t_{n-1}(k/sqrt(1 + 1/n)). The interval follows from sqrt(n) k, which has a
+    noncentral t distribution (Owen 1968). It is extended to the probability itself where the tests are few.
+    """
+    if margin <= 0.0:
+        return 1.0, 1.0, 1.0
+    n = row.count
+    k = float(np.log(margin / row.bias) / row.scatter)
+    estimate = float(stdtr(n - 1, -k / np.sqrt(1.0 + 1.0 / n)))
+    shift = nctdtrinc(n - 1, np.array([1.0 - TAIL, TAIL]), np.sqrt(n) * np.clip(k, -_FARTHEST, _FARTHEST))
+    high, low = ndtr(-shift / np.sqrt(n))
+    return estimate, min(float(low), estimate), max(float(high), estimate)

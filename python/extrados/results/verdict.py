@@ -11,6 +11,19 @@ Bound = Literal["exact", "upper", "lower"]
 DECIDED: tuple[Outcome, ...] = ("stands", "collapses", "cannot-stand")
 
 
+#: Outcomes in words, the gravest first
+OUTCOMES: dict[Outcome, str] = {
+    "cannot-stand": "cannot stand", "collapses": "collapses", "open": "open", "stands": "stands", "not-applicable": "no verdict",
+}  # fmt: skip
+#: Outcomes of a check of a code that differ from those of a building
+CHECKED: dict[Outcome, str] = {"collapses": "not satisfied", "stands": "satisfied"}
+
+
+def outcome_words(outcome: Outcome, check: bool) -> str:
+    """An outcome in words; check: of a check of a code, which is satisfied or not."""
+    return CHECKED.get(outcome, OUTCOMES[outcome]) if check else OUTCOMES[outcome]
+
+
 class Verdict(ResultModel):
     """Conclusion of an analysis. `demand` and `capacity` are of one quantity in `unit`.
 

@@ -7,6 +7,7 @@ from extrados.model.dimensions import dimensions
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import GROUND
 from extrados.model.geometry.chains import arch_of
+from extrados.motions.floors import floor_condition
 from extrados.schema.quantities import unit_of
 from extrados.schema.table import Table
 
@@ -21,8 +22,16 @@ MOST_WITHIN = 12
 
 
 def described(deck: Deck) -> dict[str, Any]:
-    """`dimensions` of the drawing [m], and `properties`: a row for each, with its unit and who set it."""
-    return {"dimensions": _dimensions(deck), "drawing": _drawing(deck), "properties": _properties(deck)}
+    """`dimensions` of the drawing [m], the `drawing`, `properties`: a row for each, with its unit and who set it, and `conditions` that
+    hold for all analyses."""
+    floor = None if deck.motion is None else deck.motion.floor
+    conditions = [] if floor is None else [floor_condition(floor)]
+    return {
+        "dimensions": _dimensions(deck),
+        "drawing": _drawing(deck),
+        "properties": _properties(deck),
+        "conditions": conditions,
+    }
 
 
 def _drawing(deck: Deck) -> dict[str, Any]:

@@ -14,7 +14,9 @@ import numpy as np
 import tomlkit
 
 from extrados import kinds
+from extrados.analyses.assess.asking import ENDING
 from extrados.analyses.batches import stacked, stop_if_asked, sweep
+from extrados.analyses.conclude import faulty
 from extrados.analyses.context import Context
 from extrados.decks.reader import LARGEST, Deck, DeckError, make_deck
 from extrados.decks.toml import loads
@@ -85,6 +87,10 @@ class SurveyJob:
                 margin = np.nan if r.least_margin is None else r.least_margin
         except (DeckError, StoreError) as error:
             row["statement"] = str(error)
+        except ENDING:
+            raise
+        except Exception as error:  # the other buildings still count
+            row |= {"overall": "", "status": "failed", "statement": faulty("assess", error).reason}
         else:
             row["statement"] += self._drawn(row["folder"])
         return {"margin": np.array(margin), **{key: np.array(value, dtype="U2000") for key, value in row.items()}}
@@ -102,17 +108,20 @@ class SurveyJob:
         except KeyboardInterrupt:
             stop_if_asked()
             raise
+        except ENDING:
+            raise
+        except Exception as error:
+            return f" The figures were not drawn: {faulty('assess', error).reason}."
         return ""
 
 
-def decks_of(folder: Path) -> dict[str, str]:
-    """Name -> text of the decks of a folder, with an assess where they have none, and what `common.toml` adds.
-
-    DeckError lists all that is wrong with any of them.
+def decks_of(folder: Path) -> dict[str, str | DeckError]:
+    """Name -> text of the decks of a folder, with an assess where they have none, and what `common.toml` adds; of a wrong deck its
+    complaints. DeckError lists all of them where no deck is right.
     """
     paths = sorted(p for p in folder.glob("*.toml") if not p.name.endswith(".expect.toml"))
     common = _read(folder / COMMON) if (folder / COMMON).exists() else {}
-    found, complaints = {}, []
+    found: dict[str, str | DeckError] = {}
     for path in (p for p in paths if p.name != COMMON):
         try:
             own = _read(path)
@@ -121,11 +130,12 @@ def decks_of(folder: Path) -> dict[str, str]:
             make_deck(data, folder)
             found[path.stem] = tomlkit.dumps(data)
         except DeckError as error:
-            complaints += [text.replace("deck:", f"{path}:", 1) for text in error.complaints]
-    if complaints:
-        raise DeckError(complaints)
+            found[path.stem] = DeckError([text.replace("deck:", f"{path}:", 1) for text in error.complaints])
     if not found:
         raise DeckError([f"{folder}: holds no decks"])
+    wrong = [one for one in found.values() if isinstance(one, DeckError)]
+    if len(wrong) == len(found):
+        raise DeckError([text for one in wrong for text in one.complaints])
     return found
 
 
@@ -154,11 +164,13 @@ def assess_folder(
     scheduler: str = "",
     figures: bool = True,
 ) -> list[Assessed]:
-    """Assess every deck of a folder into folders below `out`, the worst first; writes ranking.csv and ranking.html.
+    """Assess every deck of a folder into folders below `out`, the worst first; writes ranking.csv and ranking.html. A wrong deck is
+    a row with its complaints.
 
     An interrupted run goes on where it was with `resume`; on a cluster the workers must see the same folders.
     """
-    texts = decks_of(folder)
+    decks = decks_of(folder)
+    texts = {name: text for name, text in decks.items() if isinstance(text, str)}
     names = list(texts)
     out = Path(os.path.abspath(out))
     prepare(out)
@@ -174,6 +186,10 @@ def assess_folder(
         Assessed(names[k], str(found["overall"][i]), float(found["margin"][i]), str(found["strategy"][i]), str(found["status"][i]),
                  str(found["statement"][i]), Path(str(found["folder"][i])))
         for i, k in enumerate(found.members)
+    ]  # fmt: skip
+    rows += [
+        Assessed(name, "", np.nan, "", "wrong deck", str(error), out / name)
+        for name, error in decks.items() if isinstance(error, DeckError)
     ]  # fmt: skip
     rows.sort(key=lambda row: (*row.order, row.building))
     _write(rows, out, figures)
@@ -194,8 +210,9 @@ def _write(rows: list[Assessed], out: Path, figures: bool) -> None:
         told = (row.building, row.overall, f"{row.least_margin:.6g}", row.strategy, row.status, row.statement)
         writer.writerow([told[2] if k == 2 else cell(text) for k, text in enumerate(told)])
     runs: list[tuple[str, Stored | None]] = [
-        (row.building, Run.read(row.folder) if (row.folder / "summary.json").exists() else None) for row in rows
-    ]
+        (row.building, Run.read(row.folder) if row.status != "wrong deck" and (row.folder / "summary.json").exists() else None)
+        for row in rows
+    ]  # fmt: skip
     made = document(
         out.name,
         [(r.building, r.overall or r.status, r.least_margin, r.strategy, r.statement) for r in rows],

@@ -49,6 +49,31 @@ COMMON: dict[str, dict[str, float]] = {
 }
 
 
+#: SI unit -> factors and names of the units of engineers, with the least value [SI] that each shows, the greatest unit first
+ENGINEERING: dict[str, tuple[tuple[float, str, float], ...]] = {
+    "Pa": ((1e9, "GPa", 1e9), (1e6, "MPa", 1e5), (1e3, "kPa", 1e2)),
+    "Pa/m": ((1e9, "GPa/m", 1e9), (1e6, "MPa/m", 1e5)),
+    "N": ((1e6, "MN", 1e7), (1e3, "kN", 1e2)),
+    "N/m": ((1e6, "MN/m", 1e6), (1e3, "kN/m", 1e3)),
+}
+
+
+def engineering(value: float, si: str) -> str:
+    """A value in an SI unit with three figures and the unit of engineers: 3e6 Pa is "3.00 MPa"; other units stay."""
+    for factor_, unit, least in ENGINEERING.get(si, ()):
+        if abs(value) >= least:
+            return f"{three_figures(value / factor_)} {unit}"
+    return f"{three_figures(value)} {si}".rstrip()
+
+
+def three_figures(value: float) -> str:
+    """Three significant figures without an exponent: 3.00, 41.2, 1250; zero is 0."""
+    rounded = float(f"{value:.3g}")
+    if rounded == 0.0:
+        return "0"
+    return f"{rounded:.{max(0, 2 - math.floor(math.log10(abs(rounded))))}f}"
+
+
 def pattern(si: str) -> str:
     """Regular expression of JSON Schema for text that may be a quantity in `si`: no common unit of another kind."""
     si = "m/s^2" if si == "g" else si

@@ -101,7 +101,7 @@ def _agreement(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
             for j, b in enumerate(names):
                 if i == j:
                     row = labels[a]
-                    _cell(ax, j, i, OUTCOMES[row.outcome], row.outcome, "white")
+                    _cell(ax, j, i, OUTCOMES[row.outcome], row.verdict_words, "white")
                 else:
                     relation = r.agreement[a][b]
                     _cell(

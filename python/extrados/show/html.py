@@ -43,7 +43,7 @@ pre{background:#f7f7f7;padding:.7rem;overflow:auto;font-size:12px;white-space:pr
 </body></html>
 """
 #: Words of verdicts that a table shows in their colour
-LOOKS = ("stands", "collapses", "cannot stand", "open", "holds", "fails")
+LOOKS = ("stands", "collapses", "cannot stand", "open", "satisfied", "not satisfied", "holds", "fails")
 
 
 def page(document: Document, folder: Path) -> str:

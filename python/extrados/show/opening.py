@@ -8,15 +8,12 @@ from extrados.results.assess import Assess
 from extrados.results.codes import Checked, LocalMechanism
 from extrados.results.store import Stored
 from extrados.results.strengthen import Strengthen
+from extrados.results.verdict import OUTCOMES
 from extrados.show.document import Block, Figure, Table, Words
 from extrados.show.language import Language
 from extrados.show.verification import COLUMNS, WIDTHS, rows_of
 
 Figures = list[tuple[str, str]]
-#: Outcomes of verdicts in words, the gravest first
-OUTCOMES = {
-    "cannot-stand": "cannot stand", "collapses": "collapses", "open": "open", "stands": "stands", "not-applicable": "no verdict",
-}  # fmt: skip
 #: Ends of the names of figures that show a mechanism
 MECHANISMS = ("-collapse", "-mechanism")
 #: Kinds of analysis in words
@@ -94,7 +91,9 @@ def _conclusion(run: Stored, lead: dict[str, Any], words: Language) -> str:
     first, *rest = re.split(r"(?<=\.) (?=[A-Z])", str(v["statement"]))
     # the strategies one by one and their reasons follow in the table and behind the contents
     least = (
-        [one for one in rest if one.startswith("The least critical scale factor")] if isinstance(r, Assess) else rest
+        [one for one in rest if one.startswith(("The least critical scale factor", "Probability of collapse"))]
+        if isinstance(r, Assess)
+        else rest
     )
     return " ".join([first, *least])
 
@@ -116,7 +115,7 @@ def _comparison(run: Stored, lead: dict[str, Any], words: Language) -> Table:
 
     if isinstance(r, Assess):
         rows = [
-            (s.label, words(OUTCOMES[s.outcome] if s.status == "ok" else s.status), number(s.demand, s.unit), number(s.capacity, s.unit), s.margin_told(""))
+            (s.label, words(s.verdict_words if s.status == "ok" else s.status), number(s.demand, s.unit), number(s.capacity, s.unit), s.margin_told(""))
             for s in r.verdicts
         ]  # fmt: skip
         return Table(
@@ -142,7 +141,7 @@ def _confidence(run: Stored, lead: dict[str, Any], words: Language) -> str:
         judged = [s for s in r.verdicts if s.status == "ok" and s.outcome != "not-applicable"]
         groups: dict[str, int] = {}
         for s in judged:
-            groups[OUTCOMES[s.outcome]] = groups.get(OUTCOMES[s.outcome], 0) + 1
+            groups[s.verdict_words] = groups.get(s.verdict_words, 0) + 1
         told = ", ".join(f"{n} {words(word)}" for word, n in groups.items()) or words("none")
         said.append(
             words(

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from extrados.results.store import Stored
 from extrados.show.document import Block, Document, Figure, Heading, Table, Words
-from extrados.show.telling import OUTCOMES, cell, heading, kind_of
+from extrados.show.telling import cell, heading, kind_of
 
 
 def document(
@@ -51,7 +51,7 @@ def _page(name: str, run: Stored, out: Path, figures: bool) -> list[Block]:
         rows = [
             (
                 v.label,
-                OUTCOMES[v.outcome] if v.status == "ok" else v.status,
+                v.verdict_words,
                 cell(v.demand, ""),
                 cell(v.capacity, ""),
                 v.unit,

@@ -15,10 +15,11 @@ from extrados.results.fields import ResultModel
 from extrados.results.store import STORE, SUMMARY, Stored
 from extrados.results.strengthen import size_told
 from extrados.results.validity import validity_of
+from extrados.results.verdict import outcome_words
 from extrados.show.building import name_of
 from extrados.show.document import Block, Code, Document, Figure, Heading, Table, Words
 from extrados.show.language import Language
-from extrados.show.opening import OUTCOMES, governing_figure, opening, title_of
+from extrados.show.opening import governing_figure, opening, title_of
 from extrados.show.sources import references
 from extrados.show.template import ENTRIES, Template
 
@@ -161,7 +162,8 @@ def _verdicts(run: Stored, words: Language) -> list[Block]:
                 "" if v[key] is None else words.quantity(v[key], v["unit"]) for key in ("demand", "capacity")
             )
             ratio = "" if v["ratio"] is None else words.number(v["ratio"])
-            rows.append((name, words(OUTCOMES[v["outcome"]]), demand, capacity, ratio))
+            said = outcome_words(v["outcome"], isinstance(run[a["name"]], Checked))
+            rows.append((name, words(said), demand, capacity, ratio))
         else:
             rows.append((name, words(a["status"]), "", "", ""))
     head = _heads(words, "analysis", "verdict", "demand", "capacity", "capacity / demand")
@@ -178,7 +180,7 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
             rows.append(
                 (
                     v.label,
-                    words(OUTCOMES[v.outcome]),
+                    words(v.verdict_words),
                     _value(words, v.demand, v.unit),
                     _value(words, v.capacity, v.unit),
                     factor,
@@ -202,6 +204,7 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
             )
         )
     )
+    found.append(Words(f"{r.collapse_probability.statement} {r.collapse_probability.method}", "", _foreign(words)))
     found += _advice(r, words)
     if r.reasons:
         found.append(Heading(words("Why they differ"), 2))
@@ -248,7 +251,9 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
             found.append(Table(head, shaken, (2.2, 1.2, 1.6, 1.0, 1.6, 1.0)))
     if r.probes:
         found.append(Heading(words("Further runs"), 2))
-        rows = [(p.strategy, p.changed, words(OUTCOMES[p.outcome]), cell(p.value, "")) for p in r.probes]
+        rows = [
+            (p.strategy, p.changed, words(outcome_words(p.outcome, check=False)), cell(p.value, "")) for p in r.probes
+        ]
         found.append(
             Table(
                 ("analysis", "difference from the deck", "verdict", "demand over capacity"), rows, (1.2, 4.0, 1.0, 1.2)
@@ -346,7 +351,10 @@ def _hazard(run: Stored, deck: dict[str, Any], words: Language) -> list[Block]:
     rows = [p for p in deck.get("properties", []) if p["table"] == "motion"]
     if not rows:
         return []
-    found: list[Block] = [Heading(words("Hazard"))]
+    found: list[Block] = [
+        Heading(words("Hazard")),
+        *(Words(text, "", _foreign(words)) for text in deck.get("conditions", [])),
+    ]
     for a in run.analyses:
         if a["kind"] == "assess" and a["results"]:
             h = run[a["name"]].hazard

@@ -16,7 +16,7 @@ TALLEST = 1.1
 #: Marks after which a long key, path or list may break: between letters or names of files, not within a number
 BREAKS = re.compile(r"(?<=[A-Za-z]{2})[_.](?=[A-Za-z]{3})|(?<=[A-Za-z])/(?=\w)")
 COLOURS = {
-    "stands": "#3b7a57", "holds": "#3b7a57", "collapses": "#b3261e", "cannot stand": "#b3261e", "fails": "#b3261e", "open": "#a86400",
+    "stands": "#3b7a57", "holds": "#3b7a57", "satisfied": "#3b7a57", "not satisfied": "#b3261e", "collapses": "#b3261e", "cannot stand": "#b3261e", "fails": "#b3261e", "open": "#a86400",
 }  # fmt: skip
 BOXES = {"answer": ("#f6f2ea", "#b3261e"), "bad": ("#fbe9e7", "#b3261e"), "warn": ("#fff7e0", "#d9a400")}
 

@@ -5,6 +5,7 @@ from extrados.analyses.context import Refused
 from extrados.results.assess import Advice
 from extrados.results.rocking import Rocking
 from extrados.results.strengthen import Intervention, Strengthen, size_told
+from extrados.schema.quantities import engineering
 
 #: Outcomes of rocking in words
 OUTCOMES = {"no-hinging": "does not rock", "recovery": "rocks and recovers", "collapse": "collapses"}
@@ -23,10 +24,43 @@ def advise(asker: Asker, peak_g: float, rocks: bool) -> Advice | str:
     if not isinstance(r, Strengthen):
         return result.reason or "the analysis has no result"
     rocking = {one.name: _rocks(asker, one) for one in r.interventions if one.meets_target} if rocks else {}
+    tie = next((one for one in r.interventions if one.meets_target and one.required_N is not None), None)
+    least = _least_by_rocking(asker, tie) if tie is not None and rocks else None
+    statement = _statement(r, rocking)
+    if least is not None and tie is not None:
+        statement += f" {_told_by_rocking(least, tie)}"
+    more = {"by_rocking": least} if least is not None else {}
     return Advice(
         target_g=r.target, capacity_g=r.value_before, mechanism=r.mechanism_before, interventions=r.interventions,
-        rocking=rocking, statement=_statement(r, rocking),
+        rocking=rocking, statement=statement, **more,
     )  # fmt: skip
+
+
+def _least_by_rocking(asker: Asker, tie: Intervention) -> Intervention | None:
+    """The tie at the same place, with the least yield force with which rocking under the hazard has the verdict "stands"; None where the
+    existing building has it, or where no force up to that of statics gives it."""
+    table = {
+        "name": "the same tie", "start": tie.start_m, "ground" if "ground" in tie.place else "end": tie.end_m,
+        "works_in": _works(tie), "yield_force": tie.required_N, "stiffness": tie.stiffness_N_m,
+    }  # fmt: skip
+    try:
+        result, _ = asker.ask("strengthen", {"by": "rocking", "safety_factor": 1.0, "ties": [table]})
+    except Refused:
+        return None
+    r = result.results
+    if not isinstance(r, Strengthen) or r.met_before:
+        return None
+    return r.interventions[0]
+
+
+def _told_by_rocking(least: Intervention, tie: Intervention) -> str:
+    """The least tie by rocking against that of limit analysis, in words."""
+    if not least.meets_target or least.required_N is None or tie.required_N is None:
+        return f"By rocking under the hazard no force of this tie up to that value gives the verdict stands: {least.reason}."
+    return (
+        f"By rocking under the hazard the same tie needs {engineering(least.required_N, 'N')}, {100.0 * least.required_N / tie.required_N:.0f} % "
+        "of the force for the sustained peak. This force holds for this one motion."
+    )
 
 
 def _rocks(asker: Asker, one: Intervention) -> str:
@@ -42,8 +76,7 @@ def _rocks(asker: Asker, one: Intervention) -> str:
             "yield_force": one.required_N,
             "stiffness": one.stiffness_N_m,
         }
-        works = {"tie": "tension", "strut": "compression"}.get(one.kind, "both")
-        changes = {"ties": [*asker.context.deck.data.get("ties", []), {**tie, "works_in": works}]}
+        changes = {"ties": [*asker.context.deck.data.get("ties", []), {**tie, "works_in": _works(one)}]}
     try:
         result, _ = asker.ask("rocking", {}, None, changes)
     except Refused as error:
@@ -51,6 +84,10 @@ def _rocks(asker: Asker, one: Intervention) -> str:
     if not isinstance(result.results, Rocking):
         return f"gives no result: {result.reason or result.answer}"
     return OUTCOMES.get(result.results.outcome, result.results.outcome)
+
+
+def _works(one: Intervention) -> str:
+    return {"tie": "tension", "strut": "compression"}.get(one.kind, "both")
 
 
 def _statement(r: Strengthen, rocking: dict[str, str]) -> str:

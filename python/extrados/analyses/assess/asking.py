@@ -1,6 +1,7 @@
 """Ask a strategy: the deck of one part, run by the driver of its kind, and the row of the table that it gives."""
 
 import copy
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -30,8 +31,24 @@ from extrados.results.sla import Sla
 from extrados.results.statistics import Ensemble, OverLevels
 from extrados.results.verdict import SelfWeight, judge_acceleration
 
-#: A strategy is stopped where it takes this many budgets
-STOPPED_AFTER = 2.0
+#: Strategies are stopped after this many budgets
+STOPPED_AFTER = 1.0
+#: Least share of the time on the clock that counts, however loaded the machine is
+SHARED = 0.1
+
+
+class Stopwatch:
+    """Seconds of computing since the start: those of the clock, but those of the processor where other programs share it.
+
+    A share of the clock always counts, because processes that this one waits for have time of their own.
+    """
+
+    def __init__(self) -> None:
+        self.begun = time.monotonic(), time.process_time()
+
+    def __call__(self) -> float:
+        clock, processor = time.monotonic() - self.begun[0], time.process_time() - self.begun[1]
+        return min(clock, max(processor, SHARED * clock))
 
 
 class Interrupted(Exception):
@@ -82,7 +99,10 @@ class Asker:
         self, kind: str, keys: dict[str, Any], motion: dict[str, Any] | None = None, changes: dict[str, Any] | None = None,
         without: tuple[str, ...] = (),
     ) -> tuple[Result, str]:  # fmt: skip
-        """The result of an analysis of the building, and its deck as text; Refused where the deck is wrong."""
+        """The result of an analysis of the building, and its deck as text; Refused where the deck is wrong, OutOfTime after the
+        deadline."""
+        if self.clock() >= self.deadline:
+            raise OutOfTime
         data = self.data(kind, keys, self.motion if motion is None else motion, changes or {}, without)
         whole = self.context
         try:
@@ -101,10 +121,10 @@ class Asker:
         ):
             building = whole.building  # with the views that it has
         signals = len(interrupts.asked)
-        with within(self.deadline - self.clock()) as time:
+        with within(self.deadline - self.clock(), self.clock) as limit:
             result = run_one(one, options, building)
         if result.status == "interrupted":
-            if time.passed and len(interrupts.asked) == signals:
+            if limit.passed and len(interrupts.asked) == signals:
                 raise OutOfTime
             raise Interrupted
         found = concluded(neglecting(result, whole.building, without), options, one, building)

@@ -1,6 +1,5 @@
 """assess: every strategy that applies to a building under one hazard, cheap first, compared, with reasons."""
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
@@ -16,10 +15,12 @@ from extrados.analyses.assess.asking import (
     Asker,
     Interrupted,
     OutOfTime,
+    Stopwatch,
     no_row,
     row_of,
     scaled_margin,
 )
+from extrados.analyses.assess.model_uncertainty import estimate_collapse
 from extrados.analyses.assess.reasons import SLID, Facts, Pair, explained
 from extrados.analyses.assess.strategies import Asked, Choice, LeftOut, Strategy
 from extrados.analyses.assess.tables import Assess
@@ -27,6 +28,7 @@ from extrados.analyses.assess.words import answer, conclusion, table_of
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import faulty
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.dem.tables import OF_SPRINGS
 from extrados.model.errors import BadGeometry, NoView
 from extrados.motions.from_deck import is_set
 from extrados.results import assess as out
@@ -46,6 +48,10 @@ ONE_RUN = {"perturbed": False}
 #: interval in which elements turn
 STIFFER, SPREAD = 4.0, 0.002
 ELEMENT_HALVINGS = 3
+#: Runs that follow, each twice as long, where a structure still moves at the end
+PROLONGED = 2
+#: Factors on the motion in a finer check
+PERTURBED = (0.999, 1.001)
 #: Factors between two of the first ones, where the margin of rocking is thin
 FINE = 16
 
@@ -58,11 +64,13 @@ def run(context: Context, options: Assess) -> Result:
         work.cheap()
         context.tell(f"First answers:\n{table_of(list(work.rows.values()))}")
         work.costly()
-        work.further("closer looks where strategies differ", work.refine)
-        if options.sensitivity or options.vary:
-            work.further("sensitivity", work.move)
+        work.further("longer runs", work.prolong)
         if options.advise:
             work.further("strengthening", work.advise)
+        work.further("closer looks where strategies differ", work.refine)
+        work.further("finer checks of contradictions", work.check_finer)
+        if options.sensitivity or options.vary:
+            work.further("sensitivity", work.move)
     except Interrupted:
         result.status, result.reason = "interrupted", "interrupted; the strategies that had run are reported"
     work.conclude(result)
@@ -90,11 +98,13 @@ class _Work:
         self.shaken: list[out.TurningValue] = []
         self.faults: dict[str, bytes] = {}
         self.advice: out.Advice | None = None
+        self.finer: dict[str, list[str]] = {}  # strategy, settings of its finer runs with their outcomes
+        self.finer_told = ""
         self.asker = Asker(
             context,
             dict(context.deck.data["motion"]),
-            time.monotonic() + STOPPED_AFTER * options.budget,
-            time.monotonic,
+            STOPPED_AFTER * options.budget,
+            Stopwatch(),
         )
         self.peak, self.peak_told = hazard.peak_of(context)
 
@@ -148,7 +158,7 @@ class _Work:
             result, deck = self.asker.ask(choice.kind or strategy.kind, choice.keys, motion, None, without)
         except OutOfTime:
             self.rows[name] = no_row(
-                strategy, "left out", f"stopped at the time limit of {STOPPED_AFTER:g} budgets", words
+                strategy, "left out", f"stopped at the time limit of {self.options.budget:g} s", words
             )
             self.not_done.append(f"{strategy.label}: stopped at the time limit")
             return None
@@ -177,6 +187,8 @@ class _Work:
             step()
         except ENDING:
             raise
+        except OutOfTime:
+            self.not_done.append(f"{what}: stopped at the time limit of {self.options.budget:g} s")
         except Exception as error:
             self._failed(what, error)
 
@@ -277,6 +289,107 @@ class _Work:
     def _bracket(self, name: str, low: float | None, high: float | None) -> None:
         """Between which factors on the hazard the verdict of a strategy turns."""
         self.rows[name] = self.rows[name].model_copy(update={"margin_at_least": low, "margin_below": high})
+
+    # ----- longer runs
+
+    def prolong(self) -> None:
+        """Run anew, twice as long each time, strategies whose run ended while the structure still moved."""
+        for name in ("rocking", "dem"):
+            for _ in range(PROLONGED):
+                end = _end_of_motion(self.results.get(name))
+                if end is None or not self._run_until(name, 2.0 * end):
+                    break
+
+    def _run_until(self, name: str, end: float) -> bool:
+        """Replace the run of a strategy by one until `end` [s]; False if the longer run has no result, and the former stays."""
+        choice, place = self.choices[name], [s for s, _, _ in self.parts].index(name)
+        former = self.rows[name]
+        words = (
+            f"{former.parameters}; continued until {end:.3g} s, because the structure still moved at {0.5 * end:.3g} s"
+        )
+        keys = choice.keys | {"end_time": round(end, 3)}
+        without = self.bare.get(name, ())
+        strategy = strategies.of(name)
+        try:
+            result, deck = self.asker.ask(choice.kind or strategy.kind, keys, None, None, without)
+        except (OutOfTime, Refused) as error:
+            told = str(error) or f"stopped at the time limit of {self.options.budget:g} s"
+            self.not_done.append(f"{strategy.label} until {end:.3g} s: {told}")
+            return False
+        if result.status != "ok":
+            self.not_done.append(f"{strategy.label} until {end:.3g} s: {result.reason}")
+            return False
+        words = words.removeprefix("; ")
+        row = row_of(
+            strategy, result, words, self.asker.demand(self.peak), self.options.acceptable_probability,
+            self.context.building.supports.abutting_wall, without,
+        )  # fmt: skip
+        kept = {"margin_at_least": former.margin_at_least, "margin_below": former.margin_below}
+        self.rows[name] = row.model_copy(update=kept if name == "rocking" else {})
+        self.choices[name] = replace(choice, keys=keys, words=words, seconds=2.0 * choice.seconds)
+        self.results[name], self.decks[place] = result, deck
+        self.parts[place] = (name, f"{strategy.label}: {words}", result)
+        return True
+
+    # ----- finer checks
+
+    def check_finer(self) -> None:
+        """Where two strategies contradict each other without a reason: rigid contacts, half the step, perturbed motions."""
+        facts = self.facts()
+        _, unexplained = explained(facts, lambda rule, error: None)  # `conclude` reports a rule that fails
+        names = {n for p in unexplained if facts.relation(*p) == "disagree" for n in p}
+        try:
+            for name in (n for n in ("rocking", "dem") if n in names and n in self.results):
+                self._check_run(name)
+        finally:
+            self._tell_finer(names)
+
+    def _tell_finer(self, names: set[str]) -> None:
+        """State which finer checks ran for strategies that contradict each other."""
+        if names:
+            ran = [f"{self.rows[n].label} with {', '.join(told)}" for n, told in self.finer.items()]
+            self.finer_told = (
+                f"Finer checks of the contradiction ran for {' and for '.join(ran)}."
+                if ran
+                else f"No finer check ran for {' and '.join(sorted(self.rows[n].label for n in names))}."
+            )
+
+    def _check_run(self, name: str) -> None:
+        """Run a dynamic strategy anew with finer settings; another outcome leaves its own open."""
+        row, keys = self.rows[name], self.choices[name].keys
+        runs: list[tuple[str, dict[str, Any], float]] = []
+        if name == "dem":
+            options = self.results[name].asked
+            half = (
+                {"time_step": 0.5 * options["time_step"]}
+                if options.get("time_step")
+                else {"fraction": 0.5 * kinds.table("analysis", "dem").model_fields["fraction"].default}
+            )
+            runs.append(("rigid contacts", _rigid(keys) | ONE_RUN, 1.0))
+            runs.append(("half the time step", keys | half | ONE_RUN, 1.0))
+            keys = keys | ONE_RUN
+        else:
+            runs.append(("a tolerance of 1e-10", keys | {"tolerance": 1e-10}, 1.0))
+        runs += [(f"the motion times {factor:g}", keys, factor) for factor in PERTURBED]
+        other: list[str] = []
+        for told, changed, factor in runs:
+            model = self.one_motion().deck.motion
+            motion = None if factor == 1.0 else hazard.scaled(self.asker.motion, model, factor)
+            if factor != 1.0 and motion is None:
+                continue
+            if self.asker.clock() >= self.asker.deadline:
+                raise OutOfTime
+            found = self._probe(name, told, self.choices[name].kind or strategies.of(name).kind, changed, motion)
+            if found is None:
+                continue
+            self.finer.setdefault(name, []).append(f"{told} ({self.probes[-1].outcome})")
+            if {self.probes[-1].outcome, row.outcome} == {"stands", "collapses"}:
+                other.append(f"{told} ({self.probes[-1].outcome})")
+        if other:
+            text = f"A finer check gives another outcome: {', '.join(other)}."
+            self.rows[name] = row.model_copy(
+                update={"outcome": "open", "violated": [*row.violated, text], "statement": f"{row.statement} {text}"}
+            )
 
     # ----- refining
 
@@ -468,7 +581,7 @@ class _Work:
                 "sensitivity: limit analysis and rocking do not look at a building on a plan; `pushover` has variants"
             )
             return
-        self.asker.deadline = time.monotonic() + STOPPED_AFTER * self.options.budget
+        self.asker.deadline = self.asker.clock() + STOPPED_AFTER * self.options.budget
         rocked = self.results.get("rocking")
         restitution = rocked.results.restitution if rocked is not None else None
         keys = sensitivity.varied(self.context.building, self.options.vary, restitution)
@@ -588,6 +701,11 @@ class _Work:
                    or row.margin is not None]  # fmt: skip
         least = min(margins, default=(None, None), key=lambda m: m[0] if m[0] is not None else np.inf)
         overall, statement = conclusion(facts, reasons, unexplained, self.context.building.structure.word, least, rows)
+        chance = estimate_collapse(rows)
+        if self.finer_told:
+            statement += f" {self.finer_told}"
+        if overall != "cannot stand":
+            statement += f" {chance.statement}"
         impulse = hazard.primary(facts.motion)
         model = self.context.deck.motion
         result.results = out.Assess(
@@ -597,7 +715,7 @@ class _Work:
                 peak_ground_acceleration_g=self.peak, peak_told=self.peak_told,
                 pulse_amplitude_g=impulse and impulse[0], pulse_period_s=impulse and impulse[1],
             ),
-            verdicts=rows, agreement=agreement, reasons=reasons, unexplained=[list(p) for p in unexplained],
+            verdicts=rows, agreement=agreement, collapse_probability=chance, reasons=reasons, unexplained=[list(p) for p in unexplained],
             parts=dict(zip(names, (words for _, words, _ in self.parts), strict=True)), probes=self.probes,
             **({"sensitivity": self._sensitivity()} if self.moved or self.shaken else {}),
             **({"advice": self.advice} if self.advice is not None else {}), not_done=self.not_done, least_margin=least[0], least_margin_strategy=least[1], budget_s=self.options.budget,
@@ -656,6 +774,28 @@ def _merged(keys: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
         below = made.get(name)
         made[name] = _merged(below, value) if isinstance(below, dict) and isinstance(value, dict) else value
     return made
+
+
+def _end_of_motion(result: Result | None) -> float | None:
+    """End [s] of a run in which the structure still moved; None for others."""
+    if result is None:
+        return None
+    r = result.results
+    if isinstance(r, DemRun):
+        return r.stop_time_s if r.still_moving else None
+    if not isinstance(r, RockingResults) or r.outcome == "collapse":
+        return None
+    if r.hand_over is not None:
+        contacts = r.hand_over.contacts
+        return contacts.stop_time_s if contacts.still_moving else None
+    return None if r.settled else float(np.asarray(result.arrays["time"].data)[-1])
+
+
+def _rigid(keys: dict[str, Any]) -> dict[str, Any]:
+    """Keys of a run of discrete elements on rigid contacts, which have no springs."""
+    joints = {k: v for k, v in keys.get("joints", {}).items() if f"joints.{k}" not in OF_SPRINGS}
+    kept = {k: v for k, v in keys.items() if k not in ("joints", "fraction", "mass_damping", "time_step")}
+    return kept | ({"joints": joints} if joints else {}) | {"solver": "nonsmooth"}
 
 
 def _told(given: dict[str, Any]) -> str:

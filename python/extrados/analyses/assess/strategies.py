@@ -16,12 +16,13 @@ from extrados.model.structures.plan import Plan
 from extrados.motions.tables import Compatible
 from extrados.results import validity
 from extrados.schema.constants import GRAVITY
+from extrados.schema.quantities import engineering
 from extrados.views.building import Building
 
 #: Shares of the budget that a strategy may take
 SHARES = {"probability": 0.15, "sla": 0.2, "push-x": 0.3, "push-y": 0.3, "dem": 0.15}
 #: What of the budget is left to learn more where strategies differ or a margin is thin
-REFINING = 0.5
+REFINING = 0.3
 #: Factors on the hazard that rocking is tried at, and those of a set, whose motions are many
 LEVELS = [round(float(v), 4) for v in np.geomspace(0.25, 4.0, 33)]
 LEVELS_OF_A_SET = [0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0, 3.0]
@@ -297,14 +298,18 @@ def _dem(asked: Asked) -> Choice:
         stiffness = least
     elif stiffness < least:
         raise LeftOut(
-            _too_long(seconds(factor), share, f"even with joints of {least:.2g} Pa/m, the least that is stiff enough")
+            _too_long(
+                seconds(factor),
+                share,
+                f"even with joints of {engineering(least, 'Pa/m')}, the least that is stiff enough",
+            )
         )
     taken = max(share, seconds(factor)) if stiffness == least else share
     stiffness = float(f"{stiffness:.1e}")
     keys["joints"] = {"normal_stiffness": stiffness}
     return Choice(
-        keys, f"{words}; joints of {stiffness:.2g} Pa/m, the stiffest that fit into {100 * SHARES['dem']:g} % of the budget (E over "
-        f"the stones' length gives {float(np.median(values.stiffness)):.2g}; {least:.1g} would do)",
+        keys, f"{words}; joints of {engineering(stiffness, 'Pa/m')}, the stiffest that fit into {100 * SHARES['dem']:g} % of the budget (E over "
+        f"the stones' length gives {engineering(float(np.median(values.stiffness)), 'Pa/m')}; {engineering(least, 'Pa/m')} would do)",
         taken,
     )  # fmt: skip
 

@@ -31,8 +31,8 @@ class Assess(Analysis):
     bears: ClassVar = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
     starter: ClassVar = {"budget": "20"}
     budget: float = key(
-        90.0, "time limit, in s on two cores of 2024: sizes of the costly strategies follow from counted work. A strategy "
-        "that still runs after twice this time is stopped and reported", ge=5, le=1e6,
+        60.0, "time limit, in s: sizes of the costly strategies follow from counted work on one core of 2024. Steps that still run "
+        "after this time are stopped and reported", ge=5, le=1e6,
     )  # fmt: skip
     strategies: list[Strategy] = key(
         list(STRATEGIES), "strategies that are run, where they apply; `probability` is `fragility` with uncertain sizes, or with the motions of a set; `push-x` and `push-y` are `pushover`, `frame` is `frame-pushover` of a building on a plan", min_length=1, max_length=len(STRATEGIES),

@@ -2,6 +2,7 @@
 
 from extrados.analyses.assess.reasons import Facts, Pair
 from extrados.results.assess import Overall, Reason, StrategyVerdict, TurningValue
+from extrados.results.verdict import Outcome, outcome_words
 
 _HEAD = ("strategy", "verdict", "demand", "capacity", "unit", "margin")
 
@@ -16,7 +17,7 @@ def _cells(row: StrategyVerdict) -> tuple[str, ...]:
     unit = {"probability": "of all"}.get(row.unit, row.unit)
     if not unit and row.axis == "displacement":
         unit = "of the critical rotation"
-    return row.label, row.outcome, number(row.demand), number(row.capacity), unit, row.margin_told()
+    return row.label, row.verdict_words, number(row.demand), number(row.capacity), unit, row.margin_told()
 
 
 def table_of(rows: list[StrategyVerdict]) -> str:
@@ -49,8 +50,23 @@ def conclusion(
     """The overall answer, and its statement: which strategies say what, why they differ, and the least margin."""
     groups: dict[str, list[str]] = {}
     for name in facts.judged():
-        groups.setdefault(facts.outcome(name), []).append(facts.rows[name].label)
+        groups.setdefault(facts.outcome(name), []).append(name)
     stands, collapses, left, proven = (groups.get(o, []) for o in ("stands", "collapses", "open", "cannot-stand"))
+
+    def labels(names: list[str]) -> str:
+        return _list([facts.rows[n].label for n in names])
+
+    def verdict(names: list[str], outcome: Outcome, under: bool = False) -> str:
+        """Of the building by strategies that analyse it, of the checks of codes as such."""
+        checks = [n for n in names if facts.rows[n].axis == "check"]
+        others = [facts.rows[n].label for n in names if n not in checks]
+        told = [f"{outcome} {f'under {_count(others)}' if under else f'by {_list(others)}'}"] if others else []
+        if others:
+            told[0] = f"the {word} {told[0]}"
+        if checks:
+            told.append(f"the check by {labels(checks)} is {outcome_words(outcome, True)}")
+        return " and ".join(told)
+
     said: list[str] = []
     overall: Overall
     if proven:
@@ -59,31 +75,29 @@ def conclusion(
         said.append(f"The {word} cannot stand: collapse under self-weight is proved by {first.label}.")
         if others := proven[1:]:
             said.append(
-                f"The conclusion of {_list(others)} is the same. Strategies share this proof, which counts once."
+                f"The conclusion of {labels(others)} is the same. Strategies share this proof, which counts once."
             )
         said.append(first.statement)
         if stands:
-            said.append(f"The proof overrules the opposite result of {_list(stands)}.")
+            said.append(f"The proof overrules the opposite result of {labels(stands)}.")
     elif not stands and not collapses and not left:
         overall = "open"
         said.append(f"No strategy has a verdict on the {word} under this hazard.")
     elif not collapses and not left:
         overall = "stands under all"
-        said.append(f"The {word} stands under {_count(stands)}.")
+        said.append(f"{_upper(verdict(stands, 'stands', True))}.")
     elif not stands and not left:
         overall = "collapses under all"
-        said.append(f"The {word} collapses under {_count(collapses)}.")
+        said.append(f"{_upper(verdict(collapses, 'collapses', True))}.")
     elif stands and collapses:
         overall = "depends"
-        said.append(
-            f"The strategies disagree: the {word} collapses by {_list(collapses)}, and stands by {_list(stands)}."
-        )
+        said.append(f"The strategies disagree: {verdict(collapses, 'collapses')}; {verdict(stands, 'stands')}.")
     else:
         overall = "open"
         if stands or collapses:
-            said.append(f"The {word} {'stands' if stands else 'collapses'} by {_list(stands or collapses)}.")
+            said.append(f"{_upper(verdict(stands or collapses, 'stands' if stands else 'collapses'))}.")
     if left:
-        said.append(f"The outcome stays open by {_list(left)}.")
+        said.append(f"The outcome stays open by {labels(left)}.")
     decisive = [one for one in reasons if any(facts.relation(*p) in ("disagree", "open") for p in one.explains)]  # type: ignore[misc]
     if decisive:
         said.append(f"The difference comes from {_list(list(dict.fromkeys(one.headline for one in decisive)))}.")
@@ -109,6 +123,10 @@ def _capacity(row: StrategyVerdict) -> str:
     bound = {"upper": "at most ", "lower": "at least "}.get(row.bound or "", "")
     value, unit = (row.capacity or 0.0, row.unit)
     return f"{bound}{value / 1e3:.3g} kN" if unit == "N" else f"{bound}{value:.3g} {unit}"
+
+
+def _upper(text: str) -> str:
+    return f"{text[:1].upper()}{text[1:]}"
 
 
 def _count(words: list[str]) -> str:

@@ -155,7 +155,8 @@ class HorizontalBending:
     """A strip of wall of length L and thickness t [m] between side walls that resist its thrust with a force H [N].
 
     Two halves turn in plan about the edges at the side walls and meet at mid length at the opposite face. weight: of the strip and what
-    sways with it [N]; push: outward thrust of roofs at rest [N]. depth: compressed depth of the arch at each hinge [m].
+    sways with it [N]; push: outward thrust of roofs at rest [N]. depth: compressed depth of the arch at each hinge [m]. crushes: the side
+    walls do not move, and the strip crushes at its hinges.
     """
 
     length: float
@@ -164,6 +165,7 @@ class HorizontalBending:
     abutment: float
     push: float = 0.0
     depth: float = 0.0
+    crushes: bool = False
 
     @property
     def rise(self) -> float:
@@ -200,7 +202,10 @@ class HorizontalBending:
         return self
 
     def ultimate(self) -> float | None:
-        """Rotation [rad] at which the multiplier vanishes: without push atan(2 t/L), where the arch becomes straight."""
+        """Rotation [rad] at which the multiplier vanishes: without push atan(2 t/L), where the arch becomes straight; None for a strip
+        that crushes, whose bodies are not rigid."""
+        if self.crushes:
+            return None
         return _end(self.multiplier, float(np.arctan2(2.0 * self.rise, self.length)) * 1.001)
 
 

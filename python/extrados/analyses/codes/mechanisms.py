@@ -16,7 +16,7 @@ NEEDS = {
     "facade": ("height", "thickness"), "corner": ("height", "thickness", "crack_angle"), "gable": ("height", "thickness", "width"),
     "parapet": ("height", "thickness"), "wall": ("height", "thickness"), "tower": ("height", "thickness"),
     "chimney": ("height", "thickness"), "vertical-bending": ("height", "thickness"),
-    "horizontal-bending": ("height", "thickness", "width", "abutment_force"),
+    "horizontal-bending": ("height", "thickness", "width"),
 }  # fmt: skip
 #: Keys of some mechanisms alone, with those that use them
 ONLY = {
@@ -57,7 +57,19 @@ def _bending(options: LocalMechanism, density: float, strength: float | None) ->
             height, thickness, width, weight, load, moment / load if load else 0.5 * thickness, strength
         )
     sway = sum(f.load * f.sways + f.pushing for f in options.floors)
-    thrust, force = sum(f.thrust for f in options.floors), float(options.abutment_force or 0.0)
+    thrust = sum(f.thrust for f in options.floors)
+    if options.abutment_force is None:
+        if strength is None:
+            raise Refused(
+                "horizontal bending needs abutment_force, the force that each side wall resists, or between side walls that do not move the "
+                "compressive_strength of [material], which then limits the thrust",
+                ("analysis",),
+            )
+        # H (t - a) with H = f h a is greatest at a = t/2
+        return HorizontalBending(
+            width, thickness, weight + sway, 0.5 * strength * height * thickness, thrust, 0.5 * thickness, crushes=True
+        )
+    force = float(options.abutment_force)
     depth = 0.0 if strength is None else force / (strength * height)
     if depth >= 0.5 * thickness:
         raise Refused(

@@ -229,7 +229,8 @@ class LocalMechanism(BuildingAnalysis):
     wings: list[Wing] = key([], "further parts of a facade that overturn with it", max_length=20)
     abutment_force: Force | None = key(
         None,
-        "of horizontal bending: force H that each side wall, or its tie, resists against the thrust of the strip",
+        "of horizontal bending: force H that each side wall, or its tie, resists against the thrust of the strip; default side walls that "
+        "do not move, such as those that further walls flank: the strip crushes by [material] compressive_strength",
         gt=0,
     )
     interlocking: Interlocking | None = key(

@@ -9,6 +9,7 @@ from extrados.analyses.dem.from_deck import make_model
 from extrados.analyses.dem.tables import DemParameters
 from extrados.results import dem as out
 from extrados.results.model import Array, Result, TableData
+from extrados.schema.quantities import engineering
 
 
 def run(context: Context, options: DemParameters) -> Result:
@@ -53,7 +54,7 @@ def run(context: Context, options: DemParameters) -> Result:
         if name != "joint"
     }
     result.answer = (
-        f"Joints of {v.stiffness.min():.3g} to {v.stiffness.max():.3g} Pa/m; impact frequencies up to {v.impact.rotation.max():.4g} "
+        f"Joints of {engineering(v.stiffness.min(), 'Pa/m')} to {engineering(v.stiffness.max(), 'Pa/m')}; impact frequencies up to {v.impact.rotation.max():.4g} "
         f"(rotation), {v.impact.corner.max():.4g} (corner) and {v.impact.edge.max():.4g} rad/s (edge). beta = {v.beta:.4g} s gives "
         f"{100 * ratios['rotation']:.3g} %, {100 * ratios['corner']:.3g} % and {100 * ratios['edge']:.3g} % of critical damping at the "
         f"least. Advice: at least 10 % at rotational and 25 % at edge impact; start from 100 % at edge impact "

@@ -45,9 +45,6 @@ def loads_of(assembly: Assembly, options: Any, building: Building) -> Loads:
     """Weight, fill, the loads of an analysis and the ties of a building, on its stones, which `assembly` may vary; what
     sways is the weight, the fill and the loads that say so."""
     loads = tilt_loads(assembly)
-    if building.ties:
-        held = frozenset(building.anchored().block.ravel().tolist()) - {GROUND}
-        loads = replace(loads, resistance=together(loads.resistance, ties_of(building, loads.scale)), tied=held)
     dead, live = np.zeros_like(loads.dead), np.zeros_like(loads.live)
     for k, load in enumerate(getattr(options, "load", [])):
         spreads = assembly.earth is not None and load.y is None and load.force != 0.0
@@ -61,7 +58,11 @@ def loads_of(assembly: Assembly, options: Any, building: Building) -> Loads:
             dead += forces_at(len(dead), block, point, (share * load.horizontal, down))
             if load.sways:
                 live += forces_at(len(live), block, point, (share * load.force, 0.0))
-    return replace(loads, dead=loads.dead + dead, live=loads.live + live)
+    loads = replace(loads, dead=loads.dead + dead, live=loads.live + live)
+    if building.ties:  # their shares are of the whole load
+        held = frozenset(building.anchored().block.ravel().tolist()) - {GROUND}
+        loads = replace(loads, resistance=together(loads.resistance, ties_of(building, loads.scale)), tied=held)
+    return loads
 
 
 def limit_of(building: Building, options: LimitAnalysisTable, *, forces_only: bool = False) -> LimitAnalysis:

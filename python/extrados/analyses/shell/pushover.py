@@ -38,6 +38,7 @@ from extrados.results.model import Array, Result, TableData
 from extrados.results.sla import PREFIXES
 from extrados.results.verification import Verification
 from extrados.results.vtu import pvd, vtu
+from extrados.schema.quantities import engineering
 from extrados.views.building import Building
 
 #: Part of the weight that walls across the push must take up or down to count as working flanges
@@ -362,7 +363,7 @@ def _remarks(model: ShellModel, curve: Curve) -> list[str]:
     if curve.peak >= 0 and not events.interrupted and not curve.passed(model.unit):
         said.append(
             f"the base shear{sense} had not passed a peak when the run ended by: {events.reason or 'number of events'}; "
-            f"its greatest value, {curve.force(model.unit)[curve.peak]:.4g} N, is no capacity"
+            f"its greatest value, {engineering(curve.force(model.unit)[curve.peak], 'N')}, is no capacity"
         )
     return said
 

@@ -29,6 +29,7 @@ from extrados.limit.programme import LimitAnalysis, NoAnswer
 from extrados.results import sla as out
 from extrados.results.model import Result
 from extrados.results.sla import PREFIXES
+from extrados.schema.quantities import engineering
 from extrados.views.building import Building
 
 #: States that an animation shows
@@ -186,13 +187,13 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
         if curve.peak >= 0 and not events.interrupted and not curve.passed(model.unit):
             result.warnings.append(
                 f"the load{sense} had not passed a peak when the run ended by: {events.reason or 'number of events'}; its "
-                f"greatest value, {curve.force(model.unit)[curve.peak]:.4g} N, is no capacity"
+                f"greatest value, {engineering(curve.force(model.unit)[curve.peak], 'N')}, is no capacity"
             )
         if far := out_of_reach(curve):
             result.warnings.append(far)
         if len(events) and events.load[0] < 0.0 and not curve.name:
             result.warnings.append(
-                f"the first event{sense} has a negative load, {events.load[0] * model.unit:.4g} N: the constant loads "
+                f"the first event{sense} has a negative load, {engineering(events.load[0] * model.unit, 'N')}: the constant loads "
                 "alone are beyond the strength somewhere"
             )
     result.arrays = mesh_arrays(model)

@@ -10,6 +10,7 @@ from extrados.analyses.assess.sensitivity import THICKNESS, varied
 from extrados.analyses.changes import changed
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.asked import number_of, unit_at
+from extrados.analyses.limit.tables import AppliedLoad
 from extrados.analyses.strengthen.tables import Anchorage, Change, Strengthen
 from extrados.model.errors import BadGeometry, Key
 from extrados.model.geometry.assembly import Assembly
@@ -34,6 +35,14 @@ class TieAlternative:
     places: list[Tie]
     most: float
     anchorage: Anchorage | None
+    beam_weight: float = 0.0
+
+    def loads(self, place: int) -> list[AppliedLoad]:
+        """The weight of a ring beam on the blocks at its ends."""
+        tie = self.places[place]
+        ends = [tie.start] if tie.end is None else [tie.start, tie.end]
+        half = 0.5 * self.beam_weight
+        return [AppliedLoad(x=x, y=y, force=half, sways=True) for x, y in ends] if half else []
 
     def having(self, building: Building, place: int, force: float | None) -> Building:
         """The building with the tie; force: None never yields, 0 leaves it out."""
@@ -82,7 +91,7 @@ def tie_alternatives(building: Building, options: Strengthen) -> list[TieAlterna
         return usual_ties(building)
     found = []
     for k, option in enumerate(options.ties):
-        name = option.name or f"{word_of(option)} {k + 1}"
+        name = option.name or f"{'ring beam' if option.beam_weight else word_of(option)} {k + 1}"
         count = option.places if option.start_to is not None or option.far_to is not None else 1
         shares = np.linspace(0.0, 1.0, count).tolist()
         places = [option.at(share).model_copy(update={"name": f"{name} (strengthening)"}) for share in shares]
@@ -97,7 +106,7 @@ def tie_alternatives(building: Building, options: Strengthen) -> list[TieAlterna
                 trouble = error
         if not placed and trouble is not None:
             raise Refused(str(trouble), ("analysis", "ties", k))
-        found.append(TieAlternative(name, placed, most, option.anchorage))
+        found.append(TieAlternative(name, placed, most, option.anchorage, option.beam_weight or 0.0))
     return found
 
 

@@ -42,6 +42,7 @@ from extrados.results.assess import Assess, StrategyVerdict
 from extrados.results.model import Array, Result, TableData
 from extrados.results.statistics import OverLevels
 from extrados.schema.constants import GRAVITY
+from extrados.schema.quantities import engineering
 from extrados.views.building import Building
 
 #: Of the greatest capacity: where a tie that never yields is taken to have reached it
@@ -73,9 +74,12 @@ class _Sized:
     costs: list[float] = field(default_factory=list)
 
 
-def run(context: Context, options: Strengthen) -> Result:
-    """Sizes of all alternatives, their costs and adverse effects, the mechanisms that govern before and after."""
-    building, measure = context.building, measure_of(context, options)
+def run(context: Context, options: Strengthen, closely: bool = True) -> Result:
+    """Sizes of all alternatives, their costs and adverse effects, the mechanisms that govern before and after.
+
+    closely: False takes the upper bound by dilatant friction where pressed joints slide, in a fraction of the time.
+    """
+    building, measure = context.building, measure_of(context, options, closely)
     result = Result("strengthen")
     before = (
         measure.of(building, picture=True) if isinstance(measure, Statics) else measure.of_data(plain_data(context))
@@ -166,9 +170,10 @@ class _Work:
 
     def _tie_by_programme(self, one: TieAlternative, statics: Statics) -> _Sized:
         target = statics.aimed
-        forces = [statics.force(one, place, target) for place in range(len(one.places))]
+        forces = [statics.carrying(one, place).force(one, place, target) for place in range(len(one.places))]
         costs = [self._cost(_length(tie), f, 0.0) for tie, f in zip(one.places, forces, strict=True)]
         place = int(np.argmin(costs)) if np.isfinite(costs).any() else self._strongest(one, statics)
+        statics = statics.carrying(one, place)
         required = forces[place] if np.isfinite(forces[place]) else None
         worth, bound_by_friction = None, False
         no_result = ""
@@ -192,12 +197,16 @@ class _Work:
             reason = "the upper bound (dilatant friction) meets the target; the state without dilatancy does not"
         curve = ([], []) if points is None else _polyline(points)
         row = self._row(
-            name=one.name, kind=word_of(tie), place=_placed(tie), unit="N", required=required, greatest=greatest,
+            name=one.name, kind="ring-beam" if one.beam_weight else word_of(tie), place=_placed(tie), unit="N", required=required, greatest=greatest,
             worth=worth, ranges=ranges, length=_length(tie), force=required or 0.0, volume=0.0, reason=reason,
             tie=tie, stiffness=one.stiffness(place, required or 0.0), anchorage=one.anchorage,
         )  # fmt: skip
+        if one.beam_weight:
+            told = f"The ring beam weighs {engineering(one.beam_weight, 'N')}, with its force for limit analysis alone: other strategies are not run with it."
+            row = row.model_copy(update={"adverse": [*row.adverse, told]})
         middles = [(0.5 * (t.start[0] + t.far[0]), 0.5 * (t.start[1] + t.far[1])) for t in one.places]
-        data = None if required is None else one.data(plain_data(self.context), place, required)
+        # a deck holds loads in tables of analyses, so that no other strategy considers the beam
+        data = None if required is None or one.beam_weight else one.data(plain_data(self.context), place, required)
         sized = _Sized(row, curve, None, data, worth, tie)
         if len(one.places) > 1:
             sized.places = ([m[0] for m in middles], [m[1] for m in middles], forces)
@@ -236,7 +245,7 @@ class _Work:
         found = []
         for place in range(len(one.places)):
             limit = None if np.isinf(one.most) else one.most
-            value = statics.of(one.having(self.context.building, place, limit)).value
+            value = statics.carrying(one, place).of(one.having(self.context.building, place, limit)).value
             found.append(-np.inf if value is None else value)
         return int(np.argmax(found))
 
@@ -277,7 +286,7 @@ class _Work:
 
     def _unlimited(self, one: TieAlternative, place: int, statics: Statics) -> float | None:
         """The capacity with a tie that never yields, with dilatant friction; None where it leaves no mechanism."""
-        limit = limit_of(one.having(self.context.building, place, None), self.options)
+        limit = limit_of(one.having(self.context.building, place, None), statics.options)
         values = []
         for sense in statics.senses:
             try:
@@ -511,7 +520,9 @@ class _Work:
         """The combination of all ties at all places whose forces have the least sum, in one programme; nothing where one tie is enough."""
         statics = self.measure
         assert isinstance(statics, Statics)
-        columns = [(one, place) for one in ties for place in range(len(one.places))]
+        columns = [(one, place) for one in ties if not one.beam_weight for place in range(len(one.places))]
+        if len({one.name for one, _ in columns}) < 2:
+            return {}
         try:
             forces = statics.forces(columns, statics.aimed)
         except NoEquilibrium:

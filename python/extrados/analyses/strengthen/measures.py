@@ -32,6 +32,8 @@ MOST_NAMED = 6
 #: Keys of an analysis that limit analysis takes from this table
 OWN = ("friction_rule", "starts", "load", "material", "joints", "supports", "initial")
 Bound = Literal["exact", "upper"]
+#: Analyses of a motion, whose open outcome meets no target
+DYNAMIC = ("rocking", "dem")
 
 
 @dataclass(frozen=True)
@@ -57,8 +59,8 @@ class Statics:
 
     higher_is_safer = True
 
-    def __init__(self, context: Context, options: Strengthen):
-        self.context, self.options = context, options
+    def __init__(self, context: Context, options: Strengthen, closely: bool = True):
+        self.context, self.options, self.closely = context, options, closely
         wall = context.building.supports.abutting_wall
         given = {"both": (1, -1), "+x": (1,), "-x": (-1,)}[options.direction]
         self.senses = tuple(s for s in given if {"left": -1, "right": 1}.get(wall or "") != s)
@@ -80,7 +82,9 @@ class Statics:
             try:
                 state, mechanism = limit.collapse(sense)
                 value = sense * state.gamma
-                value, bound = self._least(limit, mechanism, sense, value, picture or value >= self.target)
+                value, bound = self._least(
+                    limit, mechanism, sense, value, self.closely and (picture or value >= self.target)
+                )
             except Immovable as error:
                 values.append(np.inf)
                 told.append(f"none to {_word(sense)}: {error}")
@@ -154,6 +158,13 @@ class Statics:
         except DeckError as error:
             return Worth(None, reason="; ".join(error.complaints))
         return self.of(deck.buildings[0], picture)
+
+    def carrying(self, one: TieAlternative, place: int) -> "Statics":
+        """Itself with the weight of a ring beam among the loads."""
+        if not (loads := one.loads(place)):
+            return self
+        options = self.options.model_copy(update={"load": [*self.options.load, *loads]})
+        return Statics(self.context, options, self.closely)
 
     def point(self, one: TieAlternative, place: int, force: float) -> Point:
         """A point of the capacity curve over the force of a tie, with dilatant friction; Immovable where nothing moves."""
@@ -263,15 +274,17 @@ class Runs:
         if verdict is None or verdict.ratio is None:
             told = "" if verdict is None else f": {verdict.statement}"
             return Worth(None, reason=f"{self.options.by} gives no safety factor{told}")
+        if verdict.outcome == "open" and self.options.by in DYNAMIC:  # one run as a sample, or a run that still moves
+            return Worth(None, reason=f"the outcome of {self.options.by} is open: {verdict.statement.rstrip('.')}")
         return Worth(verdict.ratio, verdict.statement.rstrip("."))
 
 
 Measure = Statics | Runs
 
 
-def measure_of(context: Context, options: Strengthen) -> Measure:
-    """The measure of the target."""
-    return Statics(context, options) if options.by == "tilt" else Runs(context, options)
+def measure_of(context: Context, options: Strengthen, closely: bool = True) -> Measure:
+    """The measure of the target; closely: of limit analysis also the least state without dilatancy, where pressed joints slide."""
+    return Statics(context, options, closely) if options.by == "tilt" else Runs(context, options)
 
 
 def nested(context: Context, deck: Deck) -> Context:

@@ -66,6 +66,8 @@ def _refuse_options(options: Strengthen) -> None:
 def _refuse_unlimited(options: Strengthen) -> None:
     """Refused where ties are sought by runs without a range of forces, or over a range of places."""
     for k, tie in enumerate(options.ties):
+        if tie.beam_weight is not None:
+            raise Refused('the weight of a ring beam is for by = "tilt": remove beam_weight', ("analysis", "ties", k))
         if tie.yield_force is None:
             raise Refused(
                 f'by = "{options.by}" searches the force by runs: give yield_force, the greatest one considered',

@@ -8,7 +8,7 @@ from extrados import kinds
 from extrados.analyses.limit.tables import LimitAnalysisTable
 from extrados.analyses.table import Analysis
 from extrados.model.ties import Point, Tie
-from extrados.schema.quantities import Acceleration, Length, Stress
+from extrados.schema.quantities import Acceleration, Force, Length, Stress
 from extrados.schema.table import Table, key
 
 if TYPE_CHECKING:
@@ -62,6 +62,9 @@ class TieOption(Tie):
     far_to: Point | None = key(None, "second end of the range of `end` or `ground`")
     places: int = key(9, "number of places in the range", ge=2, le=200)
     anchorage: Anchorage | None = key(None, "strengths of bar and anchorage, for their checks")
+    beam_weight: Force | None = key(
+        None, "weight of a ring beam along the tie: half of it rests on the block at each end and sways with it", gt=0
+    )
 
     @model_validator(mode="after")
     def _range(self) -> "TieOption":

@@ -71,7 +71,7 @@ export function sidebar(app, box) {
     }
     if (scene.remark) parts.push(h("p", { class: "remark" }, scene.remark));
     for (const text of scene.warnings ?? []) parts.push(h("p", { class: "remark" }, text));
-    parts.push(loads());
+    parts.push(loads(), needs());
     const focused = pages.answer.contains(document.activeElement) || pages.answer.contains(app.root.getRootNode().activeElement);
     if (!focused || !pages.answer.querySelector("input:focus")) pages.answer.replaceChildren(...parts);
   }
@@ -88,6 +88,35 @@ export function sidebar(app, box) {
       h("button", { onclick: add, disabled: !simple }, name ? tr`Add a load` : tr`Add limit analysis`),
       there.length && simple ? h("button", { onclick: () => app.change({ [`analysis.${name}.load`]: there.length > 1 ? there.slice(0, -1).map(raw) : null }) }, tr`Remove the last load`) : null,
       app.deck?.structure?.kind !== "blocks" ? h("button", { title: tr`Every stone as a block whose vertices can be dragged`, onclick: () => app.ask({ do: "blocks" }) }, tr`Free the stones`) : null);
+  }
+
+  /** What is needed for an acceleration: the least interventions, each with a button that puts it into the deck. */
+  let target = "", needed = null, asking = false;
+  const mark = () => JSON.stringify(app.scene.capacity ?? null);
+  function ask(e) {
+    e.preventDefault();
+    const value = Number(target.trim().replace(/g$/, "").replace(",", "."));
+    if (!(value > 0)) { needed = { mark: mark(), trouble: "Give an acceleration above 0, in g." }; answer(); return; }
+    asking = true;
+    e.target.querySelector("input").blur();
+    app.ask({ do: "needed", acceleration: value }, { reply: (words) => {
+      asking = false;
+      needed = { mark: mark(), ...(words.needed ?? { trouble: (words.complaints ?? [words.bad ?? ""]).join(" ") }) };
+      answer();
+    } });
+    answer();
+  }
+  function needs() {
+    const field = h("input", { type: "text", id: "needed-g", value: target, inputmode: "decimal", placeholder: "0.2", "aria-label": "Acceleration that the structure is to carry, in g", oninput: (e) => { target = e.target.value; } });
+    const form = h("form", { class: "row wrap", onsubmit: ask }, h("label", { for: "needed-g" }, "To carry "), field, " g ", h("button", { type: "submit", disabled: asking }, asking ? "Sizing…" : "What is needed"));
+    const parts = [h("h3", {}, "Strengthening"), form];
+    if (needed && needed.mark === mark()) {
+      if (needed.trouble) parts.push(h("p", { class: "remark" }, needed.trouble));
+      else parts.push(h("p", { class: "answer-text" }, needed.statement), needed.bound ? h("p", { class: "remark" }, "Joints slide: these sizes hold for dilatant friction, an upper bound of the capacity. The analysis strengthen of a deck takes the least state without dilatancy.") : null, h("ul", { class: "plain" }, needed.interventions.map((one) => h("li", { "data-intervention": one.name },
+        h("b", {}, `${capital(one.name)}: `), `${one.met ? one.size : one.reason}.`, one.met && one.next ? ` Afterwards: ${one.next}. ` : " ",
+        one.changes ? h("button", { onclick: () => app.change(one.changes) }, "Put it in") : null))));
+    }
+    return h("section", { class: "needed", "aria-label": "What is needed" }, parts);
   }
 
   // Sizes

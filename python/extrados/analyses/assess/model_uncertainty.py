@@ -1,0 +1,96 @@
+"""One probability of collapse from the agreement of each strategy with tests."""
+
+from extrados.analyses.assess.strategies import of
+from extrados.results.assess import CollapseProbability, Contribution, StrategyVerdict
+from extrados.results.uncertainty import ModelUncertainty, collapse_probability, uncertainties_of
+
+#: Quantities of the verification book that are a capacity under a horizontal load
+CAPACITIES = ("capacity in acceleration", "peak load")
+#: Strategies whose critical scale factor is a static capacity over the peak
+STATIC = "acceleration"
+
+
+def estimate_collapse(rows: list[StrategyVerdict]) -> CollapseProbability:
+    """The weighted mean of the strategies that experiments have tested; its interval encloses those of all contributions."""
+    if proven := next((row for row in rows if row.outcome == "cannot-stand"), None):
+        return CollapseProbability(
+            probability=1.0, low=1.0, high=1.0, contributions=[], without={},
+            statement="Probability of collapse 100 %: collapse under self-weight has a certificate.",
+            method=f"The certificate of {proven.label} has no model uncertainty within its assumptions.",
+        )  # fmt: skip
+    tested: list[tuple[StrategyVerdict, ModelUncertainty]] = []
+    without: dict[str, str] = {}
+    for row in rows:
+        entry = _entry(row)
+        if isinstance(entry, str):
+            without[row.strategy] = entry
+        else:
+            tested.append((row, entry))
+    total = sum(entry.count for _, entry in tested)
+    contributions = [_contribution(row, entry, entry.count / total) for row, entry in tested]
+    labels = {row.strategy: row.label for row in rows}
+    reasons: dict[str, list[str]] = {}
+    for name, reason in without.items():
+        reasons.setdefault(reason, []).append(labels[name])
+    told = "; ".join(f"{', '.join(names)} ({reason})" for reason, names in reasons.items())
+    left = f" No contribution: {told}." if told else ""
+    if not contributions:
+        return CollapseProbability(
+            probability=None, low=None, high=None, contributions=[], without=without,
+            statement="No probability of collapse is given: no strategy has both a critical scale factor and tests in the verification book.",
+            method=left.strip(),
+        )  # fmt: skip
+    p = sum(one.weight * one.probability for one in contributions)
+    low, high = min(one.low for one in contributions), max(one.high for one in contributions)
+    names = " and ".join(labels[one.strategy] for one in contributions)
+    said = f"Probability of collapse {percent(p)} (90 % confidence: {percent(low)} to {percent(high)}), from the model uncertainty of {names}."
+    if all(row.axis == STATIC for row, _ in tested):
+        said += " The peak of the hazard acts as a sustained load in this number."
+        if any(row.axis != STATIC and row.outcome == "stands" for row in rows):
+            said += " A peak that exceeds the capacity only briefly may cause no collapse."
+    each = "; ".join(
+        f"{labels[one.strategy]}: {one.count} tests, bias {one.bias:.3g}, scatter {one.scatter:.3g}, critical scale factor {one.margin:.3g}, "
+        f"probability {percent(one.probability)} ({percent(one.low)} to {percent(one.high)}), weight {one.weight:.2g}"
+        for one in contributions
+    )  # fmt: skip
+    method = (
+        "The ratio of computed to measured capacity is lognormal. Bias and scatter come from the tests of the verification book, and their "
+        "number gives the confidence interval. The weight of a strategy is its share of the tests. The interval encloses those of all "
+        f"contributions. {each}.{left}"
+    )
+    return CollapseProbability(
+        probability=p, low=low, high=high, contributions=contributions, without=without, statement=said, method=method
+    )  # fmt: skip
+
+
+def _entry(row: StrategyVerdict) -> ModelUncertainty | str:
+    """The tests of a strategy with a critical scale factor, or the reason why it contributes nothing."""
+    if row.status != "ok":
+        return "no result"
+    entries = [one for one in uncertainties_of(of(row.strategy).kind) if one.quantity in CAPACITIES]
+    if row.axis != STATIC or not entries:
+        return "no tests of its capacity in the verification book"
+    if row.violated:
+        return "assumptions that do not hold"
+    if row.margin is None:
+        return "no critical scale factor"
+    return max(entries, key=lambda one: one.count)
+
+
+def _contribution(row: StrategyVerdict, entry: ModelUncertainty, weight: float) -> Contribution:
+    margin = row.margin
+    assert margin is not None
+    p, low, high = collapse_probability(margin, entry)
+    return Contribution(
+        strategy=row.strategy, quantity=entry.quantity, count=entry.count, bias=entry.bias, scatter=entry.scatter, margin=margin,
+        probability=p, low=low, high=high, weight=weight,
+    )  # fmt: skip
+
+
+def percent(p: float) -> str:
+    """A probability in per cent; none is given as certain."""
+    if p < 0.001:
+        return "below 0.1 %"
+    if p > 0.999:
+        return "above 99.9 %"
+    return f"{100.0 * p:.2g} %" if p < 0.99 else f"{100.0 * p:.3g} %"
