@@ -13,6 +13,7 @@ from extrados.decks.words import LANGUAGES
 from extrados.model.properties import Joints, Material, Supports
 from extrados.model.structures.bridge import Abutment, Backing, Fill, Pier, Span, Surfacing
 from extrados.results.validity import validity_of
+from extrados.results.verdict import CHECKED
 from extrados.schema.code import Code
 from extrados.show import language
 from extrados.show.building import DIMENSIONS
@@ -21,6 +22,7 @@ from extrados.show.opening import OUTCOMES, TITLES
 from extrados.show.report import write_report
 from extrados.show.telling import FACTORS, GROUPS
 from extrados.show.template import ENTRIES
+from extrados.show.verification import COLUMNS
 
 OTHERS = [code for code in LANGUAGES if code != "en"]
 SHOW = Path(language.__file__).parent
@@ -41,6 +43,7 @@ def fixed() -> Iterator[str]:
     for kind in kinds.ANALYSES:
         yield from (TITLES[kind], *validity_of(kind))
     yield from (*OUTCOMES.values(), *DIMENSIONS, *FACTORS.values(), *ENTRIES.values(), *(label for label, _ in GROUPS))
+    yield from (*CHECKED.values(), *(text for text in COLUMNS if "*" not in text))
     yield from (f"The capacity is {one} bound." for one in ("an upper", "a lower"))
     for table in (Material, Joints, Supports, Code, Span, Pier, Abutment, Backing, Fill, Surfacing):
         yield from (key.replace("_", " ") for key in table.model_fields)
