@@ -85,6 +85,7 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
          "unit/test_vault_shells.py", "unit/test_shell_joints.py"),
         "shell/ or building/one-way",
     ),
+    "fortran/frame": ((), ("unit/test_frame_elements.py", "unit/test_frame_view.py", "unit/test_frame_analyses.py"), "frame/"),
     "c/quake": (("test_quake", "test_motion"), ("unit/test_motion_core.py", "unit/test_generated.py"), "motion/"),
     "c/sparse": (("test_sparse", "test_sla"), ("unit/test_sla_events.py", "unit/test_vertex.py"), "sla/"),
     "c/common": (("test_handles", "test_threads", "test_blas"), ("unit/test_border.py", "unit/test_cli.py"), "limit/oppenheim"),

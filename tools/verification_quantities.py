@@ -32,6 +32,7 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
         r"work_J$",
         r"work_gap_J",
         r"crack_energy_J",
+        r"dissipated_energy_J",
         r"work_residual",
         r"\.energy_ratio$",
     ),
