@@ -66,7 +66,7 @@ def test_good_deck() -> None:
         ("voussoirs = 7", 'voussoirs = 7\n[joints]\nrestitution = "thess"', 9, ["'energy-safe' or 'inelastic', or", "number"]),
         ("voussoirs = 7", "voussoirs = 7\n[joints]\nrestitution = 1.2", 9, ["less than or equal to 1"]),
         ("voussoirs = 7", "voussoirs = 7\n[supports]\nrebound = 0.4", 9, ["rebound needs abutting_wall"]),
-        ("voussoirs = 7", "voussoirs = 7\n[[ties]]\nstart = [1.0, 2.0, 3.0]\nground = [0, 0]", 9, ["expected at most 2, found 3"]),
+        ("voussoirs = 7", "voussoirs = 7\n[[ties]]\nstart = [1.0, 2.0, 3.0]\nground = [0, 0]", 9, ["expected as many coordinates at all points of a tie"]),
         ("radius = 10.0", "radius = 1e308", 4, ["less than or equal to 10000 m"]),
         ("embrace = 157.5", "", 2, ["embrace is missing", "angle of embrace"]),
         ('amplitude = "1.0 g"', "amplitude = 1.0", 10, ["bare number", "g"]),

@@ -15,6 +15,21 @@ RECORD = '[motion]\nkind = "record"\nfile = "offset.csv"\n'
 SUITE = '[motion]\nkind = "suite"\nfiles = ["offset.csv", "extrados:el-centro-1940"]\n'
 
 #: kind -> building, and further keys; all that take the motion of a deck, by a driver or by their verdict
+HOUSE = """[structure]
+kind = "building"
+storeys = [3.0]
+walls = [
+  { name = "front", start = [0, 0], end = [5, 0], thickness = 0.4 }, { name = "back", start = [0, 4], end = [5, 4], thickness = 0.4 },
+  { name = "left", start = [0, 0], end = [0, 4], thickness = 0.4 }, { name = "right", start = [5, 0], end = [5, 4], thickness = 0.4 },
+]
+[material]
+density = 1900
+young = 2e9
+compressive_strength = 3e6
+[joints]
+cohesion = 1e5
+friction = 0.4
+"""
 USERS = {
     "motion": ("", "periods = 10"),
     "rocking": (BLOCK, ""),
@@ -27,6 +42,7 @@ USERS = {
     "shake-table": ("", ""),
     "failure-curves": (BLOCK, ""),
     "assess": (BLOCK, "budget = 5.0"),
+    "frame-history": (HOUSE, "end_time = 0.5"),
 }
 
 

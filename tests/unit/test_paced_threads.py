@@ -17,13 +17,11 @@ from extrados.model.structures.wall import make_wall
 from extrados.running.progress import in_words
 from extrados.views.solids.supports import supports_of
 
-#: Time of a run with two threads over that with one, while other processes take all cores; 7 with threads that poll
-MOST = 2.0
 BUSY = "while True: pass"
 
 
-def wall_run(threads: int) -> tuple[dem3.Run, float]:
-    """A wall of 65 blocks for some thousand steps, and the time that takes [s]."""
+def wall_run(threads: int) -> dem3.Run:
+    """A wall of 65 blocks for some thousand steps."""
     one = make_wall(Bond(0.4, 0.2), 0.2, 1.6, [(3.0, False, [])])
     below = supports_of(one).bodies
     n = len(below)
@@ -36,25 +34,21 @@ def wall_run(threads: int) -> tuple[dem3.Run, float]:
     )  # fmt: skip
     options = dem3.Options(0.3, fraction=0.6, residual_limit=1e9, settle_steps=0, threads=threads)
     with dem3.Model(solids, options) as model, as_motion_set([STILL]) as motions:
-        begin = time.perf_counter()
-        found = model.run(motions)
-        return found, time.perf_counter() - begin
+        return model.run(motions)
 
 
-def test_waiting_threads_take_no_core():
-    """While other processes take all cores, two threads take hardly longer than one, and give the same bits."""
+def test_threads_give_the_same_bits_on_a_busy_machine():
+    """While other processes take all cores; the bench of solids measures the time."""
     others = [subprocess.Popen([sys.executable, "-c", BUSY]) for _ in range(2 * (os.cpu_count() or 1))]
     try:
-        runs = [(threads, *wall_run(threads)) for threads in (1, 2) * 3]
+        runs = [wall_run(threads) for threads in (1, 2) * 2]
     finally:
         for other in others:
             other.kill()
             other.wait()
-    assert runs[0][1].steps > 1000
-    took = {threads: np.median([t for n, _, t in runs if n == threads]) for threads in (1, 2)}
-    assert took[2] < MOST * took[1]
+    assert runs[0].steps > 1000
     for name in ("place", "rate", "turn"):
-        assert len({getattr(run, name).tobytes() for _, run, _ in runs}) == 1
+        assert len({getattr(run, name).tobytes() for run in runs}) == 1
 
 
 @pytest.mark.parametrize(

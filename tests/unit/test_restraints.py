@@ -254,7 +254,7 @@ def test_what_a_strategy_cannot_honour_is_refused_by_name() -> None:
     ((status, reason),) = told(
         "[[ties]]\nstart = [-0.3, 5.0]\nstart_stone = 'block'\nground = [-3.0, 5.0]\nyield_force = 10.0\n" + DECK
     )
-    assert status == "refused" and "needs its stiffness" in reason
+    assert status == "refused" and "requires its stiffness" in reason
 
 
 def test_wrong_dampers_and_hinges_are_told_with_their_line() -> None:

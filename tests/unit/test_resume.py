@@ -426,7 +426,7 @@ def test_an_interrupted_run_of_discrete_elements_goes_on_where_it_was(kind: str,
             calls._ask()
 
     (found,) = run_analyses(Context(deck, out=out, progress=stop))
-    assert found.status == "interrupted" and "--resume goes on from here" in found.reason
+    assert found.status == "interrupted" and "--resume continues from here" in found.reason
     assert 0.0 < told[0] < told[1] < 1.0
     again: list[float] = []
     context = Context(deck, out=out, resume=True, progress=lambda done, total, text: again.append(done / total))
