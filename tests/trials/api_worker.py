@@ -376,7 +376,7 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
         (followed, dict(
             xy=BOX, held=[(0, 0), (0, 1), (1, 0), (1, 1)], connect=np.array([[0, 1, 2, 3]]), thickness=0.2, young=1e9, nu=0.2, band=0.5,
             strength=1e5, energy=50.0, reference=push, longest=1e-4, least=1e-2, unit=1.0, before=np.zeros((4, 2)),
-            histories=np.zeros((2, 4)), room=4, watch=np.array([2]), way=np.array([0]), share=np.array([1.0]), load=1e9,
+            histories=np.zeros((sla.HISTORIES, 4)), room=4, watch=np.array([2]), way=np.array([0]), share=np.array([1.0]), load=1e9,
         )),
         (plates, dict(
             xyz=np.column_stack([BOX[:, 0], np.zeros(4), BOX[:, 1]]), held=[(n, d) for n in (0, 1) for d in range(6)] + [(2, 5), (3, 5)],

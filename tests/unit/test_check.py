@@ -241,9 +241,9 @@ WRONG = {
         "needs a buttress", ARCH + '[[analysis]]\nkind = "sweep"\nvary = "thickness"\nstart = 1\nstop = 2\nbuttress_alone = true # here\n',
     ),
     "ties in space": (
-        "tilt of solids", ARCH + TIE.replace("[[ties]]", "[[ties]] # here") + TILT + "direction = 10\n",
+        "need [x, y, z] of each point", ARCH + TIE.replace("3.0]", "3.0] # here") + TILT + "direction = 10\n",
     ),
-    "loads in space": ("tilt of solids", ARCH + TILT + "direction = 10\n[[analysis.load]] # here\nx = 0.0\nforce = 1e3\n"),
+    "loads in space": ("acts at a point", ARCH + TILT + "direction = 10\n[[analysis.load]] # here\nx = 0.0\nforce = 1e3\n"),
     "crushing in space": (
         "tilt of solids", ARCH + '[material]\ncompressive_strength = "5 MPa" # here\n' + TILT + "direction = 10\n",
     ),

@@ -72,7 +72,7 @@ class FramePush(ResultModel):
         "least of that and of those at which all piers of a storey of a wall are at their drift limit; null: not reached",
         "m",
     )
-    stiffness_N_per_m: float = fact("secant at a tenth of the greatest base shear", "N/m")
+    stiffness_N_m: float = fact("secant at a tenth of the greatest base shear", "N/m")
     period_s: float = fact("of the mode of greatest participating mass in the direction", "s")
     equivalent_mass_kg: float = fact("m*: sum of masses times that shape, 1 at the control displacement", "kg")
     participation_factor: float = fact("Gamma: m* over the sum of masses times the squared shape")

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from extrados.results.store import Stored
+from extrados.schema.text import printable
 from extrados.show import style
 from extrados.show.language import Language
 from extrados.show.limit.section import FILL, HATCH, PAVED
@@ -235,7 +236,7 @@ def _section(deck: dict[str, Any], drawing: dict[str, Any], folder: Path, words:
 
 
 def _titled(deck: dict[str, Any]) -> str:
-    return str(deck.get("title") or Path(deck["path"]).stem or "extrados")
+    return printable(str(deck.get("title") or Path(deck["path"]).stem or "extrados"))
 
 
 def _blocks(words: Language, count: int) -> str:

@@ -164,7 +164,7 @@ def _row(frame: EquivalentFrame, push: Push, path: Path) -> dict[str, Any]:
         "eccentricity": float(push.eccentricity), "stop": path.stop, "control_displacement_m": moved, "base_shear_N": shear,
         "peak_base_shear_N": float(shear[peak]), "displacement_at_peak_m": float(moved[peak]), "drop_displacement_m": drop,
         "ultimate_displacement_m": ultimate,
-        "stiffness_N_per_m": float(elastic / np.interp(elastic, shear[: peak + 1], moved[: peak + 1])),
+        "stiffness_N_m": float(elastic / np.interp(elastic, shear[: peak + 1], moved[: peak + 1])),
         "period_s": 1.0 / push.mode.frequency, "equivalent_mass_kg": own, "participation_factor": own / square,
         "level_mass_kg": [sum(one.mass for one in frame.masses if one.level == k) for k in levels],
         "level_shape": [float(frame.control(push.way, k) @ shape) for k in levels],
