@@ -24,6 +24,7 @@ from extrados.core import (
     dem,
     dem3,
     dem_run,
+    frame,
     limit,
     mechanism,
     motion,
@@ -82,6 +83,21 @@ def followed(xy, held, connect, thickness, young, nu, band, strength, energy, re
         model.go_on(before, histories)
         events = model.run(room, [sla.Monitor(watch, way, share)], sla.Stop(load=load))
         return events.load, model.histories()
+
+
+def framed(freedoms, length, depth, young, shear, strength, law, cohesion, drift, sections, stiffness, linear, weight, mass, pattern,
+           control, target, steps, most, unit, acceleration, step, damping, strain, past) -> Any:  # fmt: skip
+    """A pier on its ground with an elastic link at its top: at rest, pushed, and moved."""
+    section = frame.section_forces((depth, 0.3, young, strength, 1e-9), strain, past)
+    pier = frame.MacroElement(
+        tuple(freedoms), length, depth, 0.3, young, shear, strength, shear=law, cohesion=cohesion, friction=0.4,
+        drifts=(drift, drift), sections=sections,
+    )  # fmt: skip
+    with frame.Frame([pier], [frame.Link((0,), (1.0,), stiffness)], linear, weight, mass) as whole:
+        rest = whole.at_rest()
+        pushed = whole.push(pattern, control, target, steps, 0.5, most)
+        moved = whole.move(unit, acceleration, step, tuple(damping))
+    return *section, *rest, pushed.displacement, pushed.multiple, moved.displacement, moved.shear
 
 
 def plates(xyz, held, connect, thickness, young, nu, band, strength, energy, layers, through, bends, reference, room, watch,
@@ -377,6 +393,13 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
             xy=BOX, held=[(0, 0), (0, 1), (1, 0), (1, 1)], connect=np.array([[0, 1, 2, 3]]), thickness=0.2, young=1e9, nu=0.2, band=0.5,
             strength=1e5, energy=50.0, reference=push, longest=1e-4, least=1e-2, unit=1.0, before=np.zeros((4, 2)),
             histories=np.zeros((sla.HISTORIES, 4)), room=4, watch=np.array([2]), way=np.array([0]), share=np.array([1.0]), load=1e9,
+        )),
+        (framed, dict(
+            freedoms=np.array([-1, -1, -1, 0, 1, 2]), length=3.0, depth=1.5, young=1.5e9, shear=4e7, strength=3e6, law="mohr-coulomb",
+            cohesion=1e5, drift=5e-3, sections=5, stiffness=1e6, linear=np.zeros((3, 3)), weight=np.array([0.0, -2e5, 0.0]),
+            mass=np.diag([2e4, 2e4, 1e4]), pattern=np.array([1.0, 0.0, 0.0]), control=np.array([1.0, 0.0, 0.0]), target=0.02,
+            steps=20, most=100, unit=np.array([1.0, 0.0, 0.0]), acceleration=np.sin(np.arange(20.0)), step=0.01,
+            damping=np.array([0.5, 1e-3]), strain=np.array([1e-4, 1e-4]), past=np.array([1.0, 1.0, 0.0, 0.0]),
         )),
         (plates, dict(
             xyz=np.column_stack([BOX[:, 0], np.zeros(4), BOX[:, 1]]), held=[(n, d) for n in (0, 1) for d in range(6)] + [(2, 5), (3, 5)],
