@@ -82,5 +82,7 @@ def make_stub(package: Path) -> str:
 
 if __name__ == "__main__":
     source, out = map(Path, sys.argv[1:])
+    # the finder of an earlier editable installation would build again, which is what runs here
+    sys.meta_path = [finder for finder in sys.meta_path if type(finder).__module__ != "_extrados_editable_loader"]
     sys.path.insert(0, str(source.parent))
     out.write_text(make_stub(source), encoding="utf-8")
