@@ -49,14 +49,15 @@ def opening(run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | 
 
 
 def leading(run: Stored) -> dict[str, Any] | None:
-    """The analysis by which the report concludes: an assessment, else the gravest verdict, of these the least ratio; None without any."""
+    """The analysis by which the report concludes: an assessment, else the gravest verdict, of these the least ratio, then one
+    with a capacity; None without any."""
     judged = [a for a in run.analyses if a["verdict"]]
     whole = [a for a in judged if a["kind"] == "assess"]
     order = list(OUTCOMES)
 
-    def gravity(a: dict[str, Any]) -> tuple[int, float]:
-        ratio = a["verdict"]["ratio"]
-        return order.index(a["verdict"]["outcome"]), float("inf") if ratio is None else ratio
+    def gravity(a: dict[str, Any]) -> tuple[int, float, bool]:
+        v = a["verdict"]
+        return order.index(v["outcome"]), float("inf") if v["ratio"] is None else v["ratio"], v["capacity"] is None
 
     return min(whole or judged, key=gravity, default=None)
 
