@@ -8,7 +8,6 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
-from scipy.interpolate import CubicSpline
 
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import GROUND, Assembly
@@ -196,6 +195,8 @@ def intrados(span: Span) -> tuple[np.ndarray, np.ndarray]:
 
 def _surveyed(points: np.ndarray, share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """A cubic spline through measured points, by the length along them; the joints are normal to it."""
+    from scipy.interpolate import CubicSpline
+
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
     curve = CubicSpline(along, points - (0.5 * (points[0, 0] + points[-1, 0]), 0.0))
     fine = np.linspace(0.0, along[-1], FINE)
