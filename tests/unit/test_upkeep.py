@@ -3,6 +3,7 @@
 import importlib.util
 import re
 import subprocess
+import sys
 import tomllib
 from pathlib import Path
 from types import ModuleType
@@ -165,3 +166,28 @@ def test_an_installed_copy_tells_the_commit_that_it_was_built_from(
         provenance, "__file__", str(tmp_path / "site-packages" / "extrados" / "running" / "provenance.py")
     )
     assert provenance.provenance()["commit"] == "abc1234"
+
+
+def test_the_stub_is_made_with_what_the_build_requires(tmp_path: Path) -> None:
+    """numpy and pydantic: the libraries of the program are not there as it is built."""
+    absent = (
+        "scipy",
+        "pint",
+        "matplotlib",
+        "h5py",
+        "rich",
+        "typer",
+        "ezdxf",
+        "jinja2",
+        "typst",
+        "highspy",
+        "clarabel",
+        "dask",
+    )
+    code = (
+        f"import runpy, sys; sys.modules.update(dict.fromkeys({absent})); sys.argv[1:] = {[str(ROOT / 'python/extrados'), str(tmp_path / 'x.pyi')]}; "
+        f"runpy.run_path({str(ROOT / 'python/make_stub.py')!r}, run_name='__main__')"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert "class Arch:" in (tmp_path / "x.pyi").read_text(encoding="utf-8")
