@@ -192,7 +192,7 @@ def test_the_template_of_an_office_orders_and_chooses(folder: Path, tmp_path: Pa
         "St Martin",
         "A. Mason",
     ):
-        assert words in text, words
+        assert "".join(words.split()) in "".join(text.split()), words  # older readers part words
     assert [one["/Title"] for one in reader.outline] == ["1 Limiti di validità", "2 Esito"], (
         "the order and choice of the office"
     )
