@@ -169,7 +169,7 @@ contains
 
    !> Forces and tangent of a pier: Newton's method on the strains of its sections, N, the moments, and the slip.
    !>
-   !> Strains are eliminated: F dq + a ds = what is missing of the deformation, F the flexibility. The strains minimise
+   !> Strains are eliminated: F dq + a ds = deformation not yet reached, F the flexibility. The strains minimise
    !> a convex energy, so a step goes back until it no longer overshoots.
    pure subroutine pier_forces(element, past, v, lagged, state, stiffness, status)
       type(macro_element), intent(in) :: element

@@ -123,7 +123,7 @@ def widget(deck: "str | Path | dict[str, Any] | Deck | None" = None, *, height: 
     """The interactive page as a widget of a notebook (needs anywidget: pip install "extrados[notebook]"), `height` in pixels.
 
     deck: as `run` takes it, default a new arch. `widget(...).deck` is the text of the deck as it stands in the page. DeckError
-    lists what is wrong with a dictionary; the page itself shows what is wrong with a file.
+    lists the errors of a dictionary; the page itself shows the errors of a file.
     """
     from extrados.explore.widget import Page
 

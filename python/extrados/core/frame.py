@@ -144,7 +144,7 @@ class Frame(Owner):
         check(_core.api_frame.loads(handle, *own), "loads of a frame")
 
     def at_rest(self) -> Rest:
-        """Equilibrium under the weight; CoreError where there is none."""
+        """Equilibrium under the weight; CoreError without one."""
         displacement, force, tangent, status = _core.api_frame.at_rest(self.handle, self.n, self.count)
         check(status, "equilibrium under the weight")
         return Rest(displacement, force.T, tangent)

@@ -183,7 +183,7 @@ def capacity_spectrum_factors(
 
 
 def capacity_spectrum_displacement(curve: CapacityCurve, spectrum: Spectrum, quality: float) -> float | None:
-    """Displacement demand d* [m] by the capacity spectrum: the first performance point; None where there is none before
+    """Displacement demand d* [m] by the capacity spectrum: the first performance point; None without one before
     collapse."""
     d, factor = capacity_spectrum_factors(curve, spectrum, quality)
     reached = np.flatnonzero(factor >= 1.0)

@@ -29,7 +29,7 @@ class Mode:
 
 
 def rest_of(frame: EquivalentFrame, core: Frame) -> Rest:
-    """Equilibrium under the weight; Refused where there is none."""
+    """Equilibrium under the weight; Refused without one."""
     try:
         return core.at_rest()
     except CoreError as error:

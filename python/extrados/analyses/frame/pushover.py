@@ -1,4 +1,4 @@
-"""frame-pushover: all pushes that a code asks for of a building as a frame of macro-elements, at once."""
+"""frame-pushover: all pushover analyses that a code requires of a building as a frame of macro-elements."""
 
 import itertools
 from collections.abc import Sequence

@@ -30,7 +30,7 @@ def solid_limit(building: Building, options: Tilt) -> SolidLimit:
 
 
 def strand_rows(building: Building, limit: SolidLimit, tension: np.ndarray) -> list[TieForce]:
-    """What a state asks of each strand [N]; the segments of a bonded chain are numbered."""
+    """Tension of each strand in a state [N]; the segments of a bonded chain are numbered."""
     rows = []
     for k, (strand, force) in enumerate(zip(limit.strands, tension.tolist(), strict=True)):
         name = building.ties[strand.tie].name or ""

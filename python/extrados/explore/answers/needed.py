@@ -13,7 +13,7 @@ from extrados.explore.frames import Reply
 from extrados.explore.messages import BadMessage, Message
 from extrados.results.strengthen import Intervention, Strengthen, size_told
 
-#: Greatest acceleration that a page may ask for [g]
+#: Greatest acceleration that a page may request [g]
 MOST = 10.0
 #: Digits of a size that is written into the deck, rounded so that the target is still met
 UP = 1.0 + 1e-4

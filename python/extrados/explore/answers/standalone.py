@@ -57,7 +57,7 @@ def standalone(desk: Desk, message: Message) -> Iterator[Reply]:
 
 
 def read_words(language: str) -> dict[str, str]:
-    """The catalogue of a language of the page by its two letters; empty, which is English, where there is none."""
+    """The catalogue of a language of the page by its two letters; empty (English) without a catalogue."""
     catalogues = {path.stem: path for path in (STATIC / "words").glob("*.json")}
     return json.loads(catalogues[language].read_text("utf-8")) if language in catalogues else {}
 
