@@ -22,6 +22,7 @@ from extrados.decks.positions import Path as Key
 from extrados.decks.positions import Positions, key_lines
 from extrados.decks.toml import loads
 from extrados.decks.words import LANGUAGES, WORDS
+from extrados.model.errors import WHOLE, NoView
 from extrados.model.properties import Initial, Joints, Material, Supports
 from extrados.model.structure import Structure
 from extrados.schema import files
@@ -83,6 +84,12 @@ class Deck:
     def structure(self) -> Structure | None:
         """The geometry; None in a deck without [structure]."""
         return self.building.structure
+
+    def require_motion(self) -> Motion:
+        """The table of [motion]; NoView in a deck without it."""
+        if self.motion is None:
+            raise NoView("the deck has no [motion]", WHOLE)
+        return self.motion
 
     @property
     def identity(self) -> str:

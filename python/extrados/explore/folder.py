@@ -188,6 +188,7 @@ class Folder:
                 if line is None:
                     break
                 yield line, False
+            code: int | str
             try:
                 code = child.wait(WAITS)
             except subprocess.TimeoutExpired:

@@ -6,6 +6,7 @@ Places are those of the building's own coordinates [m]. `values` of a place are 
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -49,7 +50,7 @@ class KindHandles:
     """The handles of a kind of structure: their maker (table, blocks), and the place that stays when the sizes change
     (table, blocks) [m]; None for the origin."""
 
-    make: Callable[[Any, Assembly], Iterator[Handle]]
+    make: Callable[[Any, Any], Iterator[Handle]]
     anchor: Callable[[Any, Assembly], np.ndarray] | None = None
 
 
@@ -275,16 +276,26 @@ def _brickwork(s: Any, _: Assembly) -> Iterator[Handle]:
     yield from _openings(s.openings)
 
 
+def _width_about(middle: float, x: float, y: float) -> float:
+    """Width of what is symmetric about `middle` and ends at x."""
+    return 2.0 * (x - middle)
+
+
+def _height_above(low: float, x: float, y: float) -> float:
+    """Height of what begins at `low` and ends at y."""
+    return y - low
+
+
 def _stack(s: Any, assembly: Assembly) -> Iterator[Handle]:
     """Two blocks: of each its right side and its head."""
     for name, outline in zip(("lower", "upper"), assembly.outlines, strict=True):
         (x0, y0), (x1, y1) = outline.min(axis=0).tolist(), outline.max(axis=0).tolist()
         middle = 0.5 * (x0 + x1)
         yield _length(
-            f"{name}_width", f"Width of the {name} block", x1, 0.5 * (y0 + y1), x1 - x0, lambda x, y, m=middle: 2.0 * (x - m)
+            f"{name}_width", f"Width of the {name} block", x1, 0.5 * (y0 + y1), x1 - x0, partial(_width_about, middle)
         )  # fmt: skip
         yield _length(
-            f"{name}_height", f"Height of the {name} block", middle, y1, y1 - y0, lambda x, y, low=y0: y - low, "y"
+            f"{name}_height", f"Height of the {name} block", middle, y1, y1 - y0, partial(_height_above, y0), "y"
         )
 
 
@@ -420,12 +431,18 @@ def load_handles(loads: list[Any], name: str, surfaces: list[tuple[float, float]
                 made[f"{key}.x_end"] = value + load.x_end - load.x
             return made
 
+        def force_at(px: float, py: float, y: float = y) -> float:
+            return max((py - y) / scale, 0.0)
+
+        def force_change(value: Any, key: str = key) -> Changes:
+            return {f"{key}.force": value}
+
         yield Handle(
             f"load-{i}-x", f"Place of load{number}", "m", x, y, load.x, lambda px, py: px, place, "x", least=-math.inf
         )
         yield Handle(
             f"load-{i}-force", f"Weight of load{number}", "N", x, y + scale * load.force, load.force,
-            lambda px, py, y=y: max((py - y) / scale, 0.0), lambda value, key=key: {f"{key}.force": value}, "y",
+            force_at, force_change, "y",
         )  # fmt: skip
 
 

@@ -8,6 +8,8 @@ from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.verdict import Bound, Demand, KindResults, Outcome, Verdict, judge, judge_acceleration
 
 Side = Literal["intrados", "extrados"]
+#: Ends of any joint, of arches by their sides
+OpenSide = Literal["intrados", "extrados", "first end", "second end"]
 
 
 class JointHinge(ResultModel):
@@ -446,7 +448,7 @@ class JointOpening(ResultModel):
     joint: int = fact("number of the joint")
     name: str = fact("its name")
     opening_mm: float = fact("how far its wider end opens", "mm")
-    side: Side | Literal["first end", "second end"] = fact("end that opens more: of arches intrados or extrados")
+    side: OpenSide = fact("end that opens more: of arches intrados or extrados")
     slip_mm: float = fact("how far it slides", "mm")
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.patches import Patch, Rectangle
 
+from extrados.results.frame import FrameModes, FramePushover
 from extrados.results.store import Stored
 from extrados.show import style
 from extrados.show.verification import draw_verification
@@ -18,7 +19,7 @@ PATTERNS = {"uniform": style.THRUST, "static": style.HINGE, "modal": style.SAFE}
 
 def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Base shear over control displacement of all runs; for each direction the walls of its weakest run, at the last state."""
-    r = run[name]
+    r = run.results_of(name, FramePushover)
     angles = sorted({row.direction_deg for row in r.runs})
     made = draw_verification(run, name, folder)
     with style.figure(7.2, 3.4, 1, len(angles), sharey=True) as (fig, axes):
@@ -102,7 +103,7 @@ def _walls(run: Stored, name: str, folder: Path, state: np.ndarray, word: str, t
                     (first[int(w)] + a, low), b - a, high - low, facecolor="white", edgecolor=style.EDGE, linewidth=0.6
                 )
             )
-        for w, label in enumerate(run[name].walls):
+        for w, label in enumerate(run.results_of(name, FramePushover).walls):
             ax.text(first[w] + 0.5 * length[w], 1.01 * height[w], label, ha="center", va="bottom", fontsize=8)
         ax.set_xlim(-0.3, total + 0.3)
         ax.set_ylim(0.0, float(height.max()) * 1.1)
@@ -120,7 +121,7 @@ def _walls(run: Stored, name: str, folder: Path, state: np.ndarray, word: str, t
 
 def draw_modes(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Displacements of the masses on the plan in the first modes."""
-    r = run[name]
+    r = run.results_of(name, FrameModes)
     place, shape = run.array(name, "place"), run.array(name, "shape")
     count = min(3, len(r.modes))
     scale = 0.15 * float(np.ptp(place[:, :2], axis=0).max())

@@ -41,7 +41,9 @@ def joint_values(building: Building, rigid: bool = False) -> JointValues:
     values = JointValues(
         stiffness,
         shear,
-        *(building.joint_property(name) for name in ("friction", "cohesion", "tension")),
+        building.joint_property("friction"),
+        building.joint_property("cohesion"),
+        building.joint_property("tension"),
         beta,
         impact,
         length,

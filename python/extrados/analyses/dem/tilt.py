@@ -20,6 +20,7 @@ from extrados.core import dem
 from extrados.core.ground import Ground
 from extrados.results import dem as out
 from extrados.results.dem import HINGED_FIRST, HINGED_SECOND
+from extrados.results.limit import NamedHinge
 from extrados.results.model import Array, Result
 from extrados.schema.constants import GRAVITY
 
@@ -157,14 +158,14 @@ def capacities(
                 high[k], last[k] = middle[k], run
 
 
-def _hinged(model: Model, run: dem.Run) -> tuple[np.ndarray, np.ndarray, int, list[dict]]:
+def _hinged(model: Model, run: dem.Run) -> tuple[np.ndarray, np.ndarray, int, list[NamedHinge]]:
     """States and slips of the joints, the output where it begins to go, and the hinges there."""
     gap_p, gap_q, slip = measures.openings(model, run)
     state = measures.hinges(model, gap_p, gap_q, slip)
     begun = np.searchsorted(measures.displacements(model, run).max(axis=1), GOES * model.size)
     at = min(int(begun), len(run.time) - 1)
     rows = [
-        {"joint": int(j), "name": model.assembly.joint_names[j], "side": "intrados" if state[at, j] == HINGED_FIRST else "extrados"}
-        for j in np.flatnonzero(np.isin(state[at], (HINGED_FIRST, HINGED_SECOND)))
+        NamedHinge(joint=j, name=model.assembly.joint_names[j], side="intrados" if state[at, j] == HINGED_FIRST else "extrados")
+        for j in np.flatnonzero(np.isin(state[at], (HINGED_FIRST, HINGED_SECOND))).tolist()
     ]  # fmt: skip
     return state, slip, at, rows

@@ -17,6 +17,7 @@ def _audit(r: DemRun | SolidDemRun) -> str:
     audit = f"energy ledger closed to {100 * r.energy_residual_ratio:.2g} %"
     if r.convergence is not None:
         return f"{audit}, {solved(r.convergence)}"
+    assert r.damping_ratio_rotation is not None and r.damping_ratio_edge is not None  # joints with springs
     return (
         f"{audit}, damping {100 * r.damping_ratio_rotation:.3g} % of critical at rotational and "
         f"{100 * r.damping_ratio_edge:.3g} % at edge impact"

@@ -1,5 +1,7 @@
 """frame-history: motion of a frame of macro-elements under a ground acceleration."""
 
+from typing import Literal
+
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
@@ -52,11 +54,13 @@ def run(context: Context, options: FrameHistory) -> Result:
     for k, strip in enumerate(frame.strips):
         there = np.flatnonzero(path.state[:, k] >= STATE["failed_flexure"])
         if len(there):
-            word = "shear" if path.state[there[0], k] == STATE["failed_shear"] else "flexure"
+            word: Literal["flexure", "shear"] = (
+                "shear" if path.state[there[0], k] == STATE["failed_shear"] else "flexure"
+            )
             failed.append(
                 (
                     time[there[0]],
-                    {"element": strip.name, "mode": word, "control_displacement_m": float(moved[there[0]])},
+                    out.FailedElement(element=strip.name, mode=word, control_displacement_m=float(moved[there[0]])),
                 )
             )
     failed.sort(key=lambda row: row[0])

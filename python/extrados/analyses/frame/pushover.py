@@ -109,7 +109,7 @@ def run(context: Context, options: FramePushover) -> Result:
     peaks = [max(row["base_shear_N"]) for row in runs]
     least = int(np.argmin(peaks))
     result.results = out.FramePushover(
-        runs=runs, weight_N=frame.total_weight, moving_mass_kg=sum(m.mass for m in frame.masses), control_level=level,
+        runs=[out.FramePush(**row) for row in runs], weight_N=frame.total_weight, moving_mass_kg=sum(m.mass for m in frame.masses), control_level=level,
         control_height_m=height, base_shear_N=peaks[least], ultimate_displacement_m=runs[least]["ultimate_displacement_m"],
         governing=runs[least]["name"], failed=runs[least]["failed"], piers=frame.piers,
         spandrels=len(frame.elements) - frame.piers, walls=[wall.name for wall in frame.plan.walls], remarks=frame.remarks,

@@ -24,7 +24,7 @@ class FrameAnalysis(BuildingAnalysis):
 
     view: ClassVar = "frame"
     structures: ClassVar = tuple(kind for kind, parts in kinds.STRUCTURES.items() if isinstance(parts.frame, str))
-    uses: ClassVar = (*ELASTIC, *STRENGTHS)
+    uses: ClassVar[tuple[str, ...]] = (*ELASTIC, *STRENGTHS)
     starter_structure: ClassVar = "building"
     frame: FrameOptions = key(FrameOptions(), "piers and spandrels, [analysis.frame]")
 

@@ -17,8 +17,10 @@ from extrados.analyses.frame.tables import FramePushover
 from extrados.analyses.sla.curve import envelope
 from extrados.core.frame import Path
 from extrados.results.codes import LocalMechanism as Found
+from extrados.results.frame import FramePushover as FramePushed
 from extrados.results.frame import OutOfPlane
 from extrados.results.model import Result
+from extrados.results.verdict import SelfWeight
 from extrados.results.verification import Verification
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
@@ -49,7 +51,7 @@ def verify_frame(
     mass = frame.mass
     total = sum(one.mass for one in frame.masses)
     rows, violated, sliding = [], [], []
-    for push, path, row in zip(pushes, paths, result.results.runs, strict=True):
+    for push, path, row in zip(pushes, paths, result.of(FramePushed).runs, strict=True):
         if not path.multiple.max() > 0.0:
             violated.append(unverified(push.name))
             continue
@@ -99,7 +101,13 @@ def out_of_plane(context: Context, options: FramePushover, period: float) -> Out
         if isinstance(found, Found) and found.walls
         else ""
     )
-    statement = f"{wall}{verdict.statement}" if verdict is not None else found.statement()
+    statement = (
+        f"{wall}{verdict.statement}"
+        if verdict is not None
+        else found.statement()
+        if isinstance(found, SelfWeight)
+        else ""
+    )
     return OutOfPlane(
         factor=None if verdict is None else verdict.ratio, outcome="not-applicable" if verdict is None else verdict.outcome,
         building_period_s=period, statement=statement,

@@ -36,6 +36,7 @@ from extrados.model.geometry.chains import is_stack
 from extrados.model.geometry.earth import skyline
 from extrados.model.structure import Structure
 from extrados.results import limit as out
+from extrados.results.fields import Keys
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
@@ -214,7 +215,7 @@ def factored(assembly: Assembly, loads: Loads, factors: PartialFactors) -> Loads
 def run(context: Context, options: MovingLoad) -> Result:
     """Collapse load over place; the most dangerous place with its thrust line, zone and mechanism."""
     building, factors = context.building, options.factors
-    assembly, structure = building.blocks(), building.structure
+    assembly, structure = building.blocks(), building.require_structure()
     whole = structure.crossed == "top" and options.chain is None
     chain = None if whole else chain_of(assembly, options.chain)
     if not limit_of(building, options).stands():
@@ -255,7 +256,7 @@ def run(context: Context, options: MovingLoad) -> Result:
     state, mechanism = worst.state, worst.mechanism
     heavier = replace(assembly, mass=factors.masonry * assembly.mass)
     result = Result("moving-load")
-    asked: dict[str, object] = {}
+    asked: Keys = {}
     if options.force is not None:
         asked |= {"load_N": options.force, "safety_factor": capacity[k] / options.force}
     if train.known:

@@ -1,6 +1,7 @@
 """Ties, chains, hoops and loads of a deck on blocks in space, and the programmes of the blocks with them."""
 
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
@@ -37,7 +38,9 @@ def strand_rows(building: Building, limit: SolidLimit, tension: np.ndarray) -> l
         segments = [n for n, other in enumerate(limit.strands) if other.tie == strand.tie]
         whole = max(b for b in (strand.high, -strand.low, 0.0) if np.isfinite(b)) or float(limit.weight.sum())
         yields = force > strand.high - SLACK * whole or force < strand.low + SLACK * whole
-        state = "slack" if abs(force) < SLACK * whole else "yields" if yields else "carries"
+        state: Literal["slack", "carries", "yields"] = (
+            "slack" if abs(force) < SLACK * whole else "yields" if yields else "carries"
+        )
         if len(segments) > 1:
             name += f", segment {segments.index(k) + 1}"
         rows.append(TieForce(name=name, force_N=force, state=state))

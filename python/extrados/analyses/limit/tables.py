@@ -42,8 +42,8 @@ class AppliedLoad(Table):
 class LimitAnalysisTable(BuildingAnalysis):
     """What all questions of limit analysis ask."""
 
-    uses: ClassVar = ("material.density", "material.compressive_strength", "joints.friction")
-    bears: ClassVar = ("[[ties]]",)
+    uses: ClassVar[tuple[str, ...]] = ("material.density", "material.compressive_strength", "joints.friction")
+    bears: ClassVar[tuple[str, ...]] = ("[[ties]]",)
     friction_rule: Literal["associated", "non-associated"] = key(
         "associated",
         "associated sliding dilates (an upper bound); non-associated does not: of its many states the least is sought",
@@ -145,7 +145,7 @@ class MovingSupports(BuildingAnalysis, Animated):
 
     kind: Literal["supports"]
     beside: ClassVar = ("material.density", "joints.friction", "initial.movements")
-    bears: ClassVar = ("[[ties]]",)
+    bears: ClassVar[tuple[str, ...]] = ("[[ties]]",)
     spread: float = key(1.0, "outward movement of the right support, relative to the other component", ge=-10, le=10)
     settle: float = key(0.0, "downward movement of the right support, relative to the other component", ge=-10, le=10)
     movement: Length | None = key(

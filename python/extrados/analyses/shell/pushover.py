@@ -32,6 +32,7 @@ from extrados.analyses.sla.measures import numbers_of, out_of_reach
 from extrados.analyses.sla.stored import events_of_curve
 from extrados.core.calls import interruptible
 from extrados.core.sla import EVENT, ShellJoints, Shells
+from extrados.model.properties import Material
 from extrados.model.structures.plan import Plan
 from extrados.results import shell as out
 from extrados.results.model import Array, Result, TableData
@@ -473,7 +474,7 @@ def _variants(context: Context, options: Pushover, result: Result, numbers: dict
 def _varied(building: Building, variant: Variant) -> Building:
     """The building with other material, and of walls on a plan with other thicknesses, floors and forces."""
 
-    def material(of):
+    def material(of: Material) -> Material:
         scaled = {
             name: getattr(of, name) * factor
             for names, factor in (

@@ -69,7 +69,8 @@ def _body(desk: Desk, why: str) -> Reply:
     mesh, building = meshes[0] if meshes else (None, deck.building)
     words, arrays = bodies.seen(building, mesh) or ({}, {})
     desk.anchor = np.zeros(2)
-    handles = handles_of(deck.structure, None) if words.get("sort") == "elements" else []
+    structure = deck.structure
+    handles = handles_of(structure, None) if structure is not None and words.get("sort") == "elements" else []
     return _seen(desk, None, handles, {"empty": why, "seen": words or None, "gamma": 0.0}, arrays)
 
 
@@ -135,7 +136,7 @@ def push(desk: Desk, _: Message) -> Iterator[Reply]:
     if result.status != "ok":
         raise Refused(result.reason)
     wanted = ("mechanism_pose", "rose_direction", "rose_capacity")
-    arrays = {name: result.arrays[name].data for name in wanted if name in result.arrays}
+    arrays = {name: result.arrays[name].numbers for name in wanted if name in result.arrays}
     told = {k: v for k, v in result.results.as_json().items() if isinstance(v, int | float | str)}
     yield Reply({"push": {"answer": result.answer, "numbers": told, "warnings": result.warnings}}, arrays)
 
