@@ -420,15 +420,15 @@ def relations() -> list[str]:
     sys.path[:0] = [
         str(ROOT / "tests" / name) for name in ("properties", "trials") if str(ROOT / "tests" / name) not in sys.path
     ]
-    from test_properties import EACH
     from test_properties import RELATIONS as REGISTRY
+    from test_properties import most_of
 
     rows = [
         f"| {r.name} | {r.holds.__doc__.strip()} | {', '.join(r.asks)} | {r.within:g} | "
         f"{r.exception}{f'broken today, awaits {r.awaits}' if r.awaits else ''} |"
         for r in REGISTRY.values()
     ]
-    whole = sum(round(EACH * r.share) for r in REGISTRY.values() if not r.awaits)
+    whole = sum(most_of(r) for r in REGISTRY.values() if not r.awaits)
     return [
         RELATIONS, "",
         f"{len(REGISTRY)} relations hold between the results of different analyses of one random building, or of two buildings of which one",
