@@ -29,6 +29,7 @@ BOOK = ROOT / "docs" / "verification.md"
 PLOTS = ROOT / "docs" / "verification"
 UNCERTAINTY = ROOT / "python" / "extrados" / "results" / "model_uncertainty.csv"
 KEPT = ROOT / "build" / "verification.json"
+NOTES = ROOT / "build" / "trials"
 sys.path[:0] = [str(ROOT / "tests" / "cases"), str(ROOT / "tools")]
 
 from expectations import KINDS, LOOSE, PROOFS, Case, Row, load_cases, origin_of, origins, pick, results_of  # noqa: E402
@@ -398,8 +399,14 @@ def trials(book: str) -> list[str]:
     lines = {
         row.split(" | ")[0]: row for row in section.split("\n") if row.startswith("| ") and "looked for" not in row
     }
-    for path in sorted((ROOT / "build" / "trials").glob("*.json")):
-        r = json.loads(path.read_text(encoding="utf-8"))
+    kept = [json.loads(p.read_text(encoding="utf-8")) for p in sorted(NOTES.glob("*.json"))]
+    if asked := {
+        p.stem: json.loads(p.read_text(encoding="utf-8")) for p in sorted((NOTES / "relations").glob("*.json"))
+    }:
+        broken = [name for name, one in asked.items() if one["broken"]]
+        kept.append({"what": "random buildings that break a relation between results", "tried": sum(one["asked"] for one in asked.values()),
+                     "failures": len(broken), "notes": [f"{len(asked)} relations", *broken]})  # fmt: skip
+    for r in kept:
         row = f"| {r['what']} | {r['tried']:,} | {r['failures']} | {'; '.join(r['notes'])} |".replace("\n", " ")
         lines[row.split(" | ")[0]] = row
     if not lines:
@@ -413,15 +420,15 @@ def relations() -> list[str]:
     sys.path[:0] = [
         str(ROOT / "tests" / name) for name in ("properties", "trials") if str(ROOT / "tests" / name) not in sys.path
     ]
-    from test_properties import EACH
     from test_properties import RELATIONS as REGISTRY
+    from test_properties import most_of
 
     rows = [
         f"| {r.name} | {r.holds.__doc__.strip()} | {', '.join(r.asks)} | {r.within:g} | "
         f"{r.exception}{f'broken today, awaits {r.awaits}' if r.awaits else ''} |"
         for r in REGISTRY.values()
     ]
-    whole = sum(round(EACH * r.share) for r in REGISTRY.values() if not r.awaits)
+    whole = sum(most_of(r) for r in REGISTRY.values() if not r.awaits)
     return [
         RELATIONS, "",
         f"{len(REGISTRY)} relations hold between the results of different analyses of one random building, or of two buildings of which one",

@@ -325,6 +325,7 @@ def test_weight_spread_and_pushes_of_fill_each_help() -> None:
     assert wide > narrow
 
 
+@pytest.mark.verify
 def test_rings_that_part_are_weaker_and_slide_at_their_own_friction() -> None:
     place = moving([2.0])
     whole = run(place, fill=FILL)["collapse_load_N"]

@@ -160,7 +160,9 @@ def test_every_property_has_two_values_here_and_every_kind_a_deck() -> None:
     assert {*DECKS, *LONG} >= set(kinds.ANALYSES)
 
 
-@pytest.mark.parametrize("name", DECKS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.verify] if name == "strengthen" else []) for name in DECKS]
+)
 def test_no_property_is_silently_without_effect(name: str) -> None:
     """Another value changes the answer, or it is told to be left out, or refused, or fixed by the method in so many words."""
     silent = []

@@ -341,7 +341,9 @@ def test_a_wrong_intrados_is_refused_in_words(change: dict, complaint: str) -> N
         make_deck({"structure": {"kind": "bridge", "spans": [span]}, "analysis": {"kind": "tilt"}})
 
 
-@pytest.mark.parametrize(("name", "most"), [("limit/church", 15), ("limit/panel", 8)])
+@pytest.mark.parametrize(
+    ("name", "most"), [("limit/church", 15), pytest.param("limit/panel", 8, marks=pytest.mark.verify)]
+)
 def test_a_report_has_few_pages(tmp_path: Path, name: str, most: int) -> None:
     """A surveyed nave, and a garden wall; the annex holds the rest."""
     pytest.importorskip("typst")
