@@ -6,8 +6,9 @@
 In Fortran and C a fault is a changed sign or operator, constant, comparison or bound of a loop; in Python (`--python`), at
 the joins of strategies alone, a changed sign, a dropped key or filter, another set of blocks, a unit factor or an outcome. Its place
 is drawn from the seed; every package gets its share. A fault counts as caught if the build, a quick test of its package or a case
-fails; with `--suite properties` if the build or the property suite alone fails (tests/properties), of the kernels at faults
-of the joins, and of Python by the relations that run through the changed function, the quickest first. Tests that fail
+fails; with `--suite properties` if the build or the property suite alone fails (tests/properties): of Python the relations that
+run through the changed line, of the kernels those that call the changed module, the quickest first, and those whose answers change again with
+more cases. A fault that changes no answer of the suite, one that no relation runs through and one that exceeds its processor time are named. Tests that fail
 without a fault are found first, and skipped. The fate of each fault is kept in the place, and an interrupted run
 continues from there; `--again` tries those anew that were not caught, after tests were written. Those that are not caught
 are printed with their place, and all are noted for the verification book. equivalent_faults.toml names faults that change
