@@ -43,6 +43,7 @@ CHAPTERS = (
     "kernels",
     "meanings",
     "outputs",
+    "joins",
 )
 for chapter in CHAPTERS:
     importlib.import_module(chapter)
