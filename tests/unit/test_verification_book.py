@@ -93,7 +93,9 @@ def test_the_package_has_the_scatter_of_the_bridges() -> None:
     (bridges,) = uncertainties_of("moving-load")
     assert (bridges.count, bridges.strategy) == (6, "live load on bridges")
     assert bridges.bias == pytest.approx(0.67, abs=0.02) and bridges.scatter == pytest.approx(0.56, abs=0.03)
-    assert uncertainties_of("rocking") == []
+    assert [row.quantity for row in uncertainties_of("rocking")] == ["restitution"]
+    (frames,) = uncertainties_of("frame-pushover")
+    assert (frames.count, frames.quantity) == (126, "peak load")
     assert {row.comparison for row in read_uncertainties()} <= set(expectations.PROOFS)
 
 
