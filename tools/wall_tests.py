@@ -12,8 +12,9 @@ are those of `read_walls`. Each wall becomes one deck per method, as a user woul
     frame     one macro-element of `frame-pushover`: sections without tension, shear by the lesser of Mohr-Coulomb on the compressed
               part and Turnsek-Cacovic; without drift limits, to 2 % drift
 
-Empty cells are filled by these rules: friction 0.4; cohesion of the joints as tested; tensile strength of the diagonal
-test, else the cohesion; modulus 600 times the compressive strength. Crushing in limit analysis at 0.85 of the strength.
+Empty cells are filled by these rules: friction 0.4; cohesion of the joints as tested, and without it (stone masonry) shear by
+diagonal cracking alone; tensile strength of the diagonal test, else the cohesion; modulus 600 times the compressive strength.
+Crushing in limit analysis at 0.85 of the strength.
 Written: predictions.csv, one row per wall and method. Printed: bias (geometric mean of predicted over measured) and scatter
 (standard deviation of its logarithm), in all and by failure mode, the count of right failure modes and of missing results.
 """
@@ -99,16 +100,17 @@ def read_walls(file: Path) -> list[Wall]:
         number = {key: float(value) for key, value in row.items() if value and key not in _TEXTS}
         peaks = [number[key] for key in ("peak_pos_kN", "peak_neg_kN") if key in number]
         drifts = [number[key] for key in ("drift_at_peak_pos_pct", "drift_at_peak_neg_pct") if key in number]
-        compressive, cohesion = 1e6 * number["masonry_compressive_MPa"], 1e6 * number["shear_strength_initial_MPa"]
+        compressive = 1e6 * number["masonry_compressive_MPa"]
+        cohesion = 1e6 * number.get("shear_strength_initial_MPa", math.nan)
         walls.append(
             Wall(
                 name=f"{row['n']} {row['name']}", height=number["height_m"], length=number["length_m"],
-                thickness=number["thickness_m"], unit_length=1e-3 * number["unit_length_mm"],
-                unit_height=1e-3 * number["unit_height_mm"], compressive=compressive,
+                thickness=number["thickness_m"], unit_length=1e-3 * number.get("unit_length_mm", math.nan),
+                unit_height=1e-3 * number.get("unit_height_mm", math.nan), compressive=compressive,
                 tensile=1e6 * number["masonry_tensile_diagonal_MPa"] if "masonry_tensile_diagonal_MPa" in number else cohesion,
                 young=1e6 * number.get("young_MPa", 1e-6 * MODULUS * compressive), cohesion=cohesion,
                 friction=number.get("friction", FRICTION), span=number["shear_span_over_height"],
-                pressure=1e6 * number["vertical_stress_MPa"], failure=row["failure"], peak=1e3 * sum(peaks) / len(peaks),
+                pressure=1e6 * number["vertical_stress_MPa"], failure=row.get("failure", ""), peak=1e3 * sum(peaks) / len(peaks) if peaks else math.nan,
                 drift=1e-2 * sum(drifts) / len(drifts) if drifts else math.nan,
             )
         )  # fmt: skip
@@ -182,10 +184,11 @@ def _beam(wall: Wall) -> dict[str, Any]:
 
 def by_codes(wall: Wall) -> dict[str, Predicted]:
     """The least strength that each code gives the wall as a pier, all partial and confidence factors at 1."""
+    high = wall.height * max(wall.span, 1.0)
     deck = {
-        "structure": {"kind": "panel", "width": wall.length, "height": wall.height, "thickness": wall.thickness},
+        "structure": {"kind": "panel", "width": wall.length, "height": high, "thickness": wall.thickness},
         "material": {"density": MASONRY, "compressive_strength": wall.compressive},
-        "joints": {"cohesion": wall.cohesion},
+        **({} if math.isnan(wall.cohesion) else {"joints": {"cohesion": wall.cohesion}}),
         "analysis": [
             {
                 "kind": "code-checks",
@@ -286,14 +289,17 @@ BOND_TENSION, UNIT_TENSION = 0.7, 0.1
 
 
 def by_macro_element(wall: Wall) -> dict[str, Predicted]:
-    """One pier under its axial load; its top does not rotate where the shear span is half its height."""
+    """One pier under its axial load; its top does not rotate where the shear span is half its height, and a cantilever is as high as
+    its shear span."""
     from extrados.core.frame import STATE, Frame, MacroElement
 
-    double = wall.span < 0.75
+    double, diagonal = wall.span < 0.75, math.isnan(wall.cohesion)
+    height = wall.height * max(wall.span, 1.0)
     pier = MacroElement(
-        (-1, -1, -1, 0, 1, -1 if double else 2), wall.height, wall.length, wall.thickness, wall.young,
-        0.4 * wall.young * wall.length * wall.thickness / (1.2 * wall.height), CRUSHES_AT * wall.compressive, shear="least",
-        cohesion=wall.cohesion, friction=wall.friction, tension=wall.tensile,
+        (-1, -1, -1, 0, 1, -1 if double else 2), height, wall.length, wall.thickness, wall.young,
+        0.4 * wall.young * wall.length * wall.thickness / (1.2 * height), CRUSHES_AT * wall.compressive,
+        shear="turnsek-cacovic" if diagonal else "least", cohesion=0.0 if diagonal else wall.cohesion, friction=wall.friction,
+        tension=wall.tensile,
         slenderness=min(max(wall.height / wall.length, 1.0), 1.5), second_order=False,
     )  # fmt: skip
     n = 2 if double else 3
@@ -341,7 +347,7 @@ def statistics(pairs: list[tuple[Wall, Predicted]]) -> tuple[float, float, int]:
 
 def count_right_modes(pairs: list[tuple[Wall, Predicted]]) -> tuple[int, int]:
     """Of the walls that failed in flexure, shear or sliding alone, how many failures are predicted, and all."""
-    pure = [(wall.mode, found.failure) for wall, found in pairs if wall.mode != "H" and found.failure]
+    pure = [(wall.mode, found.failure) for wall, found in pairs if wall.mode not in ("", "H") and found.failure]
     return sum(mode[0] == failure for mode, failure in pure), len(pure)
 
 

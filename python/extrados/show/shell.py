@@ -26,6 +26,8 @@ VIEW = scene.View(-60.0, 28.0)
 OUTSIDE, INSIDE = "#b3261e", "#1f4e9b"
 #: Gap between unfolded walls, in parts of the height
 GAP = 0.12
+#: Kept states from which on the shear of the walls is drawn as a curve
+LEAST_STATES = 5
 #: Part of the greatest width from which a crack is drawn
 LEAST_WIDTH = 0.02
 
@@ -98,6 +100,25 @@ def _stage_curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         )
 
 
+def _wall_curves(ax: Axes, run: Stored, name: str, prefix: str) -> None:
+    """The shear of each wall along the push at its foot, through the kept states in equilibrium under a displacement not reached before."""
+    if f"{prefix}state_wall_shear" not in run.arrays[name]:
+        return
+    event = run.array(name, f"{prefix}state_event") - 1
+    d = 1e3 * run.array(name, f"{prefix}event_displacement")[event]
+    held = (run.array(name, f"{prefix}event_equilibrium")[event] > 0) & (d >= np.maximum.accumulate(d))
+    if held.sum() < LEAST_STATES:
+        return
+    d = d[held]
+    for k, wall in enumerate(_numbers(run, name, prefix).walls):
+        shear = run.array(name, f"{prefix}state_wall_shear")[held, k] / 1e3
+        if np.abs(shear).max() > 0.01 * np.abs(run.array(name, f"{prefix}event_load")).max() / 1e3:
+            ax.plot(
+                d, shear, marker=".", markersize=3, linewidth=0.9, linestyle=("--", ":", "-.")[k % 3], color="#8a6d3b"
+            )
+            ax.annotate(f"wall {wall.wall}", (d[0], shear[0]), fontsize=7, color="#8a6d3b", ha="right")
+
+
 def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     """Capacity curves of both senses with their bilinear idealisation, the variants behind; others of the run in grey."""
     get, r = partial(run.array, name), run.results_of(name, Pushover)
@@ -121,6 +142,7 @@ def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             d, p = 1e3 * get(f"{prefix}event_displacement"), get(f"{prefix}event_load") / 1e3
             fine = get(f"{prefix}event_state") > 0
             ax.plot(d[fine], p[fine], color=color, linewidth=0.25, alpha=0.4)
+            _wall_curves(ax, run, name, prefix)
             none = get(f"{prefix}event_state") == 0
             if none.any():
                 far = 1.1 * np.abs(get(f"{prefix}envelope_displacement")).max() * 1e3
