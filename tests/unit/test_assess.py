@@ -11,8 +11,11 @@ from test_every_strategy import quick_save
 
 import extrados
 from extrados.analyses.assess import asking, driver, hazard, reasons, sensitivity, strategies
+from extrados.analyses.assess.asking import OutOfTime
 from extrados.analyses.assess.reasons import Facts
+from extrados.analyses.assess.tables import Assess
 from extrados.analyses.assess.words import conclusion, table_of
+from extrados.analyses.changes import read_table
 from extrados.analyses.context import Context
 from extrados.analyses.dem import perturbed
 from extrados.analyses.dem.perturbed import chaos_of
@@ -530,6 +533,33 @@ def test_a_value_turns_the_verdict_where_the_closed_form_says() -> None:
             {**data, "structure": {**block, "width": factor * width.rocking_turns}, "analysis": {"kind": "rocking"}}
         )
         assert (found["rocking"].outcome == "collapse") == falls
+
+
+def test_the_budget_holds_the_sensitivity_and_keeps_what_was_moved(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The deadline of the whole is the budget, that of the strategies three quarters; a stopped search leaves the ends of the tornado."""
+    deadlines, asked = [], sensitivity.Margins.ask
+
+    def ask(margins: sensitivity.Margins, wanted: list[tuple[str, float]]) -> None:
+        deadlines.append(margins.asker.deadline)
+        if len(deadlines) > 1:
+            raise OutOfTime
+        asked(margins, wanted)
+
+    monkeypatch.setattr(sensitivity.Margins, "ask", ask)
+    monkeypatch.setattr(driver, "STOPPED_AFTER", 1.0)
+    block = {"kind": "block", "width": 1.0, "height": 5.0}
+    given = {"strategies": ["tilt"], "vary": {"structure.width": 0.1}, "advise": False}
+    run = extrados.run({"structure": block, "motion": PULSE, "analysis": {"kind": "assess", "budget": 60, **given}})[
+        "assess"
+    ]
+    assert set(deadlines) == {60.0}
+    assert any("sensitivity: stopped at the time limit of 60 s" in text for text in run.not_done)
+    (width,) = run.sensitivity
+    assert width.tilt_low == pytest.approx(0.9 / 5.0 / 0.3) and width.tilt_high == pytest.approx(1.1 / 5.0 / 0.3)
+    table = read_table(Assess, {"kind": "assess", "budget": 60.0, **given})
+    assert (
+        table.for_strategies == 45.0 and read_table(Assess, {"kind": "assess", "budget": 60.0}).for_strategies == 60.0
+    )
 
 
 def test_what_is_moved_by_default() -> None:

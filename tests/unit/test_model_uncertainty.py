@@ -12,6 +12,7 @@ from extrados.analyses.assess.asking import no_row
 from extrados.analyses.assess.model_uncertainty import estimate_collapse, percent
 from extrados.analyses.assess.strategies import of
 from extrados.results.assess import StrategyVerdict
+from extrados.results.statistics import Ensemble
 from extrados.results.uncertainty import ModelUncertainty, collapse_probability, uncertainties_of
 
 WALLS = ModelUncertainty("walls", ("tilt",), "capacity in acceleration", "experiment", 21, 0.95, 0.2, "", 1.0)
@@ -92,7 +93,25 @@ def test_the_pool_of_two_strategies() -> None:
     assert sum(c.weight for c in found.contributions) == pytest.approx(1.0)
     assert set(found.without) == {"rocking", "code-checks", "dem"}
     assert "briefly" in found.statement and percent(pooled) in found.statement
+    assert found.statement.startswith("If the peak of the hazard acted as a sustained load") and found.in_motion is None
+    assert "not the probability of collapse in the earthquake" in found.statement
     assert "rocking" in found.method and "verification book" in found.method
+
+
+def test_the_share_under_the_motion_itself_comes_first() -> None:
+    """19 of 40: the score interval by its quadratic, (p + z^2/2n -+ z sqrt(p q/n + z^2/4n^2))/(1 + z^2/n)."""
+    runs = Ensemble.model_construct(count=40, collapsed=19)
+    rows = [row("tilt", margin=1.2), row("probability", violated=["Blocks slide in 12 % of the runs."])]
+    found = estimate_collapse(rows, runs)
+    z, n, p = 1.959963984540054, 40, 19 / 40
+    middle, half = p + z * z / (2 * n), z * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
+    assert found.in_motion.low == pytest.approx((middle - half) / (1 + z * z / n), rel=1e-6)
+    assert found.in_motion.high == pytest.approx((middle + half) / (1 + z * z / n), rel=1e-6)
+    assert found.statement.startswith("Probability of collapse under the hazard by rocking 48 %")
+    assert "Assumptions of rocking do not hold" in found.statement and "sustained load" in found.statement
+    alone = estimate_collapse([row("rocking", margin_at_least=1.5)], runs)
+    assert alone.probability is None and "19 of 40 runs collapse" in alone.statement
+    assert estimate_collapse(rows, Ensemble.model_construct(count=0, collapsed=0)).in_motion is None
 
 
 def test_violated_assumptions_and_unknown_margins_contribute_nothing() -> None:

@@ -11,11 +11,14 @@ from extrados.analyses.limit.common import limit_of
 from extrados.analyses.sequence import run_analyses, run_one
 from extrados.analyses.strengthen.alternatives import TieAlternative, tie_alternatives
 from extrados.analyses.strengthen.anchorage import check_anchorage
+from extrados.analyses.strengthen.driver import measure_of
 from extrados.analyses.strengthen.measures import Statics
 from extrados.analyses.strengthen.tables import Anchorage
-from extrados.decks.reader import make_deck
+from extrados.decks.reader import DeckError, make_deck
 from extrados.limit.errors import NoEquilibrium
+from extrados.limit.solids import SolidLimit
 from extrados.limit.strengthening import concave_curve, pieces_of
+from extrados.model.ties import Tie
 from extrados.results.strengthen import Strengthen
 
 G = 9.80665
@@ -479,10 +482,13 @@ def test_a_change_that_helps_only_in_between_is_said_to():
     assert one.meets_target and any("does not grow with the size" in text for text in one.adverse)
 
 
-def test_analyses_of_solids_are_refused_with_the_reason():
-    dome = {"kind": "dome", "radius": 10.0, "thickness": 1.0, "rings": 4, "lunes": 6}
-    result = run({"structure": dome, "analysis": [{"kind": "strengthen", "acceleration": "0.3 g"}]})
-    assert result.status == "refused" and "no plane section" in result.reason
+@pytest.mark.verify
+def test_a_dome_without_interventions_of_its_own_gets_a_hoop_and_a_greater_thickness():
+    asked = {"kind": "strengthen", "acceleration": "0.6 g", "directions": [0.0]}
+    r = run({**DOME, "analysis": [asked]}).results
+    assert {one.kind for one in r.interventions} == {"hoop", "change"}
+    hoop = next(one for one in r.interventions if one.kind == "hoop")
+    assert hoop.meets_target and hoop.capacity_after == pytest.approx(0.6, rel=1e-5)
 
 
 #: A block that leans to -x and falls so at rest; its tie to the right holds it, and a load to +x sets it upright
@@ -635,3 +641,78 @@ def test_a_fill_is_sized_as_any_key_of_the_structure():
     (one,) = run({**data, "analysis": [asked]}).results.interventions
     assert one.meets_target and min(start, stop) < one.required_size < max(start, stop)
     assert carried(one.required_size) >= target > carried(one.required_size + 0.02 * (start - stop))
+
+
+DOME = {
+    "structure": {"kind": "dome", "radius": 5.0, "thickness": 0.6, "rings": 4, "lunes": 6},
+    "joints": {"friction": 0.7},
+}
+
+
+def in_space(data: dict[str, Any], tie: dict[str, Any], **keys: Any) -> tuple[Any, Any]:
+    """The measure and the alternative of one tie among blocks in space."""
+    asked = {"kind": "strengthen", "acceleration": "0.55 g", "ties": [tie], "directions": [0.0, 90.0], **keys}
+    deck = make_deck({**data, "analysis": [asked]}, Path.cwd())
+    statics = measure_of(Context(deck, 1), deck.analyses[0])
+    (one,) = tie_alternatives(deck.building, deck.analyses[0])
+    return statics, one
+
+
+@pytest.mark.parametrize("bonded", [False, True])
+def test_a_hoop_is_sized_as_by_bisection_over_its_yield_force(bonded):
+    statics, one = in_space(DOME, {"start": [0.0, 0.0, 1.5], "hoop": True, "bonded": bonded})
+    before = statics.of(statics.context.building)
+    target = 1.1 * before.value
+    force = statics.force(one, 0, target)
+    low, high = 0.0, 2.0 * force
+    while high - low > 1e-5 * force:
+        middle = 0.5 * (low + high)
+        carried = statics.of(one.having(statics.context.building, 0, middle)).value
+        low, high = (low, middle) if carried >= target else (middle, high)
+    assert force == pytest.approx(high, rel=1e-4)
+    # the slope of the curve is the derivative of the capacity
+    point, step = statics.point(one, 0, 0.5 * force), 1e-3 * force
+    rise = statics.point(one, 0, 0.5 * force + step).capacity - statics.point(one, 0, 0.5 * force - step).capacity
+    assert point.slope == pytest.approx(rise / (2.0 * step), rel=0.02)
+
+
+def test_an_anchor_in_space_is_sized_as_by_moments_about_the_toe():
+    block = {
+        "structure": {"kind": "column", "width": 1.0, "height": 4.0, "drums": 1, "depth": 1.0},
+        "joints": {"friction": 5.0},
+    }
+    deck = make_deck({**block, "analysis": [{"kind": "tilt", "direction": 0.0}]}, Path.cwd())
+    solids = deck.building.solids()
+    tied = deck.building.having(ties=(Tie.model_validate({
+        "start": [-0.5, 0.0, 3.0], "ground": [-4.0, 0.0, 3.0], "start_stone": solids.block_names[0], "name": "anchor"}),))  # fmt: skip
+    limit = SolidLimit(solids, 5.0, tied.strands())
+    weight = float(solids.mass[0]) * G
+    # load to +x about the toe at x = 0.5: 0.4 W 2 = 0.5 W + 3 F
+    assert limit.least_force(0.0, 0.4, [0]) == pytest.approx(weight * (0.4 * 2.0 - 0.5) / 3.0, rel=1e-5)
+    assert limit.least_force(0.0, 0.2, [0]) == pytest.approx(0.0, abs=1e-6 * weight)
+    assert limit.least_force(180.0, 0.4, [0]) == np.inf  # a tie pulls one way
+    assert limit.least_force(90.0, 0.4, [0]) == np.inf
+
+
+def test_a_debonding_force_needs_its_source_and_is_reported():
+    strip = {**NAVE["tie"], "debonding_force": "400 kN"}
+    with pytest.raises(DeckError, match="give its source"):
+        deck_of({**NAVE, "tie": strip})
+    (one,) = strengthened({**NAVE, "tie": {**strip, "source": "pull-off test 3"}}).interventions
+    assert one.meets_target and any("pull-off test 3" in text and "brittle" in text for text in one.adverse)
+    (weak,) = strengthened({**NAVE, "tie": {**strip, "debonding_force": "20 kN", "source": "test"}}).interventions
+    assert not weak.meets_target and "greatest one considered" in weak.reason
+
+
+@pytest.mark.parametrize(
+    ("keys", "text"),
+    [
+        ({"direction": "+x"}, "give directions"),
+        ({"friction_rule": "non-associated"}, "dilatant sliding"),
+        ({"ties": [{"start": [0.0, 0.0, 1.5], "hoop": True, "beam_weight": "1 kN"}]}, "add a load that sways"),
+    ],
+)
+def test_what_is_known_of_plane_sections_alone_is_refused_in_space(keys, text):
+    asked = {"kind": "strengthen", "acceleration": "0.5 g", **keys}
+    result = run({**DOME, "analysis": [asked]})
+    assert result.status == "refused" and text in result.reason

@@ -191,6 +191,34 @@ class SolidLimit:
         _waited(*[work] * min(threads, len(directions)), told=lambda: told(len(found)))
         return [found[k] for k in range(len(directions))]
 
+    def least_force(self, direction: float, gamma: float, sized: Sequence[int]) -> float:
+        """Least yield force [N], common to the strands of the numbers `sized`, with which the blocks carry all weights pushed
+        by gamma [g] along a direction [deg]; infinite where no force suffices. NoAnswer where the solver gives up. The strands that
+        are sized have no limits of their own.
+
+        The programme of the motion: most power of the loads, less that of dowels and other strands, where the strands that
+        are sized lengthen by no more than one together. It is the dual of the least force.
+        """
+        dead, live = self.ways(direction)
+        load = dead + gamma * live
+        status = ""
+        for method in METHODS:
+            solution, _ = self._solved(load, None, method, sized)
+            status, motion = str(solution.status), np.array(solution.x)[: len(dead)]
+            if "DualInfeasible" in status and np.isfinite(motion).all():
+                try:
+                    self._proven(motion, load, sized)
+                except NoAnswer:
+                    continue
+                return np.inf
+            force, bound = float(solution.z[-1]), -float(solution.obj_val)
+            if np.isfinite(force) and abs(force - bound) <= LOOSE * max(1.0, bound):
+                return max(0.0, force, bound) * self.scale
+        most = self.push(direction)  # of strands that never yield: proves near the greatest capacity that none suffices
+        if isinstance(most, Falls) or most.gamma < gamma:
+            return np.inf
+        raise NoAnswer(f"the conic solver found no least force: {status}")
+
     def contact_points(self, direction: float) -> ContactPoints:
         """Corners of the contacts and dowels as points of contact under a push along a direction [deg]."""
         dead, live = self.ways(direction)
@@ -289,7 +317,7 @@ class SolidLimit:
         return found
 
     def _solved(
-        self, dead: np.ndarray, live: np.ndarray | None, method: str
+        self, dead: np.ndarray, live: np.ndarray | None, method: str, sized: Sequence[int] = ()
     ) -> "tuple[clarabel.DefaultSolution, np.ndarray]":
         """The programme of the motion: least power of the weights lifted, less what dowels take, with a power of the push of
         one and contacts that open mu times as fast as they slide. Its multipliers are the forces.
@@ -297,7 +325,8 @@ class SolidLimit:
         Without a push the motion is bounded instead, each rate by one: then it is the one by which the weights fall most.
         It has a sixth of the unknowns of the programme of the forces, whose dual it is. Returns the solution, and the column
         of the matrix that each row after the first is the rate of, -1 for a bound; a sliding corner's opening is over mu.
-        The last rows are the limits of the strands, see _limits.
+        The last rows are the limits of the strands, see _limits. With strands that are `sized` their lengthening together is
+        bounded by one in place of the motion, by a row at the very end whose multiplier is their force.
         """
         corners, rates = len(self.mu), self.matrix.T.tocsr()
         slides = np.flatnonzero((self.mu > 0.0) & np.isfinite(self.mu))
@@ -337,17 +366,18 @@ class SolidLimit:
             cost = np.concatenate([cost, strength[weak]])
             lines = np.concatenate([lines, np.column_stack([np.full(len(weak), -1), own]).ravel()])
         right = np.zeros(matrix.shape[0])
-        if live is None:
+        if live is not None:
+            right[0] = 1.0
+        elif not len(sized):
             own = sparse.eye_array(len(dead), len(cost))
             matrix = sparse.vstack([matrix, own, -own])
             right = np.concatenate([right, np.ones(2 * len(dead))])
             cones.append(clarabel.NonnegativeConeT(2 * len(dead)))
             lines = np.concatenate([lines, np.full(2 * len(dead), -1)])
-        else:
-            right[0] = 1.0
         strand, sense, most = self._limits
         if len(strand):  # what each lengthens beyond an unknown that costs its strength is nothing
-            yields = np.flatnonzero(np.isfinite(most))
+            free = np.isin(strand, sized)
+            yields = np.flatnonzero(np.isfinite(most) | free)
             bound = sparse.csr_array(
                 (np.ones(len(yields)), (yields, np.arange(len(yields)))), shape=(len(strand), len(yields))
             )
@@ -361,9 +391,15 @@ class SolidLimit:
             matrix = sparse.hstack([matrix, sparse.csr_array((matrix.shape[0], len(yields)))])
             matrix = sparse.vstack([matrix, slack, sparse.hstack([-rate, -bound])])
             cones.append(clarabel.NonnegativeConeT(len(yields) + len(strand)))
-            cost = np.concatenate([cost, most[yields]])
+            together = np.concatenate([np.zeros(len(cost)), free[yields].astype(float)])
+            cost = np.concatenate([cost, np.where(free, 0.0, most)[yields]])
             right = np.concatenate([right, np.zeros(len(yields) + len(strand))])
             lines = np.concatenate([lines, np.full(len(yields) + len(strand), -1)])
+            if free.any():
+                matrix = sparse.vstack([matrix, sparse.csr_array(together[None])])
+                cones.append(clarabel.NonnegativeConeT(1))
+                right = np.append(right, 1.0)
+                lines = np.append(lines, -1)
         settings = clarabel.DefaultSettings()
         settings.verbose = False
         settings.max_iter = 200
@@ -394,9 +430,9 @@ class SolidLimit:
         rates[:, 3:] /= self.assembly.size
         return rates
 
-    def _hindered(self, motion: np.ndarray) -> tuple[float, float]:
+    def _hindered(self, motion: np.ndarray, rigid: Sequence[int] = ()) -> tuple[float, float]:
         """By how much a motion violates the contacts and strands, over the fastest rate of one, and the power that dowels and
-        strands take."""
+        strands take; strands of the numbers `rigid` never yield."""
         rate = self.matrix.T @ motion
         corners = len(self.mu)
         at = rate[: 3 * corners].reshape(-1, 3)
@@ -415,7 +451,7 @@ class SolidLimit:
         strand, sense, most = self._limits
         if len(strand):
             longer = np.maximum(-sense * (self.pulls.T @ motion)[strand], 0.0)
-            yields = np.isfinite(most)
+            yields = np.isfinite(most) & ~np.isin(strand, rigid)
             wrong = max(wrong, float(longer[~yields].max(initial=0.0)))
             spent += float(most[yields] @ longer[yields])
         return wrong / fastest, spent
@@ -431,10 +467,10 @@ class SolidLimit:
         low, high = self.tension_bounds
         return max(found, float(np.maximum(low - tension, tension - high).max(initial=0.0)))
 
-    def _proven(self, motion: np.ndarray, dead: np.ndarray) -> Falls:
-        """A motion held to virtual work; NoAnswer where it proves nothing."""
+    def _proven(self, motion: np.ndarray, dead: np.ndarray, rigid: Sequence[int] = ()) -> Falls:
+        """A motion held to virtual work; NoAnswer where it proves nothing. rigid: strands that never yield."""
         falling = float(np.abs(dead).sum()) * max(float(np.abs(motion).max()), 1e-300)
-        overlap, spent = self._hindered(motion)
+        overlap, spent = self._hindered(motion, rigid)
         power = (float(dead @ motion) - spent) / falling
         if power < POWERLESS or overlap > PROOF:
             raise NoAnswer(

@@ -8,6 +8,7 @@ extension of the tie in it.
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from scipy import sparse
@@ -33,14 +34,14 @@ LAW = 1e-8
 
 @dataclass(frozen=True)
 class Point:
-    """The capacity [g] where ties yield at `force` [N], its slope [g/N] there, the sense (1 to +x, -1 to -x) and the mechanism
-    that governs."""
+    """The capacity [g] where ties yield at `force` [N], its slope [g/N] there, the sense (1 to +x, -1 to -x; in space the direction
+    [deg]) and the mechanism that governs."""
 
     force: float
     capacity: float
     slope: float
-    direction: int
-    mechanism: Mechanism
+    direction: float
+    mechanism: Any
 
     def line(self, force: float) -> float:
         """The capacity of this mechanism at another force, an upper bound of that of the structure."""

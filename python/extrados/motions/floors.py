@@ -39,7 +39,7 @@ class Sway:
 
 def sway_of(floor: FloorBelow) -> Sway:
     """The first mode of the building below a part, linear over its height: gamma_1 psi_1 = 3 n/(2 n + 1) z/H."""
-    part = floor.height / floor.building_height * 3.0 * floor.storeys / (2.0 * floor.storeys + 1.0)
+    part = floor.height / floor.building_height * 3.0 * floor.levels / (2.0 * floor.levels + 1.0)
     return Sway(floor.building_period or 0.05 * floor.building_height**0.75, floor.building_damping, part)
 
 

@@ -128,10 +128,27 @@ class Contribution(ResultModel):
     weight: float = fact("weight in the overall probability: its share of the tests")
 
 
-class CollapseProbability(ResultModel):
-    """Probability of collapse under the hazard, from the model uncertainty of the strategies."""
+class CollapseInMotion(ResultModel):
+    """Share of sampled buildings and motions that collapse by rocking under the hazard itself."""
 
-    probability: float | None = fact("weighted mean over the contributions; 1 for a certificate; null: no contribution")
+    collapsed: int = fact("runs that collapse")
+    count: int = fact("runs with a result")
+    probability: float = fact("share that collapses")
+    low: float = fact("lower end of its 95 % score interval", source="Wilson 1927")
+    high: float = fact("upper end of its 95 % score interval", source="Wilson 1927")
+    violated: list[str] = fact("assumptions of rocking that do not hold in these runs")
+
+
+class CollapseProbability(ResultModel):
+    """Probability of collapse, of static strategies if the peak of the hazard acted as a sustained load, and under the motion itself.
+
+    The first comes from the model uncertainty of the strategies. The second is a count of dynamic runs.
+    """
+
+    in_motion: CollapseInMotion = maybe("probability of collapse under the motion itself, by rocking")
+    probability: float | None = fact(
+        "if the peak acted as a sustained load: weighted mean over the contributions; 1 for a certificate; null: no contribution"
+    )
     low: float | None = fact("least lower end of the contributions' 90 % confidence intervals; null: no contribution")
     high: float | None = fact(
         "greatest upper end of the contributions' 90 % confidence intervals; null: no contribution"

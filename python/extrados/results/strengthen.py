@@ -14,7 +14,7 @@ class GoverningRange(ResultModel):
     last: float = fact("size at which another one begins to govern, or the curve ends")
     capacity_first: float = fact("capacity at the first size, in the unit of the target")
     capacity_last: float = fact("capacity at the last size, in the unit of the target")
-    direction: Literal["+x", "-x"] = fact("sense of the load")
+    direction: str = fact("sense of the load: +x or -x; in space its direction in plan")
     mechanism: str = fact("the mechanism in words")
 
 
@@ -41,17 +41,20 @@ class Intervention(ResultModel):
     """One alternative: its least size, its cost, and what governs then."""
 
     name: str = fact("its name")
-    kind: Literal["tie", "strut", "spring", "ring-beam", "change"] = fact(
-        "tie, strut, spring that works both ways, ring beam with its weight, or change of a key"
+    kind: Literal["tie", "strut", "spring", "ring-beam", "hoop", "chain", "change"] = fact(
+        "tie, strut, spring that works both ways, ring beam with its weight, hoop or chain in space, or change of a key"
     )
     key: str = maybe("key of the deck that is changed")
     place: str = fact("place, or value from which the key is changed")
-    start_m: list[float] = maybe("[x, y] of the first end of a tie", "m")
+    start_m: list[float] = maybe(
+        "[x, y], in space [x, y, z], of the first end of a tie; of a hoop a point at its height", "m"
+    )
+    via_m: list[list[float]] = maybe("points over which a chain runs", "m")
     stiffness_N_m: float = maybe(
         "axial stiffness EA/L that runs take for a tie: that of the deck, else of a steel bar of the least section",
         "N/m",
     )
-    end_m: list[float] = maybe("[x, y] of its other end", "m")
+    end_m: list[float] = maybe("of its other end; none of a hoop", "m")
     unit: str = fact("unit of the sizes")
     meets_target: bool = fact("whether any size considered meets the target")
     required_size: float | None = fact("least size that meets the target, in `unit`; null: none does")
@@ -111,7 +114,9 @@ class Strengthen(KindResults):
     unit: str = fact("unit of target and values; empty of a factor or a probability")
     target: float = fact("the target, in `unit`")
     demand: float | None = fact("demand to which safety factors refer, in `unit`; null: none")
-    direction: Literal["both", "+x", "-x"] = fact("sense of the load of limit analysis")
+    direction: Literal["both", "+x", "-x"] | None = fact(
+        "sense of the load of limit analysis; null in space, where `ranges` name directions"
+    )
     value_before: float | None = fact("value of the existing building; null: no result")
     safety_factor_before: float | None = fact("value of the existing building over the demand")
     met_before: bool = fact("whether the existing building meets the target")
@@ -144,6 +149,11 @@ class Strengthen(KindResults):
             return f"{text} No intervention considered meets the target."
         word = "Intervention" if best.cost is None else "Intervention of least relative cost"
         return f"{text} {word} that meets it: {best.name}, {size_told(best)}."
+
+
+def works_in(one: Intervention) -> str:
+    """The senses in which a tie works, as `works_in` of [[ties]]."""
+    return {"strut": "compression", "spring": "both", "ring-beam": "both"}.get(one.kind, "tension")
 
 
 def size_told(one: Intervention) -> str:

@@ -42,6 +42,15 @@ def key(default: Any = ..., about: str = "", *, source: str = "", **limits: Any)
     return Field(default, description=about, json_schema_extra=extra, **limits)
 
 
+#: Height of a storey where a deck does not give their number [m]: a default of this program
+STOREY = 3.0
+
+
+def storeys_in(height: float) -> int:
+    """Storeys of a building so high [m] whose number is not given; more storeys amplify more, so that one alone is unsafe."""
+    return max(1, round(height / STOREY))
+
+
 class FloorBelow(Table):
     """The floor of a building on which the structure stands: it is shaken by the floor, not by the ground."""
 
@@ -51,9 +60,15 @@ class FloorBelow(Table):
         None, "first period T_1 of the building; default 0.05 H^0.75", gt=0, source="EN 1998-1 Eq. 4.6"
     )
     building_damping: float = key(0.05, "damping ratio of the building", gt=0, le=0.3)
-    storeys: int = key(
-        1, "storeys N of the building: gamma_1 = 3 N/(2 N + 1)", ge=1, le=50, source="Circ. 7/2019 [C7.2.10]"
-    )
+    storeys: int | None = key(
+        None, "storeys N of the building: gamma_1 = 3 N/(2 N + 1); default one for each 3 m of its height", ge=1, le=50,
+        source="Circ. 7/2019 [C7.2.10]",
+    )  # fmt: skip
+
+    @property
+    def levels(self) -> int:
+        """Storeys of the deck, or by the height."""
+        return self.storeys or storeys_in(self.building_height)
 
     @model_validator(mode="after")
     def _within(self) -> "FloorBelow":

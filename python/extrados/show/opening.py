@@ -78,6 +78,11 @@ def governing_figure(run: Stored, drawn: dict[str, Figures], building: tuple[str
     return None if chosen is None else Figure(f"figures/{chosen[0]}", chosen[1], 0.8)
 
 
+#: Sentences of an assessment on the first page: with a probability under the motion itself, and without
+DYNAMIC = ("The least critical scale factor", "Probability of collapse")
+STATIC = (*DYNAMIC, "If the peak of the hazard", "This static number")
+
+
 def _conclusion(run: Stored, lead: dict[str, Any], words: Language) -> str:
     """In English the sentences of the analysis; in another language the same numbers in sentences of the report."""
     r, v = run[lead["name"]], lead["verdict"]
@@ -91,11 +96,11 @@ def _conclusion(run: Stored, lead: dict[str, Any], words: Language) -> str:
         return r.conclusion()
     first, *rest = re.split(r"(?<=\.) (?=[A-Z])", str(v["statement"]))
     # the strategies one by one and their reasons follow in the table and behind the contents
-    least = (
-        [one for one in rest if one.startswith(("The least critical scale factor", "Probability of collapse"))]
-        if isinstance(r, Assess)
-        else rest
-    )
+    least = rest
+    if isinstance(r, Assess):
+        # a static probability beside a dynamic one would be read as that of the earthquake
+        kept = STATIC if r.collapse_probability.in_motion is None else DYNAMIC
+        least = [one for one in rest if one.startswith(kept)]
     return " ".join([first, *least])
 
 

@@ -28,15 +28,16 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     return _draw_solids(run, name, folder, r) if isinstance(r, SolidTilt) else tilt.draw(run, name, folder)
 
 
-def faces_of(run: Stored, name: str, pose: np.ndarray | None = None) -> scene.Faces:
-    """The solids of an analysis, carried to a pose (blocks, 6) of shifts and rotation vectors."""
-    vertices, corners = run.array(name, "solid_vertex"), run.array(name, "solid_face")
-    start, block = run.array(name, "solid_face_start"), run.array(name, "solid_face_block")
+def faces_of(run: Stored, name: str, pose: np.ndarray | None = None, which: str = "") -> scene.Faces:
+    """The solids of an analysis, carried to a pose (blocks, 6) of shifts and rotation vectors; which: end of the names of their
+    arrays, where an analysis has several buildings."""
+    vertices, corners = run.array(name, f"solid_vertex{which}"), run.array(name, f"solid_face{which}")
+    start, block = run.array(name, f"solid_face_start{which}"), run.array(name, f"solid_face_block{which}")
     faces = [corners[a:b] for a, b in itertools.pairwise(start)]
     if pose is not None:
         whose = np.empty(len(vertices), dtype=int)
         whose[corners] = np.repeat(block, np.diff(start))
-        centroid = run.array(name, "solid_centroid")
+        centroid = run.array(name, f"solid_centroid{which}")
         turn = rotations(pose[:, 3:])
         vertices = centroid[whose] + pose[whose, :3] + np.einsum("nij,nj->ni", turn[whose], vertices - centroid[whose])
     return scene.Faces(vertices, faces, block)
@@ -59,7 +60,7 @@ def _least_drawn(r: SolidTilt) -> bool:
 def _draw_solids(run: Stored, name: str, folder: Path, r: SolidTilt) -> list[tuple[str, str]]:
     pose = run.array(name, "mechanism_pose")
     stones, moved = faces_of(run, name), faces_of(run, name, pose)
-    speed = _speeds(stones, moved, len(pose))
+    speed = speeds(stones, moved, len(pose))
     both = np.concatenate([stones.vertices, moved.vertices])
     frame = scene.frame_of(both, VIEW)
     wide = (frame[1] - frame[0]) / (frame[3] - frame[2])
@@ -160,7 +161,7 @@ def _film(
         film.write(fig, path, kind, film.RATES[kind], np.arange(len(times)), draw, [drawn])
 
 
-def _speeds(stones: scene.Faces, moved: scene.Faces, count: int) -> np.ndarray:
+def speeds(stones: scene.Faces, moved: scene.Faces, count: int) -> np.ndarray:
     """How far the fastest vertex of each stone goes, over that of all."""
     gone = np.linalg.norm(moved.vertices - stones.vertices, axis=1)
     found = np.zeros(count)

@@ -5,14 +5,17 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 
 from extrados.results.store import Stored
 from extrados.results.strengthen import FragilityPair, Intervention, Strengthen, size_told
-from extrados.show import style
+from extrados.show import scene, solids, style
 from extrados.show.limit import section
 
 #: Alternatives in one figure
 MOST = 8
+#: Buildings in the figure of mechanisms in space, the existing one among them
+MOST_IN_SPACE = 3
 #: Letters in a line of a title
 WIDE = 44
 
@@ -22,6 +25,7 @@ def draw_strengthen(run: Stored, name: str, folder: Path) -> list[tuple[str, str
     r = run.results_of(name, Strengthen)
     found = [
         _mechanisms(run, r, name, folder),
+        _mechanisms_in_space(run, r, name, folder),
         _curves(run, r, name, folder),
         _places(run, r, name, folder),
         _costs(run, r, name, folder),
@@ -77,6 +81,43 @@ def _mechanisms(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[st
     return saved, (
         "Collapse mechanisms that govern, exaggerated: the existing building, and the building with interventions of the size that meets the target "
         "(or of the greatest size considered, if none does)."
+    )
+
+
+def _mechanisms_in_space(run: Stored, r: Strengthen, name: str, folder: Path) -> tuple[str, str] | None:
+    """The same of blocks in space, each stone coloured by its speed."""
+    arrays = run.arrays[name]
+    shown = [k for k in range(MOST_IN_SPACE) if f"solid_pose_{k}" in arrays]
+    if not shown:
+        return None
+    rest = [solids.faces_of(run, name, which=f"_{k}") for k in shown]
+    poses = [run.array(name, f"solid_pose_{k}") for k in shown]
+    moved = [solids.faces_of(run, name, pose, f"_{k}") for k, pose in zip(shown, poses, strict=True)]
+    frame = scene.frame_of(np.concatenate([faces.vertices for faces in moved]), solids.VIEW)
+    tall = (frame[3] - frame[2]) / (frame[1] - frame[0])
+    with style.figure(3.6 * len(shown) + 0.4, float(np.clip(3.6 * tall + 1.2, 3.2, 6.5)), columns=len(shown)) as (
+        fig,
+        axes,
+    ):
+        for ax, k, still, faces, pose in zip(axes, shown, rest, moved, poses, strict=True):
+            colours = solids.SPEED(solids.speeds(still, faces, len(pose)))[:, :3]
+            scene.show(ax, scene.picture(faces, solids.VIEW, frame, colours), frame)
+            scene.ground(ax, still.vertices, solids.VIEW)
+            unit = f" {r.unit}" if r.unit else ""
+            value = "none" if r.value_before is None else f"{r.value_before:.3g}{unit}"
+            title = f"Existing: {value}\n(target {r.target:.3g}{unit})"
+            if k:
+                title = "\n".join(
+                    textwrap.wrap(f"{r.interventions[k - 1].name}: {_told(r.interventions[k - 1])}", WIDE)
+                )
+            ax.set_title(title)
+            if f"solid_strand_{k}" in arrays:
+                lines = run.array(name, f"solid_strand_{k}") @ solids.VIEW.axes[:2].T
+                ax.add_collection(LineCollection(lines, colors=section.TIE, linewidths=1.6, zorder=3))
+        saved = style.save(fig, folder, f"{name}-mechanisms")
+    return saved, (
+        "Collapse mechanisms that govern, exaggerated, coloured by the speed of each block (the fastest red): the existing building, and the "
+        "building with interventions of the size that meets the target. Lines: hoops, chains and ties."
     )
 
 

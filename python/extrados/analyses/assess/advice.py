@@ -4,7 +4,7 @@ from extrados.analyses.assess.asking import Asker
 from extrados.analyses.context import Refused
 from extrados.results.assess import Advice
 from extrados.results.rocking import Rocking
-from extrados.results.strengthen import Intervention, Strengthen, size_told
+from extrados.results.strengthen import Intervention, Strengthen, size_told, works_in
 from extrados.schema.quantities import engineering
 
 #: Outcomes of rocking in words
@@ -41,7 +41,7 @@ def _least_by_rocking(asker: Asker, tie: Intervention) -> Intervention | None:
     existing building has it, or where no force up to that of statics gives it."""
     table = {
         "name": "the same tie", "start": tie.start_m, "ground" if "ground" in tie.place else "end": tie.end_m,
-        "works_in": _works(tie), "yield_force": tie.required_N, "stiffness": tie.stiffness_N_m,
+        "works_in": works_in(tie), "yield_force": tie.required_N, "stiffness": tie.stiffness_N_m,
     }  # fmt: skip
     try:
         result, _ = asker.ask("strengthen", {"by": "rocking", "safety_factor": 1.0, "ties": [table]})
@@ -76,7 +76,7 @@ def _rocks(asker: Asker, one: Intervention) -> str:
             "yield_force": one.required_N,
             "stiffness": one.stiffness_N_m,
         }
-        changes = {"ties": [*asker.context.deck.data.get("ties", []), {**tie, "works_in": _works(one)}]}
+        changes = {"ties": [*asker.context.deck.data.get("ties", []), {**tie, "works_in": works_in(one)}]}
     try:
         result, _ = asker.ask("rocking", {}, None, changes)
     except Refused as error:
@@ -84,10 +84,6 @@ def _rocks(asker: Asker, one: Intervention) -> str:
     if not isinstance(result.results, Rocking):
         return f"gives no result: {result.reason or result.answer}"
     return OUTCOMES.get(result.results.outcome, result.results.outcome)
-
-
-def _works(one: Intervention) -> str:
-    return {"tie": "tension", "strut": "compression"}.get(one.kind, "both")
 
 
 def _statement(r: Strengthen, rocking: dict[str, str]) -> str:

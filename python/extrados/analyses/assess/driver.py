@@ -71,7 +71,8 @@ def run(context: Context, options: Assess) -> Result:
             work.further("strengthening", work.advise)
         work.further("closer looks where strategies differ", work.refine)
         work.further("finer checks of contradictions", work.check_finer)
-        if options.sensitivity or options.vary:
+        if options.moves:
+            work.asker.deadline = STOPPED_AFTER * options.budget
             work.further("sensitivity", work.move)
     except Interrupted:
         result.status, result.reason = "interrupted", "interrupted; the strategies that had run are reported"
@@ -105,7 +106,7 @@ class _Work:
         self.asker = Asker(
             context,
             dict(context.deck.data["motion"]),
-            STOPPED_AFTER * options.budget,
+            STOPPED_AFTER * options.for_strategies,
             Stopwatch(),
         )
         self.peak, self.peak_told = hazard.peak_of(context)
@@ -159,7 +160,7 @@ class _Work:
             result, deck = self.asker.ask(choice.kind or strategy.kind, choice.keys, motion, None, without)
         except OutOfTime:
             self.rows[name] = no_row(
-                strategy, "left out", f"stopped at the time limit of {self.options.budget:g} s", words
+                strategy, "left out", f"stopped at the time limit of {self.options.for_strategies:g} s", words
             )
             self.not_done.append(f"{strategy.label}: stopped at the time limit")
             return None
@@ -189,7 +190,7 @@ class _Work:
         except ENDING:
             raise
         except OutOfTime:
-            self.not_done.append(f"{what}: stopped at the time limit of {self.options.budget:g} s")
+            self.not_done.append(f"{what}: stopped at the time limit of {self.asker.deadline:g} s")
         except Exception as error:
             self._failed(what, error)
 
@@ -315,7 +316,7 @@ class _Work:
         try:
             result, deck = self.asker.ask(choice.kind or strategy.kind, keys, None, None, without)
         except (OutOfTime, Refused) as error:
-            told = str(error) or f"stopped at the time limit of {self.options.budget:g} s"
+            told = str(error) or f"stopped at the time limit of {self.options.for_strategies:g} s"
             self.not_done.append(f"{strategy.label} until {end:.3g} s: {told}")
             return False
         if result.status != "ok":
@@ -456,7 +457,7 @@ class _Work:
             return
         choice, building = self.choices["dem"], self.context.building
         each = max(choice.seconds, 1e-3)
-        left = int(strategies.REFINING * self.options.budget / each) - 1  # the perturbed run of the first
+        left = int(strategies.REFINING * self.options.for_strategies / each) - 1  # the perturbed run of the first
         names = {n for p in pairs for n in p}
         r = self.results["dem"].results
         if not isinstance(r, DemRun):
@@ -576,13 +577,12 @@ class _Work:
     # ----- sensitivity
 
     def move(self) -> None:
-        """Margins with values of the deck moved one by one; the clock that stops strategies begins anew."""
+        """Margins with values of the deck moved one by one, as many as the budget allows."""
         if not strategies.of("tilt").applies(self.context.building):
             self.not_done.append(
                 "sensitivity: limit analysis and rocking do not look at a building on a plan; `pushover` has variants"
             )
             return
-        self.asker.deadline = self.asker.clock() + STOPPED_AFTER * self.options.budget
         rocked = self.results.get("rocking")
         restitution = rocked.of(RockingResults).restitution if rocked is not None else None
         keys = sensitivity.varied(self.context.building, self.options.vary, restitution)
@@ -590,7 +590,7 @@ class _Work:
         count = self.motions if self.many else None
         margins = sensitivity.Margins(
             self.context, data, strategies.LEVELS_OF_A_SET if self.many else strategies.LEVELS, count,
-            self.options.acceptable_probability, self.peak,
+            self.options.acceptable_probability, self.peak, self.asker,
         )  # fmt: skip
         try:
             self.moved = margins.moved(keys)
@@ -598,6 +598,8 @@ class _Work:
             if stop.interrupted:
                 raise Interrupted from None
             self.not_done.append(f"sensitivity: {stop}")
+        if margins.stopped:
+            raise OutOfTime
         self._move_elements()
 
     def _move_elements(self) -> None:
@@ -704,7 +706,8 @@ class _Work:
         overall, statement = conclusion(
             facts, reasons, unexplained, self.context.building.require_structure().word, least, rows
         )
-        chance = estimate_collapse(rows)
+        fragility = self.results.get("probability")
+        chance = estimate_collapse(rows, None if fragility is None else fragility.results)
         if self.finer_told:
             statement += f" {self.finer_told}"
         if overall != "cannot stand":

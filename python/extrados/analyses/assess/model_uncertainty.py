@@ -1,8 +1,13 @@
 """One probability of collapse from the agreement of each strategy with tests."""
 
+import numpy as np
+
 from extrados.analyses.assess.strategies import of
-from extrados.results.assess import CollapseProbability, Contribution, StrategyVerdict
+from extrados.analyses.statistics.summaries import wilson
+from extrados.results.assess import CollapseInMotion, CollapseProbability, Contribution, StrategyVerdict
+from extrados.results.statistics import Ensemble, OverLevels
 from extrados.results.uncertainty import ModelUncertainty, collapse_probability, uncertainties_of
+from extrados.results.verdict import KindResults
 
 #: Quantities of the verification book that are a capacity under a horizontal load
 CAPACITIES = ("capacity in acceleration", "peak load")
@@ -10,8 +15,9 @@ CAPACITIES = ("capacity in acceleration", "peak load")
 STATIC = "acceleration"
 
 
-def estimate_collapse(rows: list[StrategyVerdict]) -> CollapseProbability:
-    """The weighted mean of the strategies that experiments have tested; its interval encloses those of all contributions."""
+def estimate_collapse(rows: list[StrategyVerdict], fragility: KindResults | None = None) -> CollapseProbability:
+    """The weighted mean of the static strategies that experiments have tested, whose interval encloses those of all contributions, and
+    the share of collapses under the motion itself. fragility: results of the strategy `probability`."""
     if proven := next((row for row in rows if row.outcome == "cannot-stand"), None):
         return CollapseProbability(
             probability=1.0, low=1.0, high=1.0, contributions=[], without={},
@@ -28,6 +34,9 @@ def estimate_collapse(rows: list[StrategyVerdict]) -> CollapseProbability:
             tested.append((row, entry))
     total = sum(entry.count for _, entry in tested)
     contributions = [_contribution(row, entry, entry.count / total) for row, entry in tested]
+    moving = _in_motion(rows, fragility)
+    dynamic = {} if moving is None else {"in_motion": moving}
+    said = "" if moving is None else f"{_motion_told(moving)} "
     labels = {row.strategy: row.label for row in rows}
     reasons: dict[str, list[str]] = {}
     for name, reason in without.items():
@@ -36,18 +45,20 @@ def estimate_collapse(rows: list[StrategyVerdict]) -> CollapseProbability:
     left = f" No contribution: {told}." if told else ""
     if not contributions:
         return CollapseProbability(
-            probability=None, low=None, high=None, contributions=[], without=without,
-            statement="No probability of collapse is given: no strategy has both a critical scale factor and tests in the verification book.",
+            probability=None, low=None, high=None, contributions=[], without=without, **dynamic,
+            statement=said.strip() or "No probability of collapse is given: no strategy has both a critical scale factor and tests in the verification book.",
             method=left.strip(),
         )  # fmt: skip
     p = sum(one.weight * one.probability for one in contributions)
     low, high = min(one.low for one in contributions), max(one.high for one in contributions)
     names = " and ".join(labels[one.strategy] for one in contributions)
-    said = f"Probability of collapse {percent(p)} (90 % confidence: {percent(low)} to {percent(high)}), from the model uncertainty of {names}."
-    if all(row.axis == STATIC for row, _ in tested):
-        said += " The peak of the hazard acts as a sustained load in this number."
-        if any(row.axis != STATIC and row.outcome == "stands" for row in rows):
-            said += " A peak that exceeds the capacity only briefly may cause no collapse."
+    said += (
+        f"If the peak of the hazard acted as a sustained load, the probability of collapse would be {percent(p)} (90 % confidence: "
+        f"{percent(low)} to {percent(high)}), from the model uncertainty of {names}. This static number is not the probability of collapse in "
+        "the earthquake."
+    )
+    if any(row.axis != STATIC and row.outcome == "stands" for row in rows):
+        said += " A peak that exceeds the capacity only briefly may cause no collapse."
     each = "; ".join(
         f"{labels[one.strategy]}: {one.count} tests, bias {one.bias:.3g}, scatter {one.scatter:.3g}, critical scale factor {one.margin:.3g}, "
         f"probability {percent(one.probability)} ({percent(one.low)} to {percent(one.high)}), weight {one.weight:.2g}"
@@ -59,8 +70,39 @@ def estimate_collapse(rows: list[StrategyVerdict]) -> CollapseProbability:
         f"contributions. {each}.{left}"
     )
     return CollapseProbability(
-        probability=p, low=low, high=high, contributions=contributions, without=without, statement=said, method=method
+        probability=p, low=low, high=high, contributions=contributions, without=without, statement=said, method=method, **dynamic,
     )  # fmt: skip
+
+
+def _in_motion(rows: list[StrategyVerdict], fragility: KindResults | None) -> CollapseInMotion | None:
+    """The share of collapses at the hazard itself; None where no motion could be run."""
+    if isinstance(fragility, OverLevels):
+        k = int(np.argmin(np.abs(np.array(fragility.levels) - 1.0)))
+        count, collapsed = fragility.count[k], fragility.collapsed[k]
+    elif isinstance(fragility, Ensemble):
+        count, collapsed = fragility.count, fragility.collapsed
+    else:
+        return None
+    if not count:
+        return None
+    low, high = wilson(collapsed, count)
+    violated = next((row.violated for row in rows if row.strategy == "probability"), [])
+    return CollapseInMotion(
+        collapsed=collapsed,
+        count=count,
+        probability=collapsed / count,
+        low=float(low),
+        high=float(high),
+        violated=violated,
+    )
+
+
+def _motion_told(one: CollapseInMotion) -> str:
+    text = (
+        f"Probability of collapse under the hazard by rocking {percent(one.probability)} (95 % interval {percent(one.low)} to {percent(one.high)}): "
+        f"{one.collapsed} of {one.count} runs collapse."
+    )
+    return f"{text} Assumptions of rocking do not hold in these runs." if one.violated else text
 
 
 def _entry(row: StrategyVerdict) -> ModelUncertainty | str:

@@ -7,13 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from extrados import kinds
+from extrados import interrupts, kinds
+from extrados.analyses.assess.asking import Asker, OutOfTime
 from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.batches import stacked, sweep
 from extrados.analyses.changes import changed, lacking
 from extrados.analyses.context import Context
 from extrados.analyses.limit.asked import unit_at
 from extrados.analyses.sequence import run_one
+from extrados.core.calls import within
 from extrados.decks.reader import DeckError, make_deck
 from extrados.results.limit import Tilt
 from extrados.results.statistics import OverLevels
@@ -34,6 +36,7 @@ THICKNESS = {
 #: Values that cannot pass these
 BOUNDS = {"thickness_factor": (0.2, 1.0), "restitution": (0.0, 1.0), "friction": (0.0, 10.0)}
 STRATEGIES = ("tilt", "rocking")
+UNKNOWN = np.full(len(STRATEGIES), np.nan)
 
 
 @dataclass(frozen=True)
@@ -165,13 +168,14 @@ class Margins:
         count: int | None,
         acceptable: float,
         peak_g: float,
+        asker: Asker,
     ):
         self.context, self.data, self.levels, self.count = context, data, levels, count
-        self.acceptable, self.peak_g = acceptable, peak_g
+        self.acceptable, self.peak_g, self.asker, self.stopped = acceptable, peak_g, asker, False
         self.known: dict[tuple[str, float], np.ndarray] = {}
 
     def ask(self, wanted: list[tuple[str, float]]) -> None:
-        """Compute what is not known; batches.Unfinished where the user stopped it."""
+        """Compute what is not known; OutOfTime after the deadline, batches.Unfinished where the user stopped it."""
         new = [w for w in dict.fromkeys(wanted) if w not in self.known]
         if not new:
             return
@@ -182,20 +186,34 @@ class Margins:
             self.data, str(self.context.deck.folder), [k for k, _ in new], [v for _, v in new], self.levels, self.count,
             self.acceptable, self.peak_g, without, building.supports.abutting_wall or "",
         )  # fmt: skip
-        found = sweep(self.context, "sensitivity", job, len(new), "sensitivity", slow=True).whole()
+        clock, signals = self.asker.clock, len(interrupts.asked)
+        with within(self.asker.deadline - clock(), clock) as limit:
+            swept = sweep(self.context, "sensitivity", job, len(new), "sensitivity", slow=True)
+        if swept.interrupted and limit.passed and len(interrupts.asked) == signals:
+            raise OutOfTime
+        found = swept.whole()
         self.known |= {w: found["margin"][i] for i, w in enumerate(new)}
 
     def moved(self, keys: list[Varied]) -> list[Moved]:
-        """All keys at once, so that each round is one sweep."""
+        """All keys at once, so that each round is one sweep; of rounds that the deadline stops the values stay unknown."""
         ends = {v.key: (v.bounded(v.base * (1.0 - v.share)), v.bounded(v.base * (1.0 + v.share))) for v in keys}
         tried = {v.key: sorted({v.bounded(v.base * f) for f in SOUGHT} | set(ends[v.key])) for v in keys}
-        self.ask([(key, value) for key, values in tried.items() for value in values])
+        try:
+            self.ask([(v.key, value) for v in keys for value in (v.bounded(v.base), *ends[v.key])])
+            self.ask([(key, value) for key, values in tried.items() for value in values])
+        except OutOfTime:
+            self.stopped = True
         turns = {v.key: [self._bracket(v, tried[v.key], s) for s in range(len(STRATEGIES))] for v in keys}
         for _ in range(HALVINGS):
             open_ones = [
                 (key, s, pair) for key, there in turns.items() for s, pair in enumerate(there) if pair is not None
             ]
-            self.ask([(key, 0.5 * (a + b)) for key, _, (a, b) in open_ones])
+            try:
+                self.ask([(key, 0.5 * (a + b)) for key, _, (a, b) in open_ones])
+            except OutOfTime:
+                self.stopped = True
+            if self.stopped:  # the bracket is as wide as the last round left it
+                break
             for key, s, (a, b) in open_ones:
                 middle = 0.5 * (a + b)
                 same = (self.known[key, a][s] < 1.0) == (self.known[key, middle][s] < 1.0)
@@ -206,16 +224,16 @@ class Margins:
                 [None if pair is None else 0.5 * (pair[0] + pair[1]) for pair in turns[v.key]],
                 [(value, self._row(v.key, value)) for value in tried[v.key]],
             )
-            for v in keys
+            for v in keys if (v.key, v.bounded(v.base)) in self.known
         ]  # fmt: skip
 
     def _row(self, key: str, value: float) -> list[float | None]:
-        return [None if np.isnan(m) else float(m) for m in self.known[key, value]]
+        return [None if np.isnan(m) else float(m) for m in self.known.get((key, value), UNKNOWN)]
 
     def _bracket(self, v: Varied, values: list[float], s: int) -> tuple[float, float] | None:
         """The pair of neighbours, nearest to the value as it is, between which the margin of a strategy passes 1."""
         pairs = [
-            (a, b) for a, b in itertools.pairwise(values)
+            (a, b) for a, b in itertools.pairwise(x for x in values if (v.key, x) in self.known)
             if np.isfinite([self.known[v.key, a][s], self.known[v.key, b][s]]).all()
             and (self.known[v.key, a][s] < 1.0) != (self.known[v.key, b][s] < 1.0)
         ]  # fmt: skip

@@ -85,7 +85,7 @@ class Asked:
 
     def share(self, name: str) -> float:
         """Nominal seconds that a strategy may take."""
-        return SHARES[name] * self.options.budget
+        return SHARES[name] * self.options.for_strategies
 
 
 @dataclass(frozen=True)

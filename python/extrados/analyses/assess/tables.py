@@ -15,6 +15,10 @@ Strategy = Literal[
 ]
 
 
+#: Of the budget: what is kept for the sensitivity, where the deck requests it
+KEPT = 0.25
+
+
 class Assess(Analysis):
     """Every strategy that applies to the building under the hazard of [motion], compared, with the reasons why they differ.
 
@@ -60,8 +64,8 @@ class Assess(Analysis):
     )
     sensitivity: bool = key(
         False, "also move thickness, corners, friction, restitution and density one by one: margins of limit analysis and rocking "
-        "anew, and the value at which each verdict turns; on discrete elements the stiffness of joints and a support that moves; not "
-        "counted in the budget"
+        "anew, and the value at which each verdict turns; on discrete elements the stiffness of joints and a support that moves; 25 % "
+        "of the budget are kept for it"
     )  # fmt: skip
     vary: dict[str, Annotated[float, Field(gt=0, lt=1)]] | None = key(
         None,
@@ -75,6 +79,16 @@ class Assess(Analysis):
         {},
         "keys of a strategy's own table, such as `dem = { joints.normal_stiffness = 2e10 }`; they go before the rules",
     )
+
+    @property
+    def moves(self) -> bool:
+        """Whether values are moved one by one."""
+        return bool(self.sensitivity or self.vary)
+
+    @property
+    def for_strategies(self) -> float:
+        """Seconds of the budget for strategies and further runs; the rest is for the sensitivity."""
+        return self.budget * (1.0 - KEPT if self.moves else 1.0)
 
     @model_validator(mode="after")
     def _once(self) -> "Assess":

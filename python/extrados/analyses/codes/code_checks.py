@@ -160,7 +160,7 @@ def _placed(action: Action, below: FloorBelow | None) -> ntc.Place:
     floor = None
     if action.spectrum is not None:
         period, damping = below.building_period, below.building_damping
-        floor = ntc.floor(action.spectrum, below.height, below.building_height, below.storeys, period, damping)
+        floor = ntc.floor(action.spectrum, below.height, below.building_height, below.levels, period, damping)
     return ntc.Place(True, floor)
 
 

@@ -32,7 +32,7 @@ from extrados.results.limit import DILATANT, SAME
 from extrados.results.model import Array, Result, TableData
 from extrados.results.verdict import Bound
 from extrados.schema.constants import GRAVITY
-from extrados.schema.table import FloorBelow
+from extrados.schema.table import FloorBelow, storeys_in
 from extrados.views.building import Building
 from extrados.views.rockers.mechanism import MechanismModel, NoMotion
 from extrados.views.rockers.restraints import Restraints, members_of
@@ -124,7 +124,7 @@ def run(context: Context, options: LocalMechanism) -> Result:
 def _on_floor(options: LocalMechanism, below: FloorBelow) -> LocalMechanism:
     """The table of a mechanism whose structure stands on a floor: the building is that of the motion."""
     given = options.model_fields_set
-    own = {"building_height": below.building_height, "building_period": below.building_period, "storeys": below.storeys}
+    own = {"building_height": below.building_height, "building_period": below.building_period, "storeys": below.levels}
     unused = {"building_period", "storeys"} if options.modes else set()
     return options.model_copy(update={k: v for k, v in own.items() if k not in given | unused})
 
@@ -208,7 +208,8 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
         context.warnings.append(
             "Without its ties the body would not stand at rest: the nonlinear check, which neglects them, is not made."
         )
-    storeys = len(structure.storeys) if isinstance(structure := context.building.structure, Plan) else options.storeys
+    structure = context.building.structure
+    storeys = len(structure.storeys) if isinstance(structure, Plan) else options.storeys or storeys_in(building or 0.0)
     lines, more = _checks(context, options, turning, storeys, fc)
     violated = []
     if code.jurisdiction == "NTC" and fc < ntc.LC1 and context.building.material.compressive_strength is None:
@@ -521,6 +522,7 @@ def _ntc(
         note += f", z {z:.3g} m, z/H {z / height:.3g}"
         if action.spectrum is not None:
             at_height = _floor(options, action.spectrum, z, height, storeys)
+            note += "" if options.modes else f", storeys {storeys}"
         elif action.peak is not None:
             context.warnings.append(
                 f"at {z:.3g} m above the foundation the checks of NTC require the response of the building at its period: without a spectrum they "

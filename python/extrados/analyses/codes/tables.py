@@ -278,7 +278,12 @@ class LocalMechanism(BuildingAnalysis):
     building_period: Time | None = key(
         None, "first period T_1 of the building; default 0.05 H^0.75", gt=0, source="EN 1998-1 Eq. 4.6"
     )
-    storeys: int = key(1, "storeys N of the building, for the modal participation", ge=1, le=50)
+    storeys: int | None = key(
+        None,
+        "storeys N of the building, for the modal participation; default one for each 3 m of its height",
+        ge=1,
+        le=50,
+    )
     modes: list[Mode] = key(
         [], "modes of the building for the floor spectrum; default its first mode alone, linear over the height",
         source="Circ. 7/2019 C7.2.3", max_length=20,

@@ -61,7 +61,7 @@ def run(context: Context, options: Tilt) -> Result:
     result = Result("tilt")
     least = int(np.flatnonzero(capacity <= capacity.min() + SAME)[0])  # of equals the first
     slides = max(
-        _dilating(assembly, limit, one)
+        dilating_contacts(limit, one)
         for one in (there, back, rose[least] if rose else there)
         if isinstance(one, Programme)
     )
@@ -86,12 +86,12 @@ def run(context: Context, options: Tilt) -> Result:
             result.warnings.append(told)
     opens = _openings(assembly, there)
     speed = np.linalg.norm(there.motion[:, :3], axis=1)
-    pose = _pose(assembly, there.motion)
+    pose = pose_of(assembly, there.motion)
     found = out.SolidTilt(
         collapse_acceleration_g=there.gamma, collapse_acceleration_opposite_g=back.gamma,
         tilt_angle_deg=_degrees(there.gamma), tilt_angle_opposite_deg=_degrees(back.gamma), load_direction_deg=first,
         least_acceleration_g=float(capacity[least]), least_direction_deg=float(angles[least]), blocks=len(assembly.mass),
-        contacts=len(assembly.a), moving_blocks=int((_fastest(assembly, there.motion) > STILL).sum()),
+        contacts=len(assembly.a), moving_blocks=len(moving_blocks(assembly, there)),
         fastest_block=assembly.block_names[int(speed.argmax())], opening_contacts=opens[:MOST_CONTACTS],
         weight_N=float(limit.weight.sum() + GRAVITY * assembly.fill[:, 1].sum()), upper_bound_g=there.upper,
         duality_gap=max(there.gap, back.gap), equilibrium_residual=max(there.equilibrium, back.equilibrium),
@@ -243,13 +243,28 @@ def _fastest(assembly: SolidAssembly, motion: np.ndarray) -> np.ndarray:
     return found / found.max()
 
 
-def _pose(assembly: SolidAssembly, motion: np.ndarray) -> np.ndarray:
+def pose_of(assembly: SolidAssembly, motion: np.ndarray) -> np.ndarray:
     """The mechanism carried on until the fastest vertex has gone SHOWN of the size: shifts of the centroids and rotation
     vectors (nb, 6)."""
     points = np.concatenate([p.vertices for p in assembly.parts])
     owner = np.repeat(assembly.owner, [len(p.vertices) for p in assembly.parts])
     speed = np.linalg.norm(_rates(assembly, motion, points, owner), axis=1).max()
     return motion * (SHOWN * assembly.size / speed)
+
+
+def moving_blocks(assembly: SolidAssembly, found: Programme) -> list[int]:
+    """Blocks that move in a mechanism."""
+    return np.flatnonzero(_fastest(assembly, found.motion) > STILL).tolist()
+
+
+def mechanism_told(assembly: SolidAssembly, found: Programme) -> str:
+    """A mechanism in words: blocks that move, the fastest, and the contacts that open most."""
+    count, blocks = len(moving_blocks(assembly, found)), len(assembly.mass)
+    fastest = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
+    moving = "all blocks move" if count == blocks else f"{count} of {blocks} blocks move"
+    names = [c.name for c in _openings(assembly, found)[:MOST_NAMED]]
+    opens = f"; most open: {', '.join(names)}" if names else ""
+    return f"{moving}, {fastest} fastest{opens}"
 
 
 def _resultants(assembly: SolidAssembly, found: Programme) -> tuple[np.ndarray, np.ndarray]:
@@ -299,9 +314,10 @@ def _openings(assembly: SolidAssembly, found: Programme) -> list[out.OpenContact
     return rows
 
 
-def _dilating(assembly: SolidAssembly, limit: SolidLimit, found: Programme) -> int:
+def dilating_contacts(limit: SolidLimit, found: Programme) -> int:
     """Contacts with a corner that slides in a mechanism and opens by no more than its friction times the slip: there
     associated friction dilates, and the multiplier is an upper bound."""
+    assembly = limit.assembly
     joint = assembly.corner_joint
     opening, sliding = _corner_rates(assembly, found)
     with np.errstate(invalid="ignore"):

@@ -12,13 +12,15 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.asked import number_of, unit_at
 from extrados.analyses.limit.tables import AppliedLoad
 from extrados.analyses.strengthen.tables import Anchorage, Change, Strengthen
-from extrados.model.errors import BadGeometry, Key
+from extrados.model.errors import BadGeometry, Key, NoView
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.ties import Tie
 from extrados.views.building import Building
 
 #: Shares of the height at which ties are tried where the deck names none, and how far behind a wall they end, in heights
 HEIGHTS, BEHIND = (0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.98), 0.5
+#: The same of hoops, whose number is less as a programme of cones takes longer
+HOOPS = (0.1, 0.2, 0.3, 0.45, 0.6, 0.8)
 #: Greatest size tried of a key that the deck does not name, over its value
 GREATEST = 3.0
 #: Modulus of elasticity of a steel bar, and its yield strength where the deck gives none [Pa]: defaults of this program
@@ -29,13 +31,16 @@ GAP, INSIDE = 0.02, 1e-3
 
 @dataclass(frozen=True)
 class TieAlternative:
-    """A tie whose yield force is sought, at any of the places; most: the greatest force [N]."""
+    """A tie whose yield force is sought, at any of the places; lengths [m]; most: the greatest force [N];
+    debonds_by: source of the debonding force of a bonded strip, which `most` is."""
 
     name: str
     places: list[Tie]
+    lengths: list[float]
     most: float
     anchorage: Anchorage | None
     beam_weight: float = 0.0
+    debonds_by: str = ""
 
     def loads(self, place: int) -> list[AppliedLoad]:
         """The weight of a ring beam on the blocks at its ends."""
@@ -64,8 +69,7 @@ class TieAlternative:
         if tie.stiffness is not None:
             return tie.stiffness
         strength = STEEL if self.anchorage is None else self.anchorage.steel_strength or STEEL
-        length = float(np.hypot(tie.far[0] - tie.start[0], tie.far[1] - tie.start[1]))
-        return YOUNG * force / strength / length
+        return YOUNG * force / strength / self.lengths[place]
 
 
 @dataclass(frozen=True)
@@ -91,32 +95,82 @@ def tie_alternatives(building: Building, options: Strengthen) -> list[TieAlterna
         return usual_ties(building)
     found = []
     for k, option in enumerate(options.ties):
-        name = option.name or f"{'ring beam' if option.beam_weight else word_of(option)} {k + 1}"
+        word = (
+            "bonded strip"
+            if option.debonding_force is not None
+            else "ring beam"
+            if option.beam_weight
+            else word_of(option)
+        )
+        name = option.name or f"{word} {k + 1}"
         count = option.places if option.start_to is not None or option.far_to is not None else 1
         shares = np.linspace(0.0, 1.0, count).tolist()
         places = [option.at(share).model_copy(update={"name": f"{name} (strengthening)"}) for share in shares]
-        most = np.inf if option.yield_force is None else option.yield_force
         placed: list[Tie] = []
+        lengths: list[float] = []
         trouble: BadGeometry | None = None
         for tie in places:
             try:
-                building.having(ties=(tie,)).anchored()
+                lengths.append(length_of(building, tie))
                 placed.append(tie)
             except BadGeometry as error:  # an end between two stones of a range is passed over
                 trouble = error
         if not placed and trouble is not None:
             raise Refused(str(trouble), ("analysis", "ties", k))
-        found.append(TieAlternative(name, placed, most, option.anchorage, option.beam_weight or 0.0))
+        found.append(
+            TieAlternative(
+                name, placed, lengths, option.greatest, option.anchorage, option.beam_weight or 0.0, option.source or ""
+            )
+        )
     return found
 
 
+def is_spatial(building: Building) -> bool:
+    """Whether limit analysis takes the building as blocks in space, since it has no plane section."""
+    if building.structure is None:
+        return False
+    try:
+        building.blocks()
+    except NoView:
+        return True
+    return False
+
+
+def length_of(building: Building, tie: Tie) -> float:
+    """Length of a tie, chain or hoop [m]; BadGeometry where its ends are in no block."""
+    tied = building.having(ties=(tie,))
+    if is_spatial(building):
+        return float(sum(np.linalg.norm(s.point[k] - s.point[n]) for s in tied.strands() for k, n in s.segments))
+    tied.anchored()
+    return float(np.hypot(tie.far[0] - tie.start[0], tie.far[1] - tie.start[1]))
+
+
+def usual_hoops(building: Building) -> list[TieAlternative]:
+    """A hoop around blocks in space at one of several heights."""
+    z = np.concatenate([part.vertices[:, 2] for part in building.solids().parts])
+    low, high = float(z.min()), float(z.max())
+    hoops = [
+        Tie.model_validate(
+            {"name": "hoop (strengthening)", "start": [0.0, 0.0, low + share * (high - low)], "hoop": True}
+        )
+        for share in HOOPS
+    ]
+    placed = [tie for tie in hoops if _holds(building, tie)]
+    lengths = [length_of(building, tie) for tie in placed]
+    return [TieAlternative("hoop", placed, lengths, np.inf, None)] if placed else []
+
+
 def word_of(tie: Tie) -> str:
-    """What a tie is called by the senses in which it works."""
+    """What a tie is called by its course and the senses in which it works."""
+    if tie.hoop or tie.via:
+        return "hoop" if tie.hoop else "chain"
     return {"tension": "tie", "compression": "strut", "both": "spring"}[tie.works_in]
 
 
 def usual_ties(building: Building) -> list[TieAlternative]:
     """A horizontal tie across a hollow section, or an anchor of a wall to what stands behind it, at one of several heights."""
+    if is_spatial(building):
+        return usual_hoops(building)
     stones = building.blocks()
     points = np.concatenate(stones.outlines)
     low, high = points[:, 1].min(), points[:, 1].max()
@@ -138,7 +192,8 @@ def usual_ties(building: Building) -> list[TieAlternative]:
     ):
         placed = [tie for tie in ties if _holds(building, tie)]
         if placed:
-            found.append(TieAlternative(name, placed, np.inf, None))
+            lengths = [length_of(building, tie) for tie in placed]
+            found.append(TieAlternative(name, placed, lengths, np.inf, None))
     return found
 
 
@@ -154,7 +209,7 @@ def _tie(start: tuple[float, float], far: tuple[float, float], end: str, works_i
 
 def _holds(building: Building, tie: Tie) -> bool:
     try:
-        building.having(ties=(tie,)).anchored()
+        length_of(building, tie)
     except BadGeometry:
         return False
     return True

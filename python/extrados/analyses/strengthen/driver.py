@@ -1,20 +1,22 @@
 """strengthen: the least intervention of each kind that meets a target, compared, and what governs then."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from extrados.analyses.batches import stop_if_asked
 from extrados.analyses.context import Context
-from extrados.analyses.limit.common import geometry_arrays, limit_of, packed
+from extrados.analyses.limit.common import geometry_arrays, packed
+from extrados.analyses.limit.solids import scene_arrays
 from extrados.analyses.sequence import run_one
 from extrados.analyses.statistics.summaries import wilson
 from extrados.analyses.strengthen.alternatives import (
     ChangeAlternative,
     TieAlternative,
     change_alternatives,
+    is_spatial,
     tie_alternatives,
     word_of,
 )
@@ -24,18 +26,18 @@ from extrados.analyses.strengthen.measures import (
     Runs,
     Statics,
     Worth,
-    measure_of,
-    mechanism_told,
     nested,
     plain_data,
     with_value,
 )
+from extrados.analyses.strengthen.space import SpaceStatics
 from extrados.analyses.strengthen.tables import Strengthen
 from extrados.decks.reader import DeckError, make_deck
 from extrados.limit.errors import Immovable, NoAnswer, NoEquilibrium
 from extrados.limit.strengthening import Point, concave_curve, pieces_of
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.polygons import signed_area
+from extrados.model.geometry.solids.polyhedra import moments
 from extrados.model.ties import Tie
 from extrados.results import strengthen as out
 from extrados.results.assess import Assess, StrategyVerdict
@@ -45,8 +47,6 @@ from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import engineering
 from extrados.views.building import Building
 
-#: Of the greatest capacity: where a tie that never yields is taken to have reached it
-REACHED = 1e-6
 #: How far beyond the force of the greatest capacity, or beyond the required one, a curve goes
 BEYOND = 1.15
 #: Relative precision of a curve that crushing bends
@@ -125,6 +125,25 @@ def run(context: Context, options: Strengthen, closely: bool = True) -> Result:
     return result
 
 
+def _with_debonding(row: out.Intervention, one: TieAlternative) -> out.Intervention:
+    """The row of a bonded strip, with its share of the debonding force and the source of that."""
+    if not one.debonds_by:
+        return row
+    share = "" if row.required_N is None else f"The required force is {100.0 * row.required_N / one.most:.0f} % of it. "
+    told = (
+        f"Debonding force of the strip: {engineering(one.most, 'N')} ({one.debonds_by}). {share}Debonding is brittle, and a strip that has "
+        "debonded carries nothing: limit analysis relies on a tie that yields."
+    )
+    return row.model_copy(update={"adverse": [*row.adverse, told]})
+
+
+def measure_of(context: Context, options: Strengthen, closely: bool = True) -> Measure:
+    """The measure of the target; closely: of limit analysis also the least state without dilatancy, where pressed joints slide."""
+    if options.by != "tilt":
+        return Runs(context, options)
+    return SpaceStatics(context, options) if is_spatial(context.building) else Statics(context, options, closely)
+
+
 def _quantity(options: Strengthen) -> tuple[str, str]:
     if options.by == "tilt":
         return "Collapse acceleration (horizontal, constant)", "g"
@@ -134,8 +153,10 @@ def _quantity(options: Strengthen) -> tuple[str, str]:
 
 
 def _direction(measure: Measure, options: Strengthen) -> Any:
+    if isinstance(measure, SpaceStatics):
+        return None
     if isinstance(measure, Statics) and len(measure.senses) == 1:
-        return "+x" if measure.senses[0] > 0 else "-x"
+        return measure.word(measure.senses[0])
     return options.direction
 
 
@@ -172,7 +193,7 @@ class _Work:
     def _tie_by_programme(self, one: TieAlternative, statics: Statics) -> _Sized:
         target = statics.aimed
         forces = [statics.carrying(one, place).force(one, place, target) for place in range(len(one.places))]
-        costs = [self._cost(_length(tie), f, 0.0) for tie, f in zip(one.places, forces, strict=True)]
+        costs = [self._cost(length, f, 0.0) for length, f in zip(one.lengths, forces, strict=True)]
         place = int(np.argmin(costs)) if np.isfinite(costs).any() else self._strongest(one, statics)
         statics = statics.carrying(one, place)
         required = forces[place] if np.isfinite(forces[place]) else None
@@ -187,7 +208,7 @@ class _Work:
         greatest = None if points is None else points[-1].capacity
         if worth is None and points is not None:
             worth = statics.of(one.having(self.context.building, place, points[-1].force), picture=True)
-        tie = one.places[place]
+        tie, length = one.places[place], one.lengths[place]
         no_force = (
             "no force of the tie suffices"
             if np.isinf(one.most)
@@ -199,19 +220,20 @@ class _Work:
         curve = ([], []) if points is None else _polyline(points)
         row = self._row(
             name=one.name, kind="ring-beam" if one.beam_weight else word_of(tie), place=_placed(tie), unit="N", required=required, greatest=greatest,
-            worth=worth, ranges=ranges, length=_length(tie), force=required or 0.0, volume=0.0, reason=reason,
+            worth=worth, ranges=ranges, length=length, force=required or 0.0, volume=0.0, reason=reason,
             tie=tie, stiffness=one.stiffness(place, required or 0.0), anchorage=one.anchorage,
         )  # fmt: skip
+        row = _with_debonding(row, one)
         if one.beam_weight:
             told = f"The ring beam weighs {engineering(one.beam_weight, 'N')}, with its force for limit analysis alone: other strategies are not run with it."
             row = row.model_copy(update={"adverse": [*row.adverse, told]})
-        middles = [(0.5 * (t.start[0] + t.far[0]), 0.5 * (t.start[1] + t.far[1])) for t in one.places]
+        middles = [_middle(t) for t in one.places]
         # a deck holds loads in tables of analyses, so that no other strategy considers the beam
         data = None if required is None or one.beam_weight else one.data(plain_data(self.context), place, required)
         sized = _Sized(row, curve, None, data, worth, tie)
         if len(one.places) > 1:
             sized.places = ([m[0] for m in middles], [m[1] for m in middles], forces)
-        sized.costs = [self._cost(_length(tie), force, 0.0) for force in curve[0]]
+        sized.costs = [self._cost(length, force, 0.0) for force in curve[0]]
         return sized
 
     def _checked(
@@ -255,7 +277,7 @@ class _Work:
     ) -> tuple[list[Point] | None, list[out.GoverningRange]]:
         """The capacity over the force, exact between its points; None where nothing moves at any force. It ends beyond the force
         of the greatest capacity, or beyond the required one where a tie that never yields leaves no mechanism."""
-        weight = float(np.sum(self.context.building.blocks().mass)) * GRAVITY
+        weight = float(np.sum(masses_of(self.context.building))) * GRAVITY
         first = 0.0
         if not self.before.value and self.before.reason:  # it cannot stand without the tie
             first = statics.force(one, place, 0.0) * (1.0 + 1e-9)
@@ -263,38 +285,26 @@ class _Work:
                 return None, []
         last = one.most
         if not np.isfinite(last):
-            unlimited = self._unlimited(one, place, statics)
+            unlimited = statics.unlimited(one, place)
             if unlimited is not None:
-                last = BEYOND * statics.force(one, place, unlimited * (1.0 - REACHED))
+                last = BEYOND * statics.force(one, place, unlimited * (1.0 - statics.reached))
             if not np.isfinite(last):
                 last = 2.0 * (required or weight)
         if last <= first:
             last = first + max(BEYOND * (required or 0.0), 0.01 * weight)
         try:
-            crushes = self.context.building.material.compressive_strength is not None
-            points = concave_curve(lambda f: statics.point(one, place, f), first, last, *([SMOOTH] if crushes else []))
+            same = [SMOOTH] if statics.smooth else []
+            points = concave_curve(lambda f: statics.point(one, place, f), first, last, *same)
         except (Immovable, NoEquilibrium, NoAnswer):
             return None, []
-        stones = self.context.building.blocks()
         ranges = [
             out.GoverningRange(
-                first=p.first, last=p.last, capacity_first=p.low, capacity_last=p.high, direction="+x" if p.point.direction > 0 else "-x",
-                mechanism=mechanism_told(stones, p.point.mechanism, p.point.direction),
+                first=p.first, last=p.last, capacity_first=p.low, capacity_last=p.high, direction=statics.word(p.point.direction),
+                mechanism=statics.told_at(p.point),
             )
             for p in pieces_of(points)
         ]  # fmt: skip
         return points, ranges
-
-    def _unlimited(self, one: TieAlternative, place: int, statics: Statics) -> float | None:
-        """The capacity with a tie that never yields, with dilatant friction; None where it leaves no mechanism."""
-        limit = limit_of(one.having(self.context.building, place, None), statics.options)
-        values = []
-        for sense in statics.senses:
-            try:
-                values.append(sense * statics.collapse(limit, sense)[0].gamma)
-            except Immovable:
-                continue
-        return min(values, default=None)
 
     def _tie_by_runs(self, one: TieAlternative, runs: Runs) -> _Sized:
         data = plain_data(self.context)
@@ -307,13 +317,13 @@ class _Work:
         tie = one.places[0]
         row = self._row(
             name=one.name, kind=word_of(tie), place=_placed(tie), unit="N", required=required, greatest=_safest(runs, curve[1]),
-            worth=worth, ranges=[], length=_length(tie), force=required or 0.0, volume=0.0,
+            worth=worth, ranges=[], length=one.lengths[0], force=required or 0.0, volume=0.0,
             reason="" if required is not None else worth.reason or "no force up to the greatest one considered suffices",
             tie=tie, stiffness=one.stiffness(0, required or 0.0), anchorage=one.anchorage,
         )  # fmt: skip
-        row = self._with_lapses(row, curve, True)
+        row = _with_debonding(self._with_lapses(row, curve, True), one)
         sized = _Sized(row, curve, None, None if required is None else one.data(data, 0, required), worth, tie)
-        sized.costs = [self._cost(_length(tie), force, 0.0) for force in curve[0]]
+        sized.costs = [self._cost(one.lengths[0], force, 0.0) for force in curve[0]]
         return sized
 
     def _with_lapses(
@@ -341,7 +351,6 @@ class _Work:
 
     def change(self, one: ChangeAlternative) -> _Sized:
         """The least change of a key that meets the target."""
-        by_runs = isinstance(self.measure, Runs)
         seen: dict[float, Worth] = {}
 
         def at(value: float) -> Worth:
@@ -355,10 +364,10 @@ class _Work:
 
         required, worth, curve = self._bracket(at, one.start, one.stop, one.count, self._halvings, one.whole)
         ranges: list[out.GoverningRange] = []
-        if not by_runs:
+        if isinstance(self.measure, Statics):
             for size, value in zip(*curve, strict=True):
                 told = seen[size].mechanism
-                way: Any = "+x" if seen[size].sense > 0 else "-x"
+                way = self.measure.word(seen[size].sense)
                 if ranges and ranges[-1].mechanism == told:
                     ranges[-1] = ranges[-1].model_copy(update={"last": size, "capacity_last": value})
                 elif np.isfinite(value):
@@ -439,7 +448,7 @@ class _Work:
         if (
             table not in ("structure", "material", "joints")
             or building.structure is None
-            or "blocks" in building.kind.lacks
+            or ("blocks" in building.kind.lacks and "solids" in building.kind.lacks)
         ):
             return None
         before = volume_of(building)
@@ -469,8 +478,10 @@ class _Work:
         if tie is not None and required is not None:
             more["stiffness_N_m"] = stiffness
         if tie is not None:
-            more |= {"start_m": list(tie.start), "end_m": list(tie.far), "required_N": required}
-            if self.context.building.structure is not None:
+            more |= {"start_m": list(tie.start), "required_N": required}
+            more |= {} if tie.hoop else {"end_m": list(tie.far)}
+            more |= {"via_m": [list(point) for point in tie.via]} if tie.via else {}
+            if self.context.building.structure is not None and not isinstance(self.measure, SpaceStatics):
                 more["depth_m"] = self.context.building.blocks().depth
         adverse = self._adverse(worth, volume if key.startswith("structure.") else 0.0, met)
         if met and anchorage is not None:
@@ -495,10 +506,15 @@ class _Work:
         before, building = self.before, self.context.building
         if met and worth.shape and before.shape and worth.shape != before.shape:
             found.append("Another mechanism governs than before: the intervention moves the collapse elsewhere.")
-        senses = self.measure.senses if isinstance(self.measure, Statics) else ()
-        for sense, was, now in zip(senses, before.by_sense, worth.by_sense, strict=False):
-            if now < was * (1.0 - NAMED):
-                found.append(f"The capacity to {'+x' if sense > 0 else '-x'} drops from {was:.3g} to {now:.3g} g.")
+        if met and worth.beside is not None and worth.beside < self.measure.target:
+            found.append(
+                f"Pressed joints slide: without dilatancy the least state found of the strengthened building carries {worth.beside:.3g} g, "
+                "less than the target. Increase the force, or the friction."
+            )
+        statics = self.measure if isinstance(self.measure, Statics) else None
+        for sense, was, now in zip(statics.senses if statics else (), before.by_sense, worth.by_sense, strict=False):
+            if statics is not None and now < was * (1.0 - NAMED):
+                found.append(f"The capacity to {statics.word(sense)} drops from {was:.3g} to {now:.3g} g.")
         if volume > 0.0:
             whole = volume_of(building)
             if volume > NAMED * whole:
@@ -506,7 +522,7 @@ class _Work:
                 found.append(
                     f"The weight grows by {volume * density * GRAVITY / 1e3:.3g} kN ({100.0 * volume / whole:.0f} %): check the foundation."
                 )
-            if building.supports.stiffness is not None:
+            if building.supports.stiffness is not None and not is_spatial(building):
                 stones = building.blocks()
                 base = float(stones.length[(stones.a < 0) | (stones.b < 0)].sum()) * stones.depth
                 sinks = volume * building.material.density * GRAVITY / (building.supports.stiffness * base)
@@ -539,7 +555,7 @@ class _Work:
             one, place = columns[k]
             tie = one.places[place]
             rows.append(out.CombinedTie(name=one.name, place=_placed(tie), force_N=float(forces[k])))
-            cost += self._cost(_length(tie), float(forces[k]), 0.0)
+            cost += self._cost(one.lengths[place], float(forces[k]), 0.0)
         return {"combination": rows, "combination_cost": cost}
 
     def assessed(self, sized: list[_Sized]) -> None:
@@ -627,8 +643,15 @@ class _Work:
 
 def volume_of(building: Building) -> float:
     """Volume of the blocks [m^3]."""
+    if is_spatial(building):
+        return float(sum(moments(part.vertices, part.triangles)[0] for part in building.solids().parts))
     stones = building.blocks()
     return float(sum(abs(signed_area(outline)) for outline in stones.outlines)) * stones.depth
+
+
+def masses_of(building: Building) -> np.ndarray:
+    """Masses of the blocks [kg]."""
+    return building.solids().mass if is_spatial(building) else building.blocks().mass
 
 
 def _margin(row: StrategyVerdict) -> float | None:
@@ -639,15 +662,21 @@ def _number(value: float | None) -> str:
     return "unknown" if value is None else f"{value:.3g}"
 
 
-def _length(tie: Tie) -> float:
-    return float(np.hypot(tie.far[0] - tie.start[0], tie.far[1] - tie.start[1]))
+def _middle(tie: Tie) -> tuple[float, float]:
+    """x of the middle of a tie and its height [m]."""
+    far = tie.start if tie.hoop else tie.far
+    return 0.5 * (tie.start[0] + far[0]), 0.5 * (tie.start[-1] + far[-1])
 
 
 def _placed(tie: Tie) -> str:
     """Where a tie is, in words."""
-    (x, y), (x_far, y_far) = tie.start, tie.far
-    far = "the ground at" if tie.ground is not None else ""
-    return f"from x = {x:.2f}, y = {y:.2f} m to {far} x = {x_far:.2f}, y = {y_far:.2f} m".replace("  ", " ")
+    if tie.hoop:
+        return f"at z = {tie.start[2]:.2f} m"
+    start, end = (
+        ", ".join(f"{axis} = {x:.2f}" for axis, x in zip("xyz", point, strict=False)) for point in (tie.start, tie.far)
+    )
+    far = "the ground at " if tie.ground is not None else ""
+    return f"from {start} m to {far}{end} m"
 
 
 def _safest(measure: Measure, values: list[float]) -> float | None:
@@ -693,6 +722,24 @@ def _arrays(context: Context, before: Worth, sized: list[_Sized]) -> dict[str, A
         ),
         **packed("stones_moved", moved, "m", "the same, moved by the mechanism that governs"),
     }
+    for name, worth in drawn:
+        if worth is not None and worth.in_space is not None:
+            solids, poses = worth.in_space
+            found |= {
+                f"{key}_{name}": replace(array, dims=(f"{array.dims[0]}_{name}", *array.dims[1:]))
+                for key, array in scene_arrays(solids).items()
+                if key.startswith("solid_")
+            }
+            found[f"solid_pose_{name}"] = Array(
+                poses, (f"block_{name}", "pose"), "m, m, m, rad, rad, rad", "the mechanism carried on"
+            )
+            tie = sized[int(name) - 1].tie if name != "0" else None
+            if tie is not None:
+                strands = context.building.having(ties=(tie,)).strands()
+                ends = np.array([s.point[[i, j]] for s in strands for i, j in s.segments])
+                found[f"solid_strand_{name}"] = Array(
+                    ends, (f"segment_{name}", "tie_end", "axis3"), "m", "both ends of the segments of the tie"
+                )
     if context.building.structure is not None and rest:
         found |= geometry_arrays(context.building.blocks())
     return found

@@ -22,11 +22,14 @@ from extrados.limit.programme import LimitAnalysis, Mechanism, closed
 from extrados.limit.strengthening import Point, least_force, least_forces, taken_per_force
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import Assembly
+from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.results.statistics import Ensemble
 from extrados.results.verdict import SelfWeight
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
 
+#: Of the greatest capacity: where a tie that never yields is taken to have reached it
+REACHED = 1e-6
 #: Hinges and sliding joints that are named
 MOST_NAMED = 6
 #: Keys of an analysis that limit analysis takes from this table
@@ -41,7 +44,8 @@ class Worth:
     """The value of a building in the quantity of the target: None without one, infinite where no mechanism exists.
 
     mechanism: what governs, in words; shape: the same but for mirror images; bound: of the value; reason: why there is none; moved: the blocks and the poses into which
-    the mechanism carries them; sense: of the load that governs.
+    the mechanism carries them; sense: of the load that governs, in space its direction [deg]; in_space: as moved, of solids; beside: the least found without
+    dilatancy, where it is not the value.
     """
 
     value: float | None
@@ -51,7 +55,9 @@ class Worth:
     reason: str = ""
     by_sense: tuple[float, ...] = ()
     moved: tuple[Assembly, np.ndarray] | None = None
-    sense: int = 1
+    sense: float = 1
+    in_space: tuple[SolidAssembly, np.ndarray] | None = None
+    beside: float | None = None
 
 
 class Statics:
@@ -61,9 +67,10 @@ class Statics:
 
     def __init__(self, context: Context, options: Strengthen, closely: bool = True):
         self.context, self.options, self.closely = context, options, closely
+        self.smooth, self.reached = context.building.material.compressive_strength is not None, REACHED
         wall = context.building.supports.abutting_wall
         given = {"both": (1, -1), "+x": (1,), "-x": (-1,)}[options.direction]
-        self.senses = tuple(s for s in given if {"left": -1, "right": 1}.get(wall or "") != s)
+        self.senses: tuple[float, ...] = tuple(s for s in given if {"left": -1, "right": 1}.get(wall or "") != s)
         if not self.senses:
             raise Refused(
                 f"direction: the abutting wall is on that side ({wall}): the building cannot collapse towards it",
@@ -80,7 +87,7 @@ class Statics:
         told: list[str] = []
         bounds: list[Bound] = []
         mechanisms: list[Mechanism | None] = []
-        for sense in self.senses:
+        for sense in map(int, self.senses):
             try:
                 state, mechanism = limit.collapse(sense)
                 value = sense * state.gamma
@@ -115,7 +122,7 @@ class Statics:
 
     def other_sense_told(self, building: Building) -> str:
         """What the existing building carries in the sense that the deck leaves out."""
-        sense = -self.senses[0]
+        sense = -int(self.senses[0])
         try:
             carried = f"{sense * self.collapse(limit_of(building, self.options), sense)[0].gamma:.3g} g"
         except Immovable:
@@ -173,7 +180,7 @@ class Statics:
         building = self.context.building
         limit = limit_of(one.having(building, place, force), self.options)
         found = []
-        for sense in self.senses:
+        for sense in map(int, self.senses):
             try:
                 state, mechanism = self.collapse(limit, sense)
             except Immovable:
@@ -184,6 +191,25 @@ class Statics:
         if not found:
             raise Immovable("no load of this kind causes collapse")
         return min(found, key=lambda p: p.capacity)
+
+    def unlimited(self, one: TieAlternative, place: int) -> float | None:
+        """The capacity with a tie that never yields, with dilatant friction; None where it leaves no mechanism."""
+        limit = limit_of(one.having(self.context.building, place, None), self.options)
+        values = []
+        for sense in map(int, self.senses):
+            try:
+                values.append(sense * self.collapse(limit, sense)[0].gamma)
+            except Immovable:
+                continue
+        return min(values, default=None)
+
+    def told_at(self, point: Point) -> str:
+        """The mechanism of a point of a curve in words."""
+        return mechanism_told(self.context.building.blocks(), point.mechanism, int(point.direction))
+
+    def word(self, sense: float) -> str:
+        """A sense of the load in words."""
+        return _word(int(sense))
 
     @staticmethod
     def collapse(limit: LimitAnalysis, sense: int) -> tuple[Any, Mechanism]:
@@ -282,11 +308,6 @@ class Runs:
 
 
 Measure = Statics | Runs
-
-
-def measure_of(context: Context, options: Strengthen, closely: bool = True) -> Measure:
-    """The measure of the target; closely: of limit analysis also the least state without dilatancy, where pressed joints slide."""
-    return Statics(context, options, closely) if options.by == "tilt" else Runs(context, options)
 
 
 def nested(context: Context, deck: Deck) -> Context:

@@ -3,10 +3,13 @@
 from collections.abc import Iterator
 from functools import partial
 
+import numpy as np
+
 from extrados import kinds
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.needs import Need
-from extrados.analyses.strengthen.alternatives import change_alternatives, tie_alternatives
+from extrados.analyses.strengthen.alternatives import change_alternatives, is_spatial, tie_alternatives
+from extrados.analyses.strengthen.space import refuse_in_space
 from extrados.analyses.strengthen.tables import Strengthen
 from extrados.motions.from_deck import is_set
 from extrados.views.building import Building
@@ -22,10 +25,23 @@ def needs(context: Context, options: Strengthen) -> Iterator[Need]:
         for what, key in building.special_keys.items():
             if what not in STATICS:
                 yield partial(_refuse, f'by = "tilt" neglects {what}: take by = "fragility", or leave it out', key)
-        yield building.blocks
-        yield building.refuse_weightless
-        yield building.friction
-        yield building.anchored
+        if is_spatial(building):
+            if "[supports] abutting_wall" in building.special_keys:
+                yield partial(
+                    _refuse,
+                    "limit analysis in space neglects an abutting wall: remove it",
+                    ("supports", "abutting_wall"),
+                )
+            yield partial(refuse_in_space, context, options)
+            yield lambda: building.refuse_weightless(building.solids())
+            yield lambda: building.friction(building.solids())
+            yield building.strands
+        else:
+            yield partial(_refuse_directions, options)
+            yield building.blocks
+            yield building.refuse_weightless
+            yield building.friction
+            yield building.anchored
         if options.safety_factor is not None:
             yield partial(_refuse_without_peak, context)
     else:
@@ -44,6 +60,11 @@ def needs(context: Context, options: Strengthen) -> Iterator[Need]:
 
 def _refuse(text: str, key: tuple[str | int, ...]) -> None:
     raise Refused(text, key)
+
+
+def _refuse_directions(options: Strengthen) -> None:
+    if options.directions:
+        raise Refused("directions: belong to blocks in space; give direction", ("analysis", "directions"))
 
 
 def _refuse_without_peak(context: Context) -> None:
@@ -68,7 +89,7 @@ def _refuse_unlimited(options: Strengthen) -> None:
     for k, tie in enumerate(options.ties):
         if tie.beam_weight is not None:
             raise Refused('the weight of a ring beam is for by = "tilt": remove beam_weight', ("analysis", "ties", k))
-        if tie.yield_force is None:
+        if not np.isfinite(tie.greatest):
             raise Refused(
                 f'by = "{options.by}" searches the force by runs: give yield_force, the greatest one considered',
                 ("analysis", "ties", k),

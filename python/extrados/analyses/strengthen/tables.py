@@ -7,8 +7,8 @@ from pydantic import Field, ValidationError, model_validator
 from extrados import kinds
 from extrados.analyses.limit.tables import LimitAnalysisTable
 from extrados.analyses.table import Analysis
-from extrados.model.ties import Point, Tie
-from extrados.schema.quantities import Acceleration, Force, Length, Stress
+from extrados.model.ties import Place, Tie
+from extrados.schema.quantities import Acceleration, Angle, Force, Length, Stress
 from extrados.schema.table import Table, key
 
 if TYPE_CHECKING:
@@ -55,21 +55,47 @@ class Anchorage(Table):
 class TieOption(Tie):
     """A tie, strut, anchor or bonded strip whose yield force is sought, at one place or between two.
 
-    Its keys are those of [[ties]]. `yield_force` is the greatest force considered; of a bonded strip, its debonding force.
+    Its keys are those of [[ties]]. `yield_force` is the greatest force considered; of a bonded strip it is its debonding force, whose
+    source the deck states.
     """
 
-    start_to: Point | None = key(None, "second end of the range of `start`")
-    far_to: Point | None = key(None, "second end of the range of `end` or `ground`")
+    start_to: Place | None = key(None, "second end of the range of `start`")
+    far_to: Place | None = key(None, "second end of the range of `end` or `ground`")
     places: int = key(9, "number of places in the range", ge=2, le=200)
+    debonding_force: Force | None = key(
+        None, "of a bonded FRP or FRCM strip: design force at which it debonds, the greatest force considered", gt=0
+    )
+    source: str | None = key(
+        None,
+        "of the debonding force: document and formula, or test, that gives it; the report prints it",
+        min_length=3,
+        max_length=300,
+    )
     anchorage: Anchorage | None = key(None, "strengths of bar and anchorage, for their checks")
     beam_weight: Force | None = key(
         None, "weight of a ring beam along the tie: half of it rests on the block at each end and sways with it", gt=0
     )
 
+    @property
+    def greatest(self) -> float:
+        """The greatest force considered [N]; infinite where the deck gives none."""
+        given = self.yield_force if self.debonding_force is None else self.debonding_force
+        return float("inf") if given is None else given
+
     @model_validator(mode="after")
     def _range(self) -> "TieOption":
+        if self.hoop and self.far_to is not None:
+            raise ValueError("far_to: a hoop has one height; give start_to")
+        if any(len(point) != len(self.start) for point in (self.start_to, self.far_to) if point is not None):
+            raise ValueError("start_to and far_to: expected as many coordinates as start has")
         if "places" in self.model_fields_set and self.start_to is None and self.far_to is None:
             raise ValueError("places: needs start_to or far_to, the second end of the range")
+        if self.debonding_force is not None and self.source is None:
+            raise ValueError("debonding_force: give its source: the document and formula, or the test")
+        if self.source is not None and self.debonding_force is None:
+            raise ValueError("source: belongs to debonding_force")
+        if self.debonding_force is not None and (self.yield_force is not None or self.works_in != "tension"):
+            raise ValueError("debonding_force: a bonded strip works in tension and has no yield_force")
         if self.prestress:
             raise ValueError("prestress: the force of the tie is sought; plastic collapse does not depend on prestress")
         return self
@@ -81,8 +107,9 @@ class TieOption(Tie):
         def between(one: list[float], two: list[float] | None) -> list[float]:
             return one if two is None else [(1.0 - share) * a + share * b for a, b in zip(one, two, strict=True)]
 
-        far = "end" if self.ground is None else "ground"
-        keys |= {"start": between(self.start, self.start_to), far: between(self.far, self.far_to)}
+        keys |= {"start": between(self.start, self.start_to)}
+        if not self.hoop:
+            keys |= {"end" if self.ground is None else "ground": between(self.far, self.far_to)}
         return Tie.model_construct(**keys)
 
 
@@ -135,6 +162,11 @@ class Strengthen(LimitAnalysisTable):
     options: dict[str, Any] = key({}, "keys of that analysis, as in its own table")
     direction: Literal["both", "+x", "-x"] = key(
         "both", "sense of the load, for limit analysis; beside an abutting wall away from it"
+    )
+    directions: list[Annotated[Angle, Field(ge=-360, le=360)]] = key(
+        [],
+        "of blocks in space: directions in plan of the load, from +x to +y; default 0, 90, 180 and 270",
+        max_length=72,
     )
     ties: list[TieOption] = key([], "ties whose force is sought: alternatives", max_length=50)
     changes: list[Change] = key([], "numbers of the deck whose least change is sought: alternatives", max_length=50)

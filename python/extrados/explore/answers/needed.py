@@ -11,7 +11,7 @@ from extrados.decks.reader import make_deck
 from extrados.explore.desk import Desk
 from extrados.explore.frames import Reply
 from extrados.explore.messages import BadMessage, Message
-from extrados.results.strengthen import Intervention, Strengthen, size_told
+from extrados.results.strengthen import Intervention, Strengthen, size_told, works_in
 
 #: Greatest acceleration that a page may request [g]
 MOST = 10.0
@@ -62,9 +62,11 @@ def _told(one: Intervention, ties: list[Any]) -> dict[str, Any]:
     if one.key is not None:
         return words | {"changes": {one.key: one.required_size * UP}}
     far = "ground" if "ground" in one.place else "end"
-    works = {"tie": "tension", "strut": "compression"}.get(one.kind, "both")
+    works = works_in(one)
     tie = {
-        "name": f"strengthening {len(ties) + 1}", "start": one.start_m, far: one.end_m, "works_in": works,
+        "name": f"strengthening {len(ties) + 1}", "start": one.start_m, "works_in": works,
+        **({"hoop": True} if one.kind == "hoop" else {far: one.end_m}),
+        **({"via": one.via_m} if one.kind == "chain" else {}),
         "yield_force": one.required_size * UP, "stiffness": one.stiffness_N_m,
     }  # fmt: skip
     return words | {"changes": {"ties": [*ties, tie]}}
