@@ -73,10 +73,10 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
         r"scaling_misfit",
         r"greatest_misfit",
     ),
-    "probability": (r"fragility\S*\.(?!mean_peak)", r"(?:median|probability)$", r"share_of_starts"),
+    "probability": (r"fragility\S*\.(?!mean_peak|histories)", r"(?:median|probability)$", r"share_of_starts"),
     "weight and other data": (
         r"weight_N",
-        r"frame-\S*\.(?:piers|spandrels|moving_mass_kg|steps)$",
+        r"frame-\S*\.(?:piers|spandrels|moving_mass_kg|steps|histories)$",
         r"flanges",
         r"survey\.sections",
     ),

@@ -200,6 +200,7 @@ ANALYSES: dict[str, AnalysisKind] = {
     "frame-modes": _analysis("frame", "FrameModes", "modes", "frame:draw_modes", "others", "frame/two-rooms"),
     "frame-pushover": _analysis("frame", "FramePushover", "pushover", "frame:draw_pushover", "others", "frame/two-rooms", ("frame",)),
     "frame-history": _analysis("frame", "FrameHistory", "history", "frame:draw_history", "others", "frame/history"),
+    "frame-fragility": _analysis("frame", "FrameFragility", "fragility", "frame:draw_fragility", "others", "frame/fragility"),
     "assess": _analysis("assess", "Assess", "driver", "assess:draw_assess", "others", "assess/readme-arch"),
     "strengthen": _analysis("strengthen", "Strengthen", "driver", "strengthen:draw_strengthen", "strengthen", "strengthen/nave"),
     "dem-parameters": _analysis("dem", "DemParameters", "dem_parameters", "dem:draw_parameters", "others", "dem/rocking-block"),

@@ -120,6 +120,7 @@ DECKS = {
         {"directions": [0.0], "senses": ["+"], "patterns": ["uniform"], "eccentricities": [0.0]},
     ),
     "frame-history": (HOUSE, SINE, {"end_time": 0.5}),
+    "frame-fragility": (HOUSE, SINE, {"by": "pushover", "count": 2, "uncertain": {"young": 0.2}}),
     "walls of a plan": (HOUSE, None, {"kind": "local-mechanism", "mechanism": "building"}),
     "rocking of a stack": (STACK_OF_TWO, SINE, {"kind": "rocking"}),
     "sla of rows": (STACK, None, {"kind": "sla", "mesh": {"size": 0.5, "joints": "rows"}, "events": 30}),

@@ -168,3 +168,9 @@ FrameHistory = Validity(
     "crushing; sliding is plastic. Damping follows the stiffness of the last step.",
     "Vertical motion, failure of walls out of their planes and impacts of opened joints are not considered.",
 )
+FrameFragility = Validity(
+    "The frame of frame-history, or of frame-pushover with N2, under many motions. Uncertain values are lognormal and hold for the whole "
+    "building; limit states follow from the strengths and drift limits of piers.",
+    "The uncertainty of the model itself and the scatter from wall to wall are not included. Failure of walls out of their planes is not "
+    "considered. N2 gives the mean demand of oscillators, not that of each motion.",
+)
