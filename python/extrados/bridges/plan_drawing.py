@@ -5,7 +5,7 @@ Ends of axes are extended to the axes of the walls that they meet.
 """
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -65,7 +65,7 @@ def deck_of_plan(
     return _written([_opened(wall, marks) for wall in found], bool(openings), file.path.name, storeys)
 
 
-def _lines(marks: dict[str, np.ndarray], layers: Sequence[str]) -> np.ndarray:
+def _lines(marks: Mapping[str, np.ndarray], layers: Sequence[str]) -> np.ndarray:
     """Lines (k, 4) of some layers [m]."""
     wanted = {name.upper() for name in layers}
     own = [np.asarray(lines).reshape(-1, 4) for layer, lines in marks.items() if layer.upper() in wanted]

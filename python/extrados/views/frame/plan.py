@@ -595,10 +595,10 @@ def _law(wanted: str, cohesion: float, tension: float) -> str:
         return "mohr-coulomb"
     if not tension > 0.0:
         raise BadGeometry(
-            "turnsek-cacovic needs diagonal_strength",
+            f"{wanted} needs diagonal_strength",
             ("analysis", "frame", "shear"),
         )
-    return "turnsek-cacovic" if wanted == "turnsek-cacovic" or not cohesion > 0.0 else "least"
+    return "turnsek-cacovic" if wanted == "turnsek-cacovic" or not cohesion > 0.0 else wanted
 
 
 def _between(wall: PlanWall, storey: int, tall: float) -> list[tuple[float, float, Side, Side]]:
