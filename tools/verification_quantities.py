@@ -99,7 +99,7 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
         r"margin",
     ),
     "restitution": (r"restitution", r"rebound$"),
-    "frequency and period": (r"frequency_parameter", r"period_s$"),
+    "frequency and period": (r"frequency_parameter", r"period_s$", r"frequency_Hz$"),
     "damping and stiffness of contacts": (r"damping_ratio", r"critical_beta", r"joint_stiffness"),
     "time and number of impacts": (
         r"bounces$",

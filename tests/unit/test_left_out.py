@@ -113,6 +113,7 @@ DECKS = {
     "rigid solids": (BLOCK, SINE, {"kind": "dem", "end_time": 0.2, "solver": "nonsmooth", "direction": 0.0}),
     "sla of a panel": (WALL, None, {"kind": "sla", "mesh": {"size": 0.5}, "events": 30}),
     "pushover": (HOUSE, None, {"mesh": {"size": 0.9, "layers": 3}, "events": 25}),
+    "modes": (ARCH, None, {}),
     "frame-modes": (HOUSE, None, {}),
     "frame-pushover": (
         HOUSE,

@@ -31,6 +31,19 @@ class FrameModes(KindResults):
         return judge(text, None, None, "", "not-applicable")
 
 
+class Modes(KindResults):
+    """modes: vibration of plane blocks, all joints closed."""
+
+    modes: list[FrameMode] = fact("modes from the lowest frequency; y is vertical")
+    moving_mass_kg: float = fact("mass of blocks and fill", "kg")
+    blocks: int = fact("blocks")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """Modes are neither a demand nor a capacity."""
+        text = f"First natural frequency {self.modes[0].frequency_Hz:.3g} Hz. Modes alone decide no limit state."
+        return judge(text, None, None, "", "not-applicable")
+
+
 class PierLimits(ResultModel):
     """Control displacements at which the piers of a storey of a wall reach their strength, and their drift limit; null: never."""
 

@@ -152,6 +152,10 @@ Assess = Validity(
     "The reasons state how the models differ, not which model is right. No strategy is better than the geometry and the "
     "properties of the deck.",
 )
+Modes = Validity(
+    "Blocks are rigid; their elasticity and that of the joints lies in springs along the joints, which are all closed.",
+    "Frequencies are those of small vibration: joints that open lower them. Soil and neighbouring walls are rigid where they hold the blocks.",
+)
 FrameModes = Validity(
     "Piers and spandrels vibrate about the equilibrium under the weight. Walls have no stiffness out of their planes.",
     "Sections that are open under the weight stay open. Masses of walls out of their planes move with the corners, linearly between them.",

@@ -121,7 +121,7 @@ def _walls(run: Stored, name: str, folder: Path, state: np.ndarray, word: str, t
 
 
 def draw_modes(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """Displacements of the masses on the plan in the first modes."""
+    """Displacements of the masses on the plan, or of blocks in their section, in the first modes."""
     r = run[name]
     place, shape = run.array(name, "place"), run.array(name, "shape")
     count = min(3, len(r.modes))
@@ -130,14 +130,15 @@ def draw_modes(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         for k, ax in enumerate(axes):
             ax.plot(place[:, 0], place[:, 1], ".", color=style.STONE, markersize=3)
             ax.quiver(
-                place[:, 0], place[:, 1], scale * shape[k, :, 0], scale * shape[k, :, 1], place[:, 2], angles="xy", scale_units="xy",
+                place[:, 0], place[:, 1], scale * shape[k, :, 0], scale * shape[k, :, 1], place[:, -1], angles="xy", scale_units="xy",
                 scale=1.0, width=0.006, cmap="viridis",
             )  # fmt: skip
             ax.set_aspect("equal")
             ax.margins(0.15)
             ax.set_title(f"mode {k + 1}: {r.modes[k].period_s:.3g} s")
         saved = style.save(fig, folder, f"{name}-modes")
-    return [(saved, "Displacements of the masses in the first modes, on the plan; the colour is their height.")]
+    where = "on the plan" if place.shape[1] == 3 else "of the blocks in their section"
+    return [(saved, f"Displacements in the first modes, {where}; the colour is their height.")]
 
 
 def draw_history(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:

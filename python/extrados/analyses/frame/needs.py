@@ -5,14 +5,21 @@ from collections.abc import Iterator
 from extrados.analyses.codes.actions import refuse_mixed
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.frame.sampled import refuse_unknown
-from extrados.analyses.frame.tables import FrameAnalysis, FrameFragility, FrameHistory, FramePushover
+from extrados.analyses.frame.tables import FrameAnalysis, FrameFragility, FrameHistory, FramePushover, Modes
 from extrados.analyses.motion_source import how_many
 from extrados.analyses.needs import Need
 
 
-def needs(context: Context, options: FrameAnalysis) -> Iterator[Need]:
+#: Blocks whose modes are calculated, at most
+MOST_BLOCKS = 1500
+
+
+def needs(context: Context, options: FrameAnalysis | Modes) -> Iterator[Need]:
     """Steps that raise where the deck is wrong, see `analyses.needs`."""
     building = context.building
+    if isinstance(options, Modes):
+        yield lambda: _few(context)
+        return
     yield lambda: building.frame(options.frame)
     if isinstance(options, FrameHistory | FrameFragility):
         yield context.refuse_motion
@@ -43,3 +50,9 @@ def _enough(context: Context, options: FrameFragility) -> None:
         raise Refused(
             f"{options.count}, but the deck has {there} motions: expected at most {there}", ("analysis", "count")
         )
+
+
+def _few(context: Context) -> None:
+    count = len(context.building.blocks().mass)
+    if count > MOST_BLOCKS:
+        raise Refused(f"{count} blocks; modes are calculated of at most {MOST_BLOCKS}", ("structure",))

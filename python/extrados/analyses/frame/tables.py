@@ -49,6 +49,16 @@ class FrameModes(FrameAnalysis):
     modes: int = key(6, "how many modes", ge=1, le=100)
 
 
+class Modes(BuildingAnalysis):
+    """Natural frequencies, shapes and participating masses of an arch, a vault or other plane blocks, all joints closed."""
+
+    kind: Literal["modes"]
+    view: ClassVar = "blocks"
+    uses: ClassVar = (*ELASTIC, "joints.normal_stiffness", "joints.shear_stiffness")
+    starter_structure: ClassVar = "arch"
+    modes: int = key(6, "how many modes", ge=1, le=100)
+
+
 class FramePushover(FrameAnalysis):
     """Pushover of a building as a frame of macro-elements: both directions and senses, several patterns and eccentricities."""
 
