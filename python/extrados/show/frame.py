@@ -134,7 +134,10 @@ def draw_modes(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 scale=1.0, width=0.006, cmap="viridis",
             )  # fmt: skip
             ax.set_aspect("equal")
-            ax.margins(0.15)
+            for set_limit, axis in ((ax.set_xlim, 0), (ax.set_ylim, 1)):
+                ends = np.concatenate([place[:, axis], place[:, axis] + scale * shape[k, :, axis]])
+                set_limit(ends.min() - 0.3 * scale, ends.max() + 0.3 * scale)
+            ax.set_xlabel("x [m]")
             ax.set_title(f"mode {k + 1}: {r.modes[k].period_s:.3g} s")
         saved = style.save(fig, folder, f"{name}-modes")
     where = "on the plan" if place.shape[1] == 3 else "of the blocks in their section"

@@ -121,6 +121,8 @@ def run(context: Context, options: FramePushover) -> Result:
     if interrupted:
         result.status, result.reason = "interrupted", "interrupted; the curves up to then are kept"
     result.answer = _answer(result.results)
+    if verified is not None and verified.decides:
+        result.answer = f"{verified.judged('').statement.strip()} {result.answer}"
     return result
 
 
