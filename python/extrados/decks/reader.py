@@ -173,12 +173,14 @@ def read_text(raw: bytes, name: str = "deck.toml", folder: Path | None = None) -
         raise DeckError([f"{name}:{line}: {what}"]) from None
     except ValueError as error:  # too deep, or integers of more digits than Python converts
         raise DeckError([f"{name}: {error}"]) from None
-    return _Checker(Positions(name, key_lines(text))).deck(data, folder or Path.cwd(), hashlib.sha256(raw).hexdigest())
+    return _Checker(Positions(name, key_lines(text), data)).deck(
+        data, folder or Path.cwd(), hashlib.sha256(raw).hexdigest()
+    )
 
 
 def make_deck(data: dict[str, Any], folder: Path | None = None) -> Deck:
     """A deck from Python dictionaries, checked like a file."""
-    return _Checker(Positions()).deck(data, folder or Path.cwd(), "")
+    return _Checker(Positions(data=data)).deck(data, folder or Path.cwd(), "")
 
 
 def check_table(model: type[Table], section: str, data: dict[str, Any], name: str) -> Any:

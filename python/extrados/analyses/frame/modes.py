@@ -28,6 +28,12 @@ class Mode:
         return float(way @ self.participation) ** 2 * self.mass
 
 
+def way_of(degrees: float) -> np.ndarray:
+    """Unit vector (2) of a direction on the plan [deg]."""
+    angle = np.radians(degrees)
+    return np.round(np.array([np.cos(angle), np.sin(angle)]), 15)
+
+
 def rest_of(frame: EquivalentFrame, core: Frame) -> Rest:
     """Equilibrium under the weight; Refused without one."""
     try:
