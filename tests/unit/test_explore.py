@@ -458,3 +458,27 @@ def test_what_is_needed_carries_the_acceleration_once_it_is_put_in(session: Sess
 def test_a_wrong_acceleration_is_refused(session: Session, given: Any) -> None:
     (reply,) = do(session, do="needed", acceleration=given)
     assert "acceleration" in reply.words["bad"]
+
+
+def test_drawn_blocks_are_a_deck_that_keeps_the_rest_of_it(session: Session) -> None:
+    """A blank sheet has no model; blocks on it give their deck; in the deck at hand unchanged blocks stay as written."""
+    (empty,) = do(session, do="draw", blocks=[], ground=[], fresh=True)
+    assert "block" in empty.words["trouble"][0] and 'kind = "blocks"' in empty.words["draft"]
+    assert 'kind = "arch"' in session.document.text, "the deck at hand stays"
+    square = {"name": "pier", "points": [[0, 0], [1, 0], [1, 2], [0, 2]]}
+    (first,) = do(session, do="draw", blocks=[square], ground=[], fresh=True)
+    assert first.words["scene"]["capacity"]["plus_g"] == pytest.approx(0.5)
+    text = session.document.text.replace('name = "pier"', 'name = "pier"  \ndensity = "1.8 t/m^3"').replace(
+        "2.0", '"200 cm"'
+    )
+    do(session, do="open", text=f"# mine\n{text}", here="same")
+    (told,) = do(session, do="sheet")
+    assert told.words["sheet"] == {"blocks": [square], "ground": []}
+    top = {"name": "block 1", "points": [[0, 2], [1, 2], [1, 3], [0, 3]]}
+    (second,) = do(session, do="draw", blocks=[square, top], ground=[[0, 0, 1, 0]])
+    assert second.words["scene"]["capacity"]["plus_g"] == pytest.approx(1 / 3, rel=0.05)
+    now = session.document.text
+    assert now.startswith("# mine") and '"200 cm"' in now and '"1.8 t/m^3"' in now and "ground = " in now
+    (apart,) = do(session, do="draw", blocks=[square, {**top, "points": [[5, 2], [6, 2], [6, 3]]}], ground=[])
+    assert "block 1" in apart.words["trouble"][0] and "ground" not in apart.words["draft"]
+    assert session.document.text == now

@@ -244,6 +244,11 @@ HOSTILE_MESSAGES: list[tuple[str, str]] = [
     ("a key with a way out", '{"do": "set", "changes": {"../x": 1}}'),
     ("too many changes", json.dumps({"do": "set", "changes": {f"structure.k{i}": 1 for i in range(1000)}})),
     ("stones without number", '{"do": "set", "changes": {"structure.voussoirs": 100000000}}'),
+    ("a sheet of no blocks", '{"do": "draw", "blocks": {"a": 1}, "ground": []}'),
+    ("a sheet with a name in two lines", '{"do": "draw", "blocks": [{"name": "a\\n[motion]", "points": [[0, 0], [1, 0], [1, 1]]}], "ground": []}'),
+    ("a sheet with words for places", '{"do": "draw", "blocks": [{"name": "a", "points": [["open(/etc/passwd)", 0], [1, 0], [1, 1]]}], "ground": []}'),
+    ("a sheet of too many blocks", json.dumps({"do": "draw", "blocks": [{"name": "a", "points": []}] * 1001, "ground": []})),
+    ("a sheet of too many vertices", json.dumps({"do": "draw", "blocks": [{"name": "a", "points": [[0, 0]] * 8001}], "ground": []})),
     ("a number of a thousand digits", '{"do": "set", "changes": {"structure.radius": 1' + "0" * 1000 + "}}"),
 ]  # fmt: skip
 
