@@ -506,6 +506,22 @@ def test_idle_connections_shut_no_page_out(folder: Path, monkeypatch: pytest.Mon
         page.close()
 
 
+def test_an_open_page_is_no_idle_connection(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A socket outlasts the time within which a request has to be whole, and is not among those that give way to others."""
+    monkeypatch.setattr(server, "WHOLE_REQUEST", 0.5)
+    page = Page(folder)
+    try:
+        with page.open() as link, contextlib.ExitStack() as stack:
+            for _ in range(2 * server.MOST_IDLE):
+                stack.enter_context(socket.create_connection(("127.0.0.1", page.port), timeout=30))
+            time.sleep(1.5)
+            link.send('{"do": "list", "of": 7}')
+            words, _ = unpack(link.recv(30))
+            assert words["of"] == 7
+    finally:
+        page.close()
+
+
 def test_a_request_that_comes_in_pieces_is_answered(page: Page) -> None:
     with socket.create_connection(("127.0.0.1", page.port), timeout=30) as link:
         for _ in range(2):  # the second one on the connection that was kept alive

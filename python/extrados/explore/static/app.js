@@ -15,6 +15,7 @@ import { choose, language, LANGUAGES, tr } from "./words.js";
 
 const REST = 130; // ms without a change, after which the hand rests
 const BESIDE = 100; // ms between two looks of what stands beside the drawing while a hand moves
+const SAID = 8000; // ms for which words at the foot stay that complain of nothing
 const KEPT = "extrados-kept";
 const CHANGE = new Set(["hello", "open", "draw", "drop", "blocks", "analysis", "drag", "set", "show", "rocking"]); // messages that change what is seen
 const TABS = [["structure", tr`Structure`], ["motion", tr`Motion`], ["results", tr`Results`]];
@@ -283,11 +284,14 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   }
 
   /** Words at the foot of the page. */
+  let saying = null;
   function say(text, bad = false) {
-    if (status.textContent === text && status.classList.contains("bad") === bad) return;
+    if (status.textContent === text && status.classList.contains("bad") === bad && status.hidden === !text) return;
     status.textContent = text;
     status.classList.toggle("bad", bad);
     status.hidden = !text;
+    clearTimeout(saying);
+    if (text && !bad) saying = setTimeout(() => { status.hidden = true; }, SAID);
   }
 
   function setTab(name) {
