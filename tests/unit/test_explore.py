@@ -2,6 +2,7 @@
 
 import base64
 import struct
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -482,3 +483,46 @@ def test_drawn_blocks_are_a_deck_that_keeps_the_rest_of_it(session: Session) -> 
     (apart,) = do(session, do="draw", blocks=[square, {**top, "points": [[5, 2], [6, 2], [6, 3]]}], ground=[])
     assert "block 1" in apart.words["trouble"][0] and "ground" not in apart.words["draft"]
     assert session.document.text == now
+
+
+TIED = """[structure]
+kind = "arch"
+radius = 5.0
+thickness = 1.0
+embrace = 180.0
+voussoirs = 24
+
+[joints]
+friction = "no-sliding"
+types = [{ joints = ["joint 0"], friction = 0.0 }]
+
+[[ties]]
+start = ["-500 cm", 0.0]   # at the springing
+end = [5.0, 0.0]
+start_stone = "voussoir 1"
+end_stone = "voussoir 24"
+
+[[analysis]]
+kind = "tilt"
+"""
+
+
+def test_a_tie_is_dragged_and_the_capacity_follows(session: Session) -> None:
+    """Handles of a tie: its height, its anchorages; a higher tie leaves less of the arch below it to open. The capacity is
+    that of a run; an anchorage stays in the blocks."""
+    (opened,) = do(session, do="open", text=TIED)
+    assert {"tie-0-level", "tie-0-start", "tie-0-end"} <= session.handles.keys()
+    capacities = [opened.words["scene"]["capacity"]["plus_g"]]
+    for place in ([-4.9, 1.2], [-4.4, 2.4]):
+        for which, x in (("start", place[0]), ("end", -place[0])):
+            at = (np.array([x, place[1]]) - session.anchor).tolist()
+            (reply,) = do(session, do="drag", handle=f"tie-0-{which}", to=at, ends=True)
+            assert "complaints" not in reply.words and "limit" not in reply.words, reply.words.get("limit")
+        capacities.append(reply.words["scene"]["capacity"]["plus_g"])
+    text = session.document.text
+    run = extrados.run(tomllib.loads(text))
+    assert run["tilt"].collapse_acceleration_g == pytest.approx(capacities[-1], rel=1e-9)
+    assert len({round(c, 6) for c in capacities}) == 3
+    assert 'start_stone = "voussoir 1"' not in text and 'kind = "tilt"' in text
+    (reply,) = do(session, do="drag", handle="tie-0-start", to=[0.0, 2.0], ends=True)
+    assert "the anchorage of a tie lies in a block" in reply.words["limit"]
