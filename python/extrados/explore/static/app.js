@@ -315,6 +315,8 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     tell("theme");
   }
   night.addEventListener("change", dress);
+  addEventListener("beforeprint", () => { root.dataset.theme = "light"; tell("theme"); });
+  addEventListener("afterprint", dress);
   dress();
 
   /** A dialog with what it holds; it is gone when closed. */

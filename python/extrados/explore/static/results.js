@@ -19,8 +19,8 @@ export function resultsPanel(app, wide) {
   function compared() {
     const [a, b] = columns.map((c) => new Map(c.words?.numbers ?? []));
     const rows = [...a].filter(([key, v]) => b.has(key) && b.get(key) !== v);
-    apart.hidden = columns[1].box.hidden || !a.size || !b.size;
-    const said = (v) => (typeof v === "number" ? number(v, 4) : v === null ? "–" : String(v));
+    apart.hidden = columns[1].box.hidden || !a.size || columns[0].words.kind !== columns[1].words?.kind;
+    const said = (v) => (Number.isInteger(v) ? String(v) : typeof v === "number" ? number(v, 4) : v === null ? "–" : String(v));
     apart.replaceChildren(h("h3", {}, rows.length ? tr`What differs` : tr`No number differs.`), rows.length ? h("table", { class: "numbers" }, h("thead", {}, h("tr", {}, h("th", {}, ""), h("th", { scope: "col" }, "A"), h("th", { scope: "col" }, "B"), h("th", { scope: "col" }, "B / A"))),
       h("tbody", {}, rows.map(([key, v]) => { const w = b.get(key), both = typeof v === "number" && typeof w === "number" && v !== 0; return h("tr", {}, h("th", { scope: "row" }, key.replaceAll("_", " ")), h("td", {}, said(v)), h("td", {}, said(w)), h("td", {}, both ? number(w / v, 4) : "")); }))) : "");
   }

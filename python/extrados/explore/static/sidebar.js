@@ -97,7 +97,7 @@ export function sidebar(app, box) {
   function ask(e) {
     e.preventDefault();
     const value = Number(target.trim().replace(/g$/, "").replace(",", "."));
-    if (!(value > 0)) { needed = { mark: mark(), trouble: "Give an acceleration above 0, in g." }; answer(); return; }
+    if (!(value > 0)) { needed = { mark: mark(), trouble: tr`Give an acceleration above 0, in g.` }; answer(); return; }
     asking = true;
     e.target.querySelector("input").blur();
     app.ask({ do: "needed", acceleration: value }, { reply: (words) => {
@@ -108,16 +108,16 @@ export function sidebar(app, box) {
     answer();
   }
   function needs() {
-    const field = h("input", { type: "text", id: "needed-g", value: target, inputmode: "decimal", placeholder: "0.2", "aria-label": "Acceleration that the structure is to carry, in g", oninput: (e) => { target = e.target.value; } });
-    const form = h("form", { class: "row wrap", onsubmit: ask }, h("label", { for: "needed-g" }, "To carry "), field, " g ", h("button", { type: "submit", disabled: asking }, asking ? "Sizing…" : "What is needed"));
-    const parts = [h("h3", {}, "Strengthening"), form];
+    const field = h("input", { type: "text", id: "needed-g", value: target, inputmode: "decimal", placeholder: "0.2", "aria-label": tr`Acceleration that the structure is to carry, in g`, oninput: (e) => { target = e.target.value; } });
+    const form = h("form", { class: "row wrap", onsubmit: ask }, h("label", { for: "needed-g" }, tr`To carry `), field, " g ", h("button", { type: "submit", disabled: asking }, asking ? tr`Sizing…` : tr`What is needed`));
+    const parts = [h("h3", {}, tr`Strengthening`), form];
     if (needed && needed.mark === mark()) {
       if (needed.trouble) parts.push(h("p", { class: "remark" }, needed.trouble));
-      else parts.push(h("p", { class: "answer-text" }, needed.statement), needed.bound ? h("p", { class: "remark" }, "Joints slide: these sizes hold for dilatant friction, an upper bound of the capacity. The analysis strengthen of a deck takes the least state without dilatancy.") : null, h("ul", { class: "plain" }, needed.interventions.map((one) => h("li", { "data-intervention": one.name },
-        h("b", {}, `${capital(one.name)}: `), `${one.met ? one.size : one.reason}.`, one.met && one.next ? ` Afterwards: ${one.next}. ` : " ",
-        one.changes ? h("button", { onclick: () => app.change(one.changes) }, "Put it in") : null))));
+      else parts.push(h("p", { class: "answer-text" }, needed.statement), needed.bound ? h("p", { class: "remark" }, tr`Joints slide: these sizes hold for dilatant friction, an upper bound of the capacity. The analysis strengthen of a deck takes the least state without dilatancy.`) : null, h("ul", { class: "plain" }, needed.interventions.map((one) => h("li", { "data-intervention": one.name },
+        h("b", {}, `${capital(one.name)}: `), `${one.met ? one.size : one.reason}.`, one.met && one.next ? tr` Afterwards: ${one.next}. ` : " ",
+        one.changes ? h("button", { onclick: () => app.change(one.changes) }, tr`Put it in`) : null))));
     }
-    return h("section", { class: "needed", "aria-label": "What is needed" }, parts);
+    return h("section", { class: "needed", "aria-label": tr`What is needed` }, parts);
   }
 
   // Sizes
@@ -143,7 +143,7 @@ export function sidebar(app, box) {
         const value = raw === "" ? null : form.number && /^[-+]?[\d.]+(e[-+]?\d+)?$/i.test(raw) ? (Number.isInteger(Number(raw)) && !raw.includes(".") ? Number(raw) : Number(raw)) : raw;
         put(value);
       };
-      input = h("input", { id, type: "text", value: text, spellcheck: "false", inputmode: form.number ? "decimal" : null, placeholder: form.given ? "" : "default", class: form.given ? "" : "default", onchange: send });
+      input = h("input", { id, type: "text", value: text, spellcheck: "false", inputmode: form.number ? "decimal" : null, placeholder: form.given ? "" : tr`default`, class: form.given ? "" : "default", onchange: send });
     }
     return h("div", { class: "line", title: form.about }, h("label", { for: id }, form.key.replaceAll("_", " ")), input, h("span", { class: "unit" }, typeof form.value === "string" && form.sort === "text" ? "" : form.unit));
   }
@@ -188,6 +188,7 @@ export function sidebar(app, box) {
   app.on("layers", () => { if (chosen === "answer") answer(); });
   app.on("text", fill);
   app.on("draft", fill);
+  addEventListener("beforeprint", answer);
   teachPanel(app, pages.teach);
   choose("answer");
 }
