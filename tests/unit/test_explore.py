@@ -1,6 +1,7 @@
 """Sessions of the page without a browser: the numbers are a run's, the text its author's."""
 
 import base64
+import re
 import struct
 import tomllib
 from collections.abc import Iterator
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 
 import extrados
+from extrados.explore.answers import standalone
 from extrados.explore.document import Document, as_written
 from extrados.explore.film import BadFilm, film
 from extrados.explore.frames import Reply
@@ -526,3 +528,9 @@ def test_a_tie_is_dragged_and_the_capacity_follows(session: Session) -> None:
     assert 'start_stone = "voussoir 1"' not in text and 'kind = "tilt"' in text
     (reply,) = do(session, do="drag", handle="tie-0-start", to=[0.0, 2.0], ends=True)
     assert "the anchorage of a tie lies in a block" in reply.words["limit"]
+
+
+def test_a_page_without_a_server_has_every_module_that_its_modules_import() -> None:
+    for k, name in enumerate(standalone.MODULES):
+        imported = re.findall(r'from "\./([\w]+\.js)"', (standalone.STATIC / name).read_text("utf-8"))
+        assert set(imported) <= set(standalone.MODULES[:k]), name
