@@ -344,7 +344,8 @@ def _http_protocol(most_idle: int) -> type[asyncio.Protocol]:
 
         def data_received(self, data: bytes) -> None:
             super().data_received(data)
-            if self.conn.their_state in (h11.IDLE, h11.SEND_BODY):
+            # an upgraded connection has another protocol by now, and h11 never sees the end of its request
+            if self.transport.get_protocol() is self and self.conn.their_state in (h11.IDLE, h11.SEND_BODY):
                 self._note_idle()
             else:
                 self._note_whole()

@@ -14,7 +14,7 @@ from extrados.explore import bodies, statics
 from extrados.explore.desk import Desk
 from extrados.explore.fall import begin_fall
 from extrados.explore.frames import Reply
-from extrados.explore.handles import Handle, anchor_of, handles_of, load_handles
+from extrados.explore.handles import Handle, anchor_of, handles_of, load_handles, tie_handles
 from extrados.explore.messages import BadMessage, Message, numbers, quantity
 from extrados.model.errors import NoView
 from extrados.model.geometry.assembly import Assembly
@@ -39,7 +39,7 @@ def scene(desk: Desk) -> Reply:
     if desk.view.through is not None and desk.view.through[0] >= len(assembly.a):
         desk.view = replace(desk.view, through=None)
     made = statics.picture(building, options, desk.view, desk.anchor)
-    handles = handles_of(structure, assembly)
+    handles = [*handles_of(structure, assembly), *tie_handles(building.ties, assembly)]
     if name is not None and options.load:
         arrows, more = _loads(options.load, name, assembly, desk.anchor)
         made.words["loads"] = arrows
