@@ -13,6 +13,7 @@ from extrados.analyses.dem.job import Runs, Task, answered
 from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.settlement import farthest_settlement
 from extrados.analyses.dem.tables import Dem
+from extrados.analyses.dem.ties import tie_rows
 from extrados.analyses.dem.trial import core_options
 from extrados.analyses.dem.words import tilt_answer
 from extrados.analyses.limit.common import geometry_arrays
@@ -74,6 +75,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         energy_residual_ratio=max(last.residual, back_run.residual),
         time_step_s=last.step,
         steps=last.steps,
+        **tie_rows(model.ties, last.tension),
         solver=options.solver,
         beta_s=None if options.rigid else model.values.beta,
         convergence=measures.convergence(last.effort.with_(back_run.effort)) if options.rigid else None,
