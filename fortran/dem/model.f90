@@ -23,6 +23,7 @@ module dem_model
       real(wp) :: pull(2) = 0.0_wp             !! body force of the last step [m/s^2]
       real(wp) :: pull_before(2) = 0.0_wp      !! and of the one before
       real(wp) :: base(2) = 0.0_wp             !! velocity of the ground [m/s], moving base only
+      real(wp) :: base_before(2) = 0.0_wp      !! the same in the step before
       real(wp) :: base_place(2) = 0.0_wp       !! its displacement [m]
       ! Contacts without springs, see dem_moreau
       real(wp), allocatable :: ahead(:, :)     !! (5, bodies) where the old velocities lead to
@@ -120,6 +121,7 @@ contains
       call begin_step(model%model_clock, ground)
       model%pull_before = model%pull
       model%pull = model%gravity
+      model%base_before = model%base
       if (model%load%moving_base) then
          model%base = model%base + model%kick * ground(1:2)
       else
@@ -190,7 +192,7 @@ contains
       call stretch_ties(model%ties)
       do k = 1, size(model%ties%anchor)
          associate (one => model%ties%anchor(k))
-            rate = model%base
+            rate = model%base_before
             if (one%body > 0) then
                associate (b => model%set%item(one%body))
                   b%fx = b%fx + one%force(1)
