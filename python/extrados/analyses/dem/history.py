@@ -16,7 +16,7 @@ from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.perturbed import FACTOR, probe_chaos
 from extrados.analyses.dem.seen import Seen
 from extrados.analyses.dem.tables import Dem
-from extrados.analyses.dem.ties import tie_arrays, tie_columns, tie_rows
+from extrados.analyses.dem.ties import section_arrays, tie_arrays, tie_columns, tie_rows
 from extrados.analyses.dem.trial import Trial
 from extrados.analyses.dem.variations import vary
 from extrados.analyses.dem.words import motion_answer
@@ -170,6 +170,7 @@ def _store(options: Dem, seen: Seen, ground: np.ndarray, result: Result) -> None
             if name != "leapfrog"
         },
         **tie_arrays(model.ties, found.tension),
+        **section_arrays(model.ties),
         "ground": Array(ground, ("time",), "m/s^2"),
         "snapshot_time": Array(measures.snapshot_times(options, found), ("snapshot",), "s"),
         **measures.support_arrays(model),

@@ -19,6 +19,7 @@ class ElementTies:
 
     names: tuple[str, ...] = ()
     core: Ties | None = None
+    strands: tuple[Strand, ...] = ()
 
 
 #: Of a model without any
@@ -75,7 +76,7 @@ def element_ties(building: Building, strands: tuple[Strand, ...], body_of_block:
         point=np.array(point),
         place=np.array(place),
     )
-    return ElementTies(strand_names(building, strands), core)
+    return ElementTies(strand_names(building, strands), core, strands)
 
 
 def tie_rows(ties: ElementTies, tension: np.ndarray) -> dict[str, list[TieRun]]:
@@ -102,3 +103,15 @@ def tie_arrays(ties: ElementTies, tension: np.ndarray) -> dict[str, Array]:
     if ties.core is None:
         return {}
     return {"tie_force": Array(tension, ("time", "tie"), "N", "forces of the ties, tension positive")}
+
+
+def section_arrays(ties: ElementTies) -> dict[str, Array]:
+    """Where the ties of a section are, as figures draw them; nothing without any."""
+    if not ties.strands:
+        return {}
+    block = np.array([[blocks[0] for blocks in strand.blocks] for strand in ties.strands])
+    point = np.array([strand.point[:, :2] for strand in ties.strands])
+    return {
+        "tie_block": Array(block, ("tie", "tie_end"), "", "blocks at both ends, -1 the ground"),
+        "tie_point": Array(point, ("tie", "tie_end", "axis"), "m", "both ends as drawn"),
+    }
