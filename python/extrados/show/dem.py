@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
 from extrados.results.dem import (
@@ -66,6 +66,10 @@ class Scene:
         self.centroid, self.place, self.rate = (get[k].numbers for k in ("centroid", "place", "rate"))
         self.p, self.q, self.hinge = (get[k].numbers for k in ("joint_p", "joint_q", "hinge"))
         self.owner = _block_of_joint(run, name)
+        ties = ("tie_block", "tie_point") if "tie_block" in get else ()
+        self.tie_block, self.tie_point = (
+            (get[k].numbers for k in ties) if ties else (np.empty((0, 2), int), np.empty((0, 2, 2)))
+        )
         self.window = _window(run, name, picks)
 
     @property
@@ -83,6 +87,14 @@ class Scene:
                 points.append(moved(point[None], self.centroid[self.owner[j]], self.place[k, self.owner[j]])[0])
         return np.array(points) if 0 < len(points) <= MOST_HINGES else np.empty((0, 2))
 
+    def ties(self, k: int) -> np.ndarray:
+        """Both ends of the ties at output k (ties, 2, 2); those in the ground stay."""
+        ends = self.tie_point.copy()
+        for i, end in np.argwhere(self.tie_block >= 0):
+            block = self.tie_block[i, end]
+            ends[i, end] = moved(ends[i, end][None], self.centroid[block], self.place[k, block])[0]
+        return ends
+
     def draw(self, ax: Axes, k: int, arrows: float) -> None:
         """Blocks at output k, hinges, and velocities as arrows (`arrows`: metres per m/s)."""
         place, rate = self.place[k], self.rate[k]
@@ -91,6 +103,7 @@ class Scene:
             ax.fill(*support.T, facecolor="#d7d3cb", edgecolor="none", zorder=0)
         shapes = [moved(o, c, p) for o, c, p in zip(self.blocks, self.centroid, place, strict=True)]
         ax.add_collection(PolyCollection(shapes, facecolor=style.STONE, edgecolor=style.EDGE, linewidth=0.7))
+        ax.add_collection(LineCollection(list(self.ties(k)), color=style.THRUST, linewidth=1.6, zorder=5))
         points = self.hinges(k)
         if len(points):
             style.draw_hinges(ax, points)
@@ -129,12 +142,15 @@ def draw_dem(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Everything that a run or a tilt test has to show."""
     if isinstance(run[name], SolidDemRun | SolidDemTilt):
         figures = solid_dem.draw(run, name, folder)
-        return [*figures, _energies(run, name, folder)] if "kinetic_energy" in run.arrays[name] else figures
+        if "kinetic_energy" in run.arrays[name]:
+            figures.append(_energies(run, name, folder))
+        return [*figures, *_ties(run, name, folder)]
     figures = [_snapshots(run, name, folder)]
     if "rotation" in run.arrays[name]:
         figures += [_histories(run, name, folder), _energies(run, name, folder)]
         if run.array(name, "hinge").shape[1] > 1:
             figures.append(_hinge_map(run, name, folder))
+        figures += _ties(run, name, folder)
         if run[name].get("sensitivity"):
             figures.append(_sensitivity(run, name, folder))
     film_dem(run, name, folder)
@@ -223,6 +239,24 @@ def _energies(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     return saved, (
         f"Kinetic energy, and the whole ledger; it closes to {100 * _stored(run, name).energy_residual_ratio:.2g} % of the energy that went round."
     )
+
+
+def _ties(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Forces of the ties over time, of those with the greatest; nothing without any."""
+    if "tie_force" not in run.arrays[name]:
+        return []
+    time, force, rows = run.array(name, "time"), run.array(name, "tie_force"), run[name].get("ties") or []
+    greatest = np.argsort([-abs(row.peak_force_N) for row in rows], kind="stable")[:SHOWN]
+    with style.figure(8.0, 3.2) as (fig, (ax,)):
+        for k in greatest:
+            state = "" if rows[k].state == "elastic" else f" ({rows[k].state})"
+            ax.plot(time, 1e-3 * force[:, k], linewidth=1.0, label=f"{rows[k].name}{state}")
+        ax.set_ylabel("force [kN], tension positive")
+        ax.set_xlabel("time [s]")
+        ax.set_xlim(0.0, time[-1] or 1.0)
+        style.legend_above(ax)
+        saved = style.save(fig, folder, f"{name}-ties")
+    return [(saved, "Forces of the ties" + (f", the {SHOWN} greatest." if len(rows) > SHOWN else "."))]
 
 
 def _hinge_map(run: Stored, name: str, folder: Path) -> tuple[str, str]:

@@ -9,6 +9,7 @@ from extrados.analyses.context import Refused
 from extrados.analyses.dem import impact_rules
 from extrados.analyses.dem.solid_model import SolidModel, SolidValues
 from extrados.analyses.dem.tables import DemTable
+from extrados.analyses.dem.ties import NO_TIES, ElementTies
 from extrados.core import dem, dem_run
 from extrados.core.dem_run import Law
 from extrados.core.errors import Cancelled, status_code
@@ -62,6 +63,7 @@ class Model:
     assembly: Assembly
     rigid: RigidBodies
     values: JointValues
+    ties: ElementTies = NO_TIES
 
     @property
     def body_names(self) -> list[str]:
@@ -99,7 +101,9 @@ class Model:
                 laws.append(one)
             joints[pair] = numbers[one]
         r = self.rigid
-        return dem.Bodies(r.centroid, r.mass, r.inertia, r.parts, r.owner, r.outer, r.depth, laws, joints)
+        return dem.Bodies(
+            r.centroid, r.mass, r.inertia, r.parts, r.owner, r.outer, r.depth, laws, joints, self.ties.core
+        )
 
 
 class Falls(Refused):

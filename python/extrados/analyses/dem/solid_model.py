@@ -7,6 +7,7 @@ import numpy as np
 from extrados.analyses.context import Refused
 from extrados.analyses.dem import impact_rules
 from extrados.analyses.dem.tables import Dem, DemDomain, SpatialDem
+from extrados.analyses.dem.ties import NO_TIES, ElementTies, element_ties
 from extrados.core import dem3
 from extrados.core.dem_run import Law
 from extrados.model.errors import Key
@@ -52,6 +53,7 @@ class SolidModel:
     assembly: SolidAssembly
     supports: Supports
     values: SolidValues
+    ties: ElementTies = NO_TIES
 
     @property
     def count(self) -> int:
@@ -95,7 +97,7 @@ class SolidModel:
             np.concatenate([one.centroid, np.reshape(middle, (-1, 3))]), np.concatenate([one.mass, np.zeros(count)]),
             np.concatenate([one.inertia, np.tile(np.eye(3), (count, 1, 1))]), [p.vertices for p in parts],
             [p.faces for p in parts], [*one.owner.tolist(), *range(self.count, self.count + count)], laws, joints,
-            self._dowels(),
+            self._dowels(), self.ties.core,
         )  # fmt: skip
 
     def _dowels(self) -> dem3.Dowels | None:
@@ -126,7 +128,8 @@ def _law(
 def make_solid_model(building: Building, options: SpatialDem) -> SolidModel:
     """The model of a building's blocks in space."""
     assembly = building.solids()
-    return SolidModel(assembly, supports_of(assembly, options.floor), solid_values(building, assembly))
+    ties = element_ties(building, building.strands(), np.arange(len(assembly.mass)))
+    return SolidModel(assembly, supports_of(assembly, options.floor), solid_values(building, assembly), ties)
 
 
 def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:

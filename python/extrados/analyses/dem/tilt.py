@@ -13,6 +13,7 @@ from extrados.analyses.dem.job import Runs, Task, answered
 from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.settlement import farthest_settlement
 from extrados.analyses.dem.tables import Dem
+from extrados.analyses.dem.ties import section_arrays, tie_rows
 from extrados.analyses.dem.trial import core_options
 from extrados.analyses.dem.words import tilt_answer
 from extrados.analyses.limit.common import geometry_arrays
@@ -75,6 +76,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         energy_residual_ratio=max(last.residual, back_run.residual),
         time_step_s=last.step,
         steps=last.steps,
+        **tie_rows(model.ties, last.tension),
         solver=options.solver,
         beta_s=None if options.rigid else model.values.beta,
         convergence=measures.convergence(last.effort.with_(back_run.effort)) if options.rigid else None,
@@ -87,6 +89,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         "rate": Array(measures.block_rates(model, last), ("time", "block", "component"), "m/s, m/s, rad/s"),
         "hinge": Array(state, ("time", "joint"), "", "0 closed, -1 hinged at the first end, 1 at the second, 2 open"),
         "snapshot_time": Array(last.time[[at, -1]], ("snapshot",), "s"),
+        **section_arrays(model.ties),
         **measures.support_arrays(model),
     }
     result.answer = tilt_answer(result.results)
