@@ -89,7 +89,9 @@ def tie_rows(ties: ElementTies, tension: np.ndarray) -> dict[str, list[TieRun]]:
         force = tension[:, k]
         peak = float(force[np.abs(force).argmax()])
         bound = ties.core.most[k] if peak > 0.0 else ties.core.least[k]
-        state: Literal["slack", "elastic", "yielded"] = "slack" if peak == 0.0 else "yielded" if abs(peak) >= abs(bound) > 0.0 else "elastic"
+        state: Literal["slack", "elastic", "yielded"] = (
+            "slack" if peak == 0.0 else "yielded" if abs(peak) >= abs(bound) > 0.0 else "elastic"
+        )
         found.append(TieRun(name=name, peak_force_N=peak, end_force_N=float(force[-1]), state=state))
     return {"ties": found}
 
