@@ -189,11 +189,26 @@ class CrackOptions(Table):
 
 
 class Staged:
-    """Stages one after the other: their names, and what cannot stand beside them."""
+    """What the event loop takes from the table of an analysis, and its stages one after the other: their names, and what cannot
+    stand beside them."""
 
     if TYPE_CHECKING:
         stages: list[Any]
         main_stage: str | None
+        directions: list[Literal["+", "-"]]
+        constant_damage: bool
+        events: int
+        target_displacement: float | None
+        stop_fraction: float
+        without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"]
+        continuation: Literal["newton", "implicit-explicit"]
+        states: list[int]
+        probes: list[float]
+
+        @property
+        def solution(self) -> str: ...
+        @property
+        def algorithm(self) -> str: ...
 
     @property
     def stage_names(self) -> list[str]:
