@@ -105,7 +105,7 @@ class ShellModel(EventModel):
             x, y, z = self.mesh.xyz[error.node]
             raise Refused(
                 f"the building is a mechanism: node {error.node + 1} at x {x:g}, y {y:g}, z {z:g} m is free to move in "
-                f"{error.direction}; what stands there is not supported",
+                f"{error.direction}; the structure there is not supported",
                 ("structure",),
             ) from None
         except core.BadElement as error:
@@ -351,7 +351,7 @@ def _grounds(
         if not free:
             word = "wall" if mesh.walls else "foot"
             raise BadGeometry(
-                f"{what}: no support of {word} '{support.name}' lies there that holds it {'upright' if ground.way == 'down' else 'across'}"
+                f"{what}: no support of {word} '{support.name}' lies there that restrains it {'upright' if ground.way == 'down' else 'across'}"
             )
         held -= {(n, d) for n, d, _ in free}
         grounds[ground] = len(ties)

@@ -176,8 +176,8 @@ class Curve:
             return True
         if left:
             self.warnings.append(
-                f"stage {self.name} ended by: {events.reason or 'number of events'}, without a state in equilibrium to go on "
-                f"from; not run: {', '.join(left)}"
+                f"stage {self.name} ended by: {events.reason or 'number of events'}, without a state in equilibrium from which "
+                f"to continue; not run: {', '.join(left)}"
             )
         return False
 

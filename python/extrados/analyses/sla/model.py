@@ -278,8 +278,8 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     ratio = options.mechanism_ratio or (MECHANISM_OF_STONES if mesh.has_joints else MECHANISM)
     if ratio > MOST_OF_FLOOR / floor:
         raise BadGeometry(
-            f"mechanism_ratio: {ratio:g} is beyond what cracks that keep {floor:g} of their stiffness can show: what they "
-            f"keep would carry the load; at most {MOST_OF_FLOOR / floor:g}"
+            f"mechanism_ratio: {ratio:g} is too large: cracks keep {floor:g} of their stiffness, "
+            f"which would carry the load; at most {MOST_OF_FLOOR / floor:g}"
         )
     # Of stages, of which each has its own, that while the constant loads come on
     growing = reference if not options.stages else constant
