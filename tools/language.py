@@ -2,19 +2,21 @@
 
 import ast
 import re
-import sys
 import tomllib
 from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[1]
-UNSWEPT = ROOT / "tests" / "unit" / "unswept.txt"
 LONG, LONGEST = 25, 40  #: words of a sentence of a page: the rule, and the limit without exception
 LONG_SHARE = 0.04  #: of the sentences of a page may be longer than the rule, such as those with formulas
 #: Pages made by `make references`, `make verify` and `make docs`: their words come from the package
 GENERATED = {"decks.md", "results.md", "verification.md", "gallery.md", "redrawn.md"}
 #: Pages of records: quotations of former versions stand in them
 RECORDS = {"differences.md", "changelog.md", "contributing.md"}
+
+
+#: Words of summary.json that keep their former form
+STORED = {"left out"}
 
 
 class Word(NamedTuple):
@@ -32,7 +34,7 @@ GLOSSARY = [
     Word(r"\b(?:sink|sinks|sank|sunk|sinking)\b", "settlement"),
     Word(r"\bblows?\b", "impact"),
     Word(r"\b(?:falls?|fell|fallen|falling)\b", "collapses, overturns; for a quantity: drops",
-         r"\bfree fall\b|\bfalling weight\b", "free fall is a motion of mechanics"),
+         r"\bfree fall\b|\bfalling weight\b|\| Falls\b", "free fall is a motion of mechanics; Falls is a type"),
     Word(r"\b(?:comes?|came|coming|takes?|br(?:ing|ings|ought)(?: \w+){0,5}) (?:it |them )?down\b", "collapses; causes collapse"),
     Word(r"\bstays? up\b", "stands, does not collapse"),
     Word(r"\bhold (?:it|them) from\b", "restrains"),
@@ -52,7 +54,7 @@ GLOSSARY = [
     Word(r"\b(?:asks?|asked|asking)\b", "requires, requested"),
     Word(r"\bknows?\b", "includes, has, recognises"),
     Word(r"\b(?:left|leaves?|leaving) out\b", "neglected, not considered"),
-    Word(r"\b(?:answer|answers|answered|answering)\b", "result; conclusion"),
+    Word(r"\b(?:answer|answers|answered|answering)\b", "result; conclusion", r"\bno-answer\b|\bp\.answer\b", "a word of summary.json; a class of style sheets"),
     Word(r"\brooms?\b", "module, package", r"\b(?:rooms? of (?:a|the) (?:building|house)|two rooms|rooms and|one room|two-rooms?)\b", "rooms of buildings"),
     Word(r"\blost at once\b|\bat once\b", "brittle; immediately, together"),
     Word(r"\bproofs?\b", "certificate", r"\bdamp-proof\b", "a layer of a wall"),
@@ -150,16 +152,6 @@ def files() -> list[Path]:
     return sorted(path for path in (ROOT / "python" / "extrados").rglob("*.py"))
 
 
-def unswept() -> dict[str, set[str]]:
-    """Files of the package whose texts have not been rewritten: by path, the words of the left column that they may still have."""
-    listed: dict[str, set[str]] = {}
-    for line in UNSWEPT.read_text(encoding="utf-8").splitlines():
-        if line and not line.startswith("#"):
-            path, _, named = line.partition(": ")
-            listed.setdefault(path, set()).update(named.split(", "))
-    return listed
-
-
 def decks() -> list[Path]:
     """Decks of `cases/` and their files of expectations."""
     return sorted((ROOT / "cases").rglob("*.toml"))
@@ -176,26 +168,14 @@ def deck_prose(source: str) -> str:
 def faulty() -> dict[str, set[str]]:
     """Files of the package with words of the left column, by path."""
     texts = {path: strings(path.read_text(encoding="utf-8")) for path in files()}
-    found = {path: {word for text in there for word in words(text)} for path, there in texts.items()}
+    found = {
+        path: {word for text in there if text not in STORED for word in words(text)} for path, there in texts.items()
+    }
     return {path.relative_to(ROOT).as_posix(): there for path, there in found.items() if there}
 
 
-def shrink() -> None:
-    """Take words that a file no longer has, and files that are clean, off the list; print words that are not on it."""
-    found, listed = faulty(), unswept()
-    head = [line for line in UNSWEPT.read_text(encoding="utf-8").splitlines() if line.startswith("#")]
-    kept = {path: there & found.get(path, set()) for path, there in listed.items()}
-    lines = [f"{path}: {', '.join(sorted(there))}" for path, there in sorted(kept.items()) if there]
-    UNSWEPT.write_text("\n".join([*head, *lines]) + "\n", encoding="utf-8")
-    new = {path: there - listed.get(path, set()) for path, there in found.items()}
-    print(*(f"{path}: {', '.join(sorted(there))}" for path, there in new.items() if there), sep="\n")
-
-
 def main() -> None:
-    """A row per page: sentences, those of over 25 and over 40 words, words of the left column. `--swept` shrinks the list of unswept files."""
-    if "--swept" in sys.argv:
-        shrink()
-        return
+    """A row per page: sentences, those of over 25 and over 40 words, words of the left column."""
     rows = []
     for page in pages():
         text = prose(page.read_text(encoding="utf-8"))

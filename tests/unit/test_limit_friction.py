@@ -158,7 +158,7 @@ def test_the_interior_point_method_settles_by_itself(units: int, courses: int, f
 
 
 def test_bounds_of_drucker() -> None:
-    """Without friction a bonded wall bears nothing sideways; with dilatancy it bears most."""
+    """Without friction a bonded wall carries nothing sideways; with dilatancy it bears most."""
     limit = LimitAnalysis(bond(4, 5), 0.6, associated=False, starts=3)
     lower, upper = limit.without_dilatancy_between(1)
     assert lower == pytest.approx(0.0, abs=1e-6)

@@ -257,7 +257,7 @@ def test_wrong_stages_are_told(keys, words):
         (2e3, 5e3, "presses outward with 2 kN and down with 5 kN"),
         (-1.2e-11, 5e3, "presses down with 5 kN"),  # rounding
         (-3e3, -1e3, "presses inward with 3 kN and up with 1 kN"),
-        (0.0, 1e-9, "bears nothing"),
+        (0.0, 1e-9, "carries nothing"),
     ],
 )
 def test_what_a_foot_presses_with_is_told_in_words(thrust, vertical, words):

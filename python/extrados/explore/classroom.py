@@ -6,7 +6,7 @@ motions. Size of deck, number of blocks, duration of motions, and computing time
 
 import asyncio
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator
 from pathlib import Path
 from typing import Any
 
@@ -100,7 +100,7 @@ class Pupil(Session):
         self.last = now
         return max(0.0, -self.left / TIME_RATE)
 
-    def answer(self, message: Message) -> Iterator[Reply]:
+    def answer(self, message: Message) -> Generator[Reply, None, None]:
         """Replies to a message, or why there is none in a class."""
         do, by_teacher = message.get("do"), message.get("teacher") is self.room
         told = {"of": message.get("of") if isinstance(message.get("of"), int) else None, "to": str(do)[:40]}
@@ -185,7 +185,7 @@ class Teacher(Session):
         super().__init__(folder, first)
         self.room = room
 
-    def answer(self, message: Message) -> Iterator[Reply]:
+    def answer(self, message: Message) -> Generator[Reply, None, None]:
         """Replies to a message; those of the class are {class}, {send}, {pause} and {peek}."""
         act = {"class": self._class, "send": self._send, "pause": self._pause, "peek": self._peek}.get(
             str(message.get("do"))

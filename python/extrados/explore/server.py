@@ -13,7 +13,7 @@ import os
 import secrets
 import socket
 import time
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -103,7 +103,7 @@ def _next(work: Iterator[Reply]) -> bytes | None:
     return None if reply is None else reply.pack()
 
 
-def _end(works: list[Generator[Reply]], session: Session) -> None:
+def _end(works: list[Generator[Reply, None, None]], session: Session) -> None:
     """Close what a page has asked for, and its session also where that fails."""
     with contextlib.ExitStack() as stack:
         for close in (session.close, *(work.close for work in works)):  # the session last
@@ -121,7 +121,7 @@ async def _serve(page: WebSocket, session: Session, inbox: Inbox, shared: Thread
     that a class computes on; a page of its own has one."""
     context = contextvars.copy_context()
     context.run(confine, session.shipped_alone)
-    going: dict[str, Iterator[Reply]] = {}
+    going: dict[str, Generator[Reply, None, None]] = {}
     thread = shared or ThreadPoolExecutor(1, "session")
 
     def timed(work: Iterator[Reply]) -> tuple[bytes | None, float]:
@@ -302,7 +302,7 @@ def _socket_protocol() -> type[asyncio.Protocol]:
     class Protocol(WebSocketsSansIOProtocol):
         unread: asyncio.TimerHandle | None = None
 
-        def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        def connection_made(self, transport: Any) -> None:
             super().connection_made(transport)
             self.transport.set_write_buffer_limits(0)  # told as soon as anything is left unsent
 
@@ -338,7 +338,7 @@ def _http_protocol(most_idle: int) -> type[asyncio.Protocol]:
     idle: dict[Any, asyncio.TimerHandle] = {}  # the oldest first
 
     class Protocol(H11Protocol):
-        def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        def connection_made(self, transport: Any) -> None:
             super().connection_made(transport)
             self._note_idle()
 

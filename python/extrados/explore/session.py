@@ -2,7 +2,7 @@
 
 import logging
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 
 from extrados.decks.reader import DeckError
 from extrados.explore.answers import changes, decks, motion, needed, results, sheet, standalone, views
@@ -27,7 +27,7 @@ class Session(Desk):
     is wrong with a deck or has no answer comes as `complaints`, and then nothing has changed.
     """
 
-    def answer(self, message: Message) -> Iterator[Reply]:
+    def answer(self, message: Message) -> Generator[Reply, None, None]:
         """Replies to a message, one after the other: between two of them others may be answered."""
         number = message.get("of") if isinstance(message.get("of"), int | None) else None
         do = ANSWERS.get(message["do"]) if isinstance(message.get("do"), str) else None

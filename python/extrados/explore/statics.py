@@ -96,15 +96,15 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
         words |= {"stands": None, "unknown": f"{options.kind} cannot take {' and '.join(ignored)} into account."}
         return made
     try:
-        limit = limit_of(building, options)
-        made.limit, words["weight_N"] = limit, limit.loads.scale
+        limit = made.limit = limit_of(building, options)
+        words["weight_N"] = limit.loads.scale
         ends = {"plus": limit.collapse(1), "minus": limit.collapse(-1)}
     except Immovable as error:  # one of those that follow, and no failure
         words |= {"stands": True, "immovable": str(error)}
         return made
     except NoEquilibrium:
         try:
-            cannot_stand(made.limit)
+            cannot_stand(limit)
             words |= {"stands": False, "falls": "weight"}
         except (NoAnswer, NoEquilibrium) as error:  # no certificate: nothing is said of the structure
             words |= {"stands": None, "unknown": str(error)}

@@ -13,7 +13,7 @@ import numpy as np
 from extrados.limit.loads import Loads
 from extrados.model.geometry.assembly import GROUND, Assembly
 
-LEVEL = 1e-6  # of a unit normal: a joint that leans this little bears nothing
+LEVEL = 1e-6  # of a unit normal: a joint that leans this little carries nothing
 
 
 class Disconnected(ValueError):

@@ -78,7 +78,7 @@ def fractured_collapse(
     assembly: Assembly,
     block: int,
     direction: int = 1,
-    friction: float | None = None,
+    friction: float | np.ndarray | None = None,
     loads: Callable[[Assembly], Loads] = tilt_loads,
     sway: float = 1.0,
 ) -> Fracture | None:

@@ -321,7 +321,7 @@ class LimitAnalysis:
 
     def _neutral(self, problem: CoulombProblem) -> CoulombState | None:
         """A state at rest in which a stone that friction alone holds between its neighbours slides out of them, by which the
-        load does no work: the structure bears nothing that can be relied on. None where there is none."""
+        load does no work: the structure carries nothing that can be relied on. None where there is none."""
         if self._crush is not None:
             return None
         found = (problem.neutral(stone) for stone in hanging_stones(self.assembly))

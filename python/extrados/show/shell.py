@@ -186,7 +186,7 @@ def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             "Capacity curves: every state (thin), the envelope and its bilinear idealisation of equal area; dots, states found by "
             "equilibrium iterations beyond single events; dotted, Coulomb's limit of the level that slides first, "
             "which the curve does not include; "
-            "variants of what is assumed in blue-grey, other analyses of the run in grey."
+            "variants of the assumptions in blue-grey, other analyses of the run in grey."
         )
 
 

@@ -64,7 +64,7 @@ def run(context: Context, options: Assess) -> Result:
     result = Result("assess")
     try:
         work.cheap()
-        context.tell(f"First answers:\n{table_of(list(work.rows.values()))}")
+        context.tell(f"First results:\n{table_of(list(work.rows.values()))}")
         work.costly()
         work.further("longer runs", work.prolong)
         if options.advise:
@@ -282,7 +282,7 @@ class _Work:
         if found is not None:
             self.results["probability"] = self.results.pop("scaled")
             member = _governing(found)
-            how = f"the motion of the set under which it turns farther than under {100 * hazard.GOVERNING:g} % of the others"
+            how = f"the motion of the set under which its rotation is larger than under {100 * hazard.GOVERNING:g} % of the others"
         self.chosen = {"member": member, "chosen_by": how}
         self.asker.motion = {**self.asker.motion, "member": member}
         if not isinstance(self.context.deck.motion, kinds.table("motion", "compatible")):
@@ -552,7 +552,11 @@ class _Work:
                 keys = {"pulse": "rectangular", "durations": [0.02 * unit, 20.0 * unit], "amplitudes": 2, "at_amplitudes": [f"{amplitude!r} g"],
                         "max_amplitude": f"{2.0 * amplitude!r} g"}  # fmt: skip
                 found = self._probe(
-                    "rocking", f"a constant push of {amplitude:.3g} g, how long", "failure-domain", keys, tell=False
+                    "rocking",
+                    f"a constant lateral acceleration of {amplitude:.3g} g, how long",
+                    "failure-domain",
+                    keys,
+                    tell=False,
                 )
                 if found is None or not isinstance(found.results, FailureDomain) or found.results.at_amplitudes is None:
                     return None
@@ -580,7 +584,7 @@ class _Work:
         """Margins with values of the deck moved one by one, as many as the budget allows."""
         if not strategies.of("tilt").applies(self.context.building):
             self.not_done.append(
-                "sensitivity: limit analysis and rocking do not look at a building on a plan; `pushover` has variants"
+                "sensitivity: limit analysis and rocking cannot analyse a building on a plan; `pushover` has variants"
             )
             return
         rocked = self.results.get("rocking")
@@ -752,7 +756,7 @@ class _Work:
     def _arrays(self, facts: Facts, rows: list[out.StrategyVerdict], result: Result) -> None:
         low, high = np.array([facts.interval(r.strategy) for r in rows]).reshape(-1, 2).T
         result.arrays = {
-            "margin_low": Array(low, ("strategy",), "", "factors on the hazard between which each verdict turns"),
+            "margin_low": Array(low, ("strategy",), "", "factors on the hazard between which each verdict changes"),
             "margin_high": Array(np.where(np.isinf(high), np.nan, high), ("strategy",), "", "NaN: not known"),
         }
         time_s, ground = facts.motion.series()

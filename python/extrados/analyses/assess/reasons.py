@@ -171,7 +171,7 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
         return reason(
             "static-peak",
             mine,
-            f"{text}, while a constant push of that peak needs {needed:.3g} s to cause collapse.",
+            f"{text}, while a constant lateral acceleration of that peak needs {needed:.3g} s to cause collapse.",
             **numbers,
         )
     if needed is not None:
@@ -184,7 +184,7 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
         return None
     return reason(
         "static-peak", [p for p in mine if "dem" in p],
-        f"{text}: in that time the blocks move by {100 * moved:.2g} % of what counts as collapse.", displacement_ratio=moved,
+        f"{text}: in that time the blocks move by {100 * moved:.2g} % of the displacement that counts as collapse.", displacement_ratio=moved,
         **numbers,
     )  # fmt: skip
 
@@ -192,7 +192,7 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
 def _by_passages(
     facts: Facts, mine: list[Pair], text: str, level: float, factor: float, numbers: dict[str, float | None]
 ) -> Reason | None:
-    """The passages over the capacity one by one, each as a constant push of what it has on average; those left out of which
+    """The passages over the capacity one by one, each as a constant lateral acceleration of what it has on average; those left out of which
     another is as strong and as long."""
     worst, longest = None, 0.0
     for length, mean in sorted(passages(facts.motion, level), key=lambda p: (-p[1], -p[0])):
@@ -210,7 +210,7 @@ def _by_passages(
     return reason(
         "static-peak", mine,
         f"{text}. None of these times lasts long enough: the most dangerous averages {mean:.3g} g for {length:.3g} s, and a constant "
-        f"push of {mean:.3g} g needs {needed:.3g} s to cause collapse.",
+        f"lateral acceleration of {mean:.3g} g needs {needed:.3g} s to cause collapse.",
         **{**numbers, "passage_g": mean, "passage_s": length, "passage_needed_s": needed},
     )  # fmt: skip
 
@@ -548,7 +548,7 @@ def code_factors(facts: Facts, pairs: list[Pair]) -> Reason | None:
         return None  # another mechanism, or a weight that these factors do not hold
     other = [p for p in mine if "tilt" in p or "sla" in p] or mine
     taking = "" if abs(part - 1.0) < 0.005 else f" over e* = {part:.3g}, the part of the moving weight that takes part"
-    reserve = " The factor q stands for the reserve of rocking beyond uplift." if q != 1.0 else ""
+    reserve = " The factor q is the reserve of rocking beyond uplift." if q != 1.0 else ""
     return reason(
         "code-factors", other,
         f"{name} of the code compares a demand of {check.demand:.3g} g with {check.capacity:.3g} g: the {least:.3g} g of statics{taking}, "

@@ -139,7 +139,7 @@ def _scatter(asked: Asked) -> dict[str, float]:
 
 def _probability(asked: Asked) -> Choice:
     if asked.motions > 1:
-        raise LeftOut("the motions of the set vary already: their share stands at the row of the set")
+        raise LeftOut("the motions of the set vary already: their share is in the row of the set")
     uncertain = asked.options.uncertain or _scatter(asked)
     if asked.building.restraints or asked.building.supports.abutting_wall is not None:
         raise LeftOut("sizes of a building that is held by more than its weight are not varied")
@@ -170,7 +170,7 @@ def _push(asked: Asked, direction: float) -> Choice:
     }  # fmt: skip
     words = (
         f"forces in proportion to the masses along {'x' if direction == 0.0 else 'y'}, to both sides; elements of {size:g} m, "
-        f"{LAYERS} points through the thickness, {events} events at most, until the load has fallen to {FALLEN:g} of its peak"
+        f"{LAYERS} points through the thickness, {events} events at most, until the load has dropped to {FALLEN:g} of its peak"
     )
     return Choice(keys, words)
 
@@ -251,7 +251,7 @@ def _sla(asked: Asked) -> Choice:
         keys["mesh"] = {"size": max(size) / ELEMENTS}
     return Choice(
         keys,
-        f"{ELEMENTS} elements along the longer side, pushed to +x until the load has fallen to {FALLEN:g} of its peak, "
+        f"{ELEMENTS} elements along the longer side, pushed to +x until the load has dropped to {FALLEN:g} of its peak, "
         f"{keys['events']} events at most",
     )
 

@@ -39,7 +39,7 @@ class Assess(Analysis):
         "after this time are stopped and reported", ge=5, le=1e6,
     )  # fmt: skip
     strategies: list[Strategy] = key(
-        list(STRATEGIES), "strategies that are run, where they apply; `probability` is `fragility` with uncertain sizes, or with the motions of a set; `push-x` and `push-y` are `pushover`, `frame` is `frame-pushover` of a building on a plan", min_length=1, max_length=len(STRATEGIES),
+        list(STRATEGIES), "strategies that are run if they apply; `probability` is `fragility` with uncertain sizes, or with the motions of a set; `push-x` and `push-y` are `pushover`, `frame` is `frame-pushover` of a building on a plan", min_length=1, max_length=len(STRATEGIES),
     )  # fmt: skip
     thin: float = key(1.5, "a margin below this, or above its inverse, is thin: further runs follow", gt=1, le=10)
     apart: float = key(
@@ -64,8 +64,8 @@ class Assess(Analysis):
     )
     sensitivity: bool = key(
         False, "also move thickness, corners, friction, restitution and density one by one: margins of limit analysis and rocking "
-        "anew, and the value at which each verdict turns; on discrete elements the stiffness of joints and a support that moves; 25 % "
-        "of the budget are kept for it"
+        "anew, and the value at which each verdict changes; on discrete elements the stiffness of joints and a support that moves; "
+        "25 % of the budget are kept for it"
     )  # fmt: skip
     vary: dict[str, Annotated[float, Field(gt=0, lt=1)]] | None = key(
         None,

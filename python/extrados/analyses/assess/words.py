@@ -40,7 +40,7 @@ def turning(moved: list[TurningValue]) -> list[str]:
         told = [f"{label} at {value:.3g}{unit}" for label, value in (("limit analysis", one.tilt_turns), ("rocking", one.rocking_turns), ("discrete elements", one.dem_turns))
                 if value is not None]  # fmt: skip
         if told:
-            said.append(f"- {one.key} ({one.base:.3g}{unit} here) turns the verdict of {' and of '.join(told)}.")
+            said.append(f"- {one.key} ({one.base:.3g}{unit} here) changes the verdict of {' and of '.join(told)}.")
     return said
 
 
@@ -75,11 +75,11 @@ def conclusion(
         said.append(f"The {word} cannot stand: collapse under self-weight is proved by {first.label}.")
         if others := proven[1:]:
             said.append(
-                f"The conclusion of {labels(others)} is the same. Strategies share this proof, which counts once."
+                f"The conclusion of {labels(others)} is the same. Strategies share this certificate, which counts once."
             )
         said.append(first.statement)
         if stands:
-            said.append(f"The proof overrules the opposite result of {labels(stands)}.")
+            said.append(f"The certificate overrules the opposite result of {labels(stands)}.")
     elif not stands and not collapses and not left:
         overall = "open"
         said.append(f"No strategy has a verdict on the {word} under this hazard.")
@@ -111,7 +111,7 @@ def conclusion(
         said.append(f"The least critical scale factor of the hazard is {row.margin_told()}, by {label}.")
     none = [row.label for row in rows if row.status != "ok"]
     if none:
-        said.append(f"No answer from {_list(none)}.")
+        said.append(f"No result from {_list(none)}.")
     idle = [row for row in rows if row.status == "ok" and row.outcome == "not-applicable"]
     said += [f"No verdict from {row.label}: {row.statement}" for row in idle if row.capacity is None]
     if able := [f"{row.label} {_capacity(row)}" for row in idle if row.capacity is not None]:

@@ -139,7 +139,7 @@ def _refuse_fallen(turning: _Turning) -> None:
         else f": they do work of {-turning.body.work() / 1e3:.3g} kNm per radian, and nothing resists it"
     )
     raise CannotStand(
-        f"{turning.words} has a multiplier of {turning.found.alpha0:.3g} at rest; proof: weights and thrusts set it in motion{work}",
+        f"{turning.words} has a multiplier of {turning.found.alpha0:.3g} at rest; certificate: weights and thrusts set it in motion{work}",
         neglects=(),
     )
 
@@ -206,7 +206,7 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
     d0, fc = found.d0, confidence(context, options)
     if d0 is None and found.alone <= 0.0:
         context.warnings.append(
-            "Without its ties the body would not stand at rest: the nonlinear check, which neglects them, is not made."
+            "Without its ties the body has no equilibrium: the nonlinear check, which neglects them, is not made."
         )
     structure = context.building.structure
     storeys = len(structure.storeys) if isinstance(structure, Plan) else options.storeys or storeys_in(building or 0.0)

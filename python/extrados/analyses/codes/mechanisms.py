@@ -120,7 +120,7 @@ def _refuse_sizes(options: LocalMechanism) -> None:
             ("analysis", "interlocking"),
         )
     if options.interlocking is not None and options.interlocking.unit_height > top - options.hinge_height:
-        raise Refused("a course is higher than the wall that turns", ("analysis", "interlocking", "unit_height"))
+        raise Refused("a course is higher than the wall that rotates", ("analysis", "interlocking", "unit_height"))
 
 
 def _upright(options: LocalMechanism, density: float, strength: float | None) -> Overturning:
@@ -173,7 +173,7 @@ def set_back(weights: list[Weight], strength: float, width: float, thickness: fl
     weight, most = sum(w.weight for w in weights if w.rests), strength * width * thickness
     if weight > most:
         raise CannotStand(
-            f"the weight crushes the wall at the hinge; proof: {weight / 1e3:.3g} kN rest on a section that carries {most / 1e3:.3g} kN at "
+            f"the weight crushes the wall at the hinge; certificate: {weight / 1e3:.3g} kN rest on a section that carries {most / 1e3:.3g} kN at "
             "most",
             neglects=(),
         )

@@ -200,7 +200,7 @@ def checks(
     felt = place.acceleration(spectrum, peak)
     demand = None if felt is None else felt / GRAVITY
     unknown = (
-        "a part free to vibrate answers at its own period T_0: its demand is S_eZ(T_0) [C8.7.1.9]. Give [material] young, or period"
+        "a part free to vibrate responds at its own period T_0: its demand is S_eZ(T_0) [C8.7.1.9]. Give [material] young, or period"
         if place.free and place.period is None
         else ""
     )

@@ -69,7 +69,7 @@ def en1998(part: Part, peak: float | None, state: str = "SD") -> list[Line]:
         barred = "the wall carries floors and is a structural element"
     elif not part.elevated:
         barred = (
-            "the part does not stand on a building, above the ground: give base_height and building_height if it does"
+            "the part is taken as supported by the ground: give base_height and building_height of a part of a building"
         )
     elif peak is not None:
         assert part.building is not None

@@ -30,7 +30,7 @@ class CodeChecks(BuildingAnalysis):
     peak_velocity: Velocity | None = key(None, "demand of Ishiyama's rule", gt=0)
     motion_spectrum: bool = key(
         False,
-        "where there is no spectrum of a code, take the response spectrum of the deck's motion, and its peak velocity",
+        "without a spectrum of a code, take the response spectrum of the deck's motion, and its peak velocity",
     )
     pulse_period: Time | None = key(
         None, "period of the sine whose half cycle Housner's formula takes; adds this check", gt=0
@@ -221,7 +221,7 @@ class LocalMechanism(BuildingAnalysis):
     height: Length | None = key(None, "top of the body that overturns, above the foot of the wall", gt=0)
     thickness: Length | None = key(None, "thickness at the hinge", gt=0)
     width: Length | None = key(None, "length of wall that overturns; default 1 m, of a tower its thickness", gt=0)
-    hinge_height: Length = key(0.0, "height of the hinge, the crack about which it turns", ge=0)
+    hinge_height: Length = key(0.0, "height of the hinge, the crack about which the wall rotates", ge=0)
     crack_angle: Angle | None = key(None, "of a corner: of the cracks in both walls from the vertical", gt=0, lt=80)
     floors: list[Floor] = key([], "floors, roofs and vaults on it", max_length=50)
     ties: list[WallTie] = key([], "ties that hold it", max_length=50)
@@ -247,9 +247,7 @@ class LocalMechanism(BuildingAnalysis):
         "elastic spectrum of the site for the limit state of collapse, SLC; adds the check of d_SLC to those at SLV",
         source="Circ. 7/2019, C8.7.1.2.1.8",
     )
-    motion_spectrum: bool = key(
-        False, "where there is no spectrum of a code, take the response spectrum of the deck's motion"
-    )
+    motion_spectrum: bool = key(False, "without a spectrum of a code, take the response spectrum of the deck's motion")
     behaviour_factor: float = key(
         2.0,
         "q of the linear check of NTC, which is for mechanisms without a displacement check",
@@ -267,7 +265,7 @@ class LocalMechanism(BuildingAnalysis):
     base_height: Length | None = key(
         None,
         "height z of the mechanism above the foundation: above 0 the floor amplifies; default from the geometry, the lowest hinge "
-        "between what moves and what does not, of a table `hinge_height`",
+        "between moving and fixed parts, of a table `hinge_height`",
         ge=0,
     )
     building_height: Length | None = key(

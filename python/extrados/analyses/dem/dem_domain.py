@@ -102,8 +102,9 @@ class Search:
 
 def _of_section(search: Search, model: Model) -> Callable[[list[Pulse], float], Runs]:
     """Runs of a section under pulses."""
-    bodies = [model.bodies(curve.values) for curve in search.curves]
-    settlement = [farthest_settlement(model, curve.values, curve.rigid) for curve in search.curves]
+    joints = [(curve.values, curve.rigid) for curve in search.curves if isinstance(curve.values, JointValues)]
+    bodies = [model.bodies(values) for values, _ in joints]
+    settlement = [farthest_settlement(model, values, rigid) for values, rigid in joints]
     shift = start(search.context, model)
 
     def task(curve: int, amplitude: float, duration: float, output_step: float) -> Task:

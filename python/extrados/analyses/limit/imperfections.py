@@ -76,7 +76,7 @@ def run(context: Context, options: Imperfections) -> Result:
     fallen = int((answered & ~stand).sum())
     if not answered.any():
         raise Refused(f"none of {options.count} surveys within {1e3 * deviation:.3g} mm has a result", WHOLE)
-    # A survey that cannot stand bears nothing: it belongs to the lower end of the band.
+    # A survey that cannot stand carries nothing: it belongs to the lower end of the band.
     borne = np.where(stand, lesser, 0.0)[answered]
     low, median, high = np.percentile(borne, [BAND[0], 50.0, BAND[1]]).tolist()
     result = Result("imperfections")

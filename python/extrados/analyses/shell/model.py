@@ -11,6 +11,7 @@ from extrados.analyses.sla.kept import State
 from extrados.analyses.sla.model import (
     MOST_CHANGES_OF_JOINTS,
     POINTS_PER_THREAD,
+    EventModel,
     bands_of,
     crushing_of,
     hills_of,
@@ -31,7 +32,7 @@ ROUNDS, VECTORS = 12, 4
 
 
 @dataclass
-class ShellModel:
+class ShellModel(EventModel):
     """A building ready for the core. constant, reference: nodal forces (nodes, 6) [N]; unit: resultant of the reference
     load, by which lambda becomes a force [N]; control: the displacement that is followed."""
 
@@ -48,7 +49,6 @@ class ShellModel:
     axes: list[np.ndarray]  # of the elements of each part, rows x, y, normal
     mechanism_ratio: float
     acceleration: float | None = None  # of the reference load, where it is one of masses alone [m/s^2]
-    bars = ()  # whose forces would be followed
     already: float = 0.0  # reference load that stages before have left on [N]
     grounds: dict["Ground", int] = field(default_factory=dict)  # ground that may give way: which of what may move it is
     settled: np.ndarray = field(default_factory=lambda: np.empty(0))  # how far each has, with the weight [m]
@@ -105,7 +105,7 @@ class ShellModel:
             x, y, z = self.mesh.xyz[error.node]
             raise Refused(
                 f"the building is a mechanism: node {error.node + 1} at x {x:g}, y {y:g}, z {z:g} m is free to move in "
-                f"{error.direction}; what stands there is not supported",
+                f"{error.direction}; the structure there is not supported",
                 ("structure",),
             ) from None
         except core.BadElement as error:
@@ -131,6 +131,8 @@ class ShellModel:
         """The joints and the points of each."""
         found, first, joints = [], 0, iter(self.mesh.joints)
         for group in self.groups[: len(self.mesh.parts) + len(self.mesh.joints)]:
+            if not isinstance(group, core.Shells | core.ShellJoints):
+                continue
             count = len(group.connect) * group.points_each
             if isinstance(group, core.ShellJoints):
                 found.append((next(joints), slice(first, first + count)))
@@ -141,6 +143,7 @@ class ShellModel:
         """Parts that bend, the points of each, and the layers: its points are (elements, places, layers)."""
         found, first = [], 0
         for part, group in zip(self.mesh.parts, self.groups, strict=False):
+            assert isinstance(group, core.Shells)  # the parts come first
             count = len(group.connect) * group.points_each
             if part.bends:
                 found.append((part, slice(first, first + count), group.layers))
@@ -348,7 +351,7 @@ def _grounds(
         if not free:
             word = "wall" if mesh.walls else "foot"
             raise BadGeometry(
-                f"{what}: no support of {word} '{support.name}' lies there that holds it {'upright' if ground.way == 'down' else 'across'}"
+                f"{what}: no support of {word} '{support.name}' lies there that restrains it {'upright' if ground.way == 'down' else 'across'}"
             )
         held -= {(n, d) for n, d, _ in free}
         grounds[ground] = len(ties)

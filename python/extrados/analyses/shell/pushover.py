@@ -110,7 +110,7 @@ def _run(context: Context, options: Pushover) -> Result:
     result.results = out.Pushover(**numbers)
     result.answer = _answer(context.building, options, numbers)
     if interrupted:
-        again = "; --resume goes on from them" if context.checkpoint is not None else ""
+        again = "; --resume continues from them" if context.checkpoint is not None else ""
         result.status, result.reason = "interrupted", f"interrupted; the events up to then are kept{again}"
     return result
 
@@ -134,8 +134,8 @@ def _stages(
         result.warnings.append(f"the numbers are those of stage {options.stage_names[main]}, the last that began")
     if {stage.sense for stage in options.stages if not stage.settlements} == {"+", "-"} and not options.closes:
         result.warnings.append(
-            "cracks stay open where the push turns: what one sense has opened carries no pressure in the other; let "
-            "crack_closure = true shut them"
+            "cracks stay open where the push changes its sense: cracks opened in one sense carry no pressure in the other; "
+            "crack_closure = true closes them"
         )
     rows, numbers = [], {}
     for k, (own, curve) in enumerate(staged):
@@ -299,7 +299,7 @@ def shown_state(model: ShellModel, curve: Curve) -> State | None:
 def _gave_way(row: dict[str, Any]) -> str:
     """When a joint gave way: under the constant loads, where no event of the push did it."""
     load = row["first_base_shear_N"]
-    return "" if load is None else f" gives way under {load / 1e3:.3g} kN and"
+    return "" if load is None else f" fails under {load / 1e3:.3g} kN and"
 
 
 def _joints(model: ShellModel, curve: Curve, state: State) -> list[dict[str, Any]]:
@@ -640,7 +640,7 @@ def _answer(building: Building, options: Pushover, numbers: dict[str, Any]) -> s
         words = [
             f"{row['base_shear_N'] / 1e3:.4g} kN by {row['code']} (storey {row['storey']})" for row in numbers["frame"]
         ]
-        parts.append(f"Its piers bear by the formulas of codes {' and '.join(words)}.")
+        parts.append(f"Capacity of its piers by the formulas of codes {' and '.join(words)}.")
     assumed = getattr(building.structure, "assumed", [])
     if assumed:
         parts.append("Assumed, since its sources do not say: " + "; ".join(assumed) + ".")
@@ -652,7 +652,7 @@ def _stage_told(stage: dict[str, Any]) -> str:
     if end is None:
         return f"{stage['name']} without a state in equilibrium"
     if stage["of"] == "settlement":
-        return f"{stage['name']}, the ground gives way, {stage['damaged_points']} points crack"
+        return f"{stage['name']}, settlement of the ground, {stage['damaged_points']} points crack"
     return f"{stage['name']}, a push to {stage['sense']}, ends at {end / 1e3:.4g} kN by: {stage['stop']}"
 
 
@@ -662,7 +662,7 @@ def _pressing(row: dict[str, Any], weight: float) -> str:
     for force, ways in ((row["thrust_N"], ("outward", "inward")), (row["vertical_N"], ("down", "up"))):
         if abs(force) > ROUNDING * weight:
             parts.append(f"{ways[force < 0.0]} with {abs(force) / 1e3:.4g} kN")
-    return f"presses {' and '.join(parts)}" if parts else "bears nothing"
+    return f"presses {' and '.join(parts)}" if parts else "carries nothing"
 
 
 def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any], word: str, grouped: bool) -> str:

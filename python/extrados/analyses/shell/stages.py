@@ -176,7 +176,7 @@ def _stop(model: ShellModel, staged: ShellModel, stage: PushStage, now: float, n
         if not load > 0.0:
             raise Refused(
                 f"stages[{number}].base_shear: the base shear in this sense is {staged.already:.4g} N at the start already, not below "
-                f"{stage.base_shear:.4g} N; the sense that comes down to it is the other",
+                f"{stage.base_shear:.4g} N; the other sense reaches it",
                 ("analysis", "stages", number, "base_shear"),
             )
     if stage.target_displacement is not None:

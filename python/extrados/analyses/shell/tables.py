@@ -28,10 +28,10 @@ class Drive(Table):
 class Settlement(Table):
     """Ground that gives way under a wall or a springing: it goes down, or outward; the damage stays."""
 
-    wall: str | None = key(None, "name of the wall that stands on it", min_length=1, max_length=40)
+    wall: str | None = key(None, "name of the wall above the support", min_length=1, max_length=40)
     foot: str | None = key(
         None,
-        "of a vault, what stands on it: left or right, springing of a dome, north-east and so on of a groin vault, a support of "
+        "of a vault, the side of the support: left or right, springing of a dome, north-east and so on of a groin vault, a support of "
         "a mesh file, or all",
         min_length=1,
         max_length=200,
@@ -62,19 +62,19 @@ class PushStage(Table):
 
     name: str | None = key(None, "of the stage; default its number", min_length=1, max_length=40)
     settlements: list[Settlement] = key(
-        [], "ground that gives way from where it is; else the stage is a push", max_length=100
+        [], "settlements of the ground in this stage; without them the stage is a push", max_length=100
     )
     direction: Angle | None = key(None, "of the push on the plan; default the analysis'", ge=-360, le=360)
     sense: Literal["+", "-"] = key("+", "of the push")
     base_shear: Force | None = key(
         None,
-        "the stage ends at this base shear in its direction and sense, what stages before have left on counted: 0 takes a "
-        "push to the other side off",
+        "the stage ends at this base shear in its direction and sense, with the loads that stages before have left: 0 removes a "
+        "push to the other side",
     )
     target_displacement: Length | None = key(
         None, "the stage ends where the control displacement has this value, counted from the building without loads"
     )
-    stop_fraction: float = key(0.0, "stop where the load falls below this part of the stage's peak", ge=0, lt=1)
+    stop_fraction: float = key(0.0, "stop when the load drops below this part of the stage's peak", ge=0, lt=1)
     events: int | None = key(None, "most events of the stage; default the analysis'", ge=1, le=100_000_000)
 
     @model_validator(mode="after")
@@ -82,7 +82,7 @@ class PushStage(Table):
         own = {"direction", "sense", "base_shear", "target_displacement", "stop_fraction"} & self.model_fields_set
         if self.settlements and own:
             raise ValueError(
-                f"{', '.join(sorted(own))}: of a push; ground that gives way ends where it is told to: take two stages"
+                f"{', '.join(sorted(own))}: of a push; a stage of settlements ends at their values: take two stages"
             )
         return self
 
@@ -90,7 +90,7 @@ class PushStage(Table):
 class Variant(Table):
     """The same push of a building of which something else is assumed: factors on what the deck says."""
 
-    name: str = key(about="what figures and results call it", min_length=1, max_length=40)
+    name: str = key(about="name in figures and results", min_length=1, max_length=40)
     strength: float = key(1.0, "on the tensile strength of all materials", gt=0, le=100)
     energy: float = key(1.0, "on their fracture energy", gt=0, le=1000)
     young: float = key(1.0, "on their modulus of elasticity", gt=0, le=100)
@@ -110,7 +110,7 @@ class FrameRules(Table):
     )
     compressive_strength: Stress | None = key(None, "f_m; default that of [material]", gt=0)
     fixity: Literal["double", "single"] = key(
-        "double", "ends of the piers that do not turn: both, between stiff spandrels, or the lower one alone"
+        "double", "ends of the piers without rotation: both, between stiff spandrels, or the lower one alone"
     )
 
 
@@ -145,27 +145,27 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     )
     control: Drive | None = key(
         None,
-        "whose mean displacement in the direction is followed; default that of all walls on the highest level, or of all "
-        "masses where that is propped",
+        "place whose mean displacement in the direction is followed; default all walls on the highest level, or all masses if "
+        "that level is propped",
     )
     settlements: list[Settlement] = key(
-        [], "ground that goes down as the weight comes on, [[analysis.settlements]]", max_length=100
+        [], "settlements that grow with the weight, [[analysis.settlements]]", max_length=100
     )
     stages: list[PushStage] = key(
         [],
-        "stages one after the other, [[analysis.stages]], in place of one push: pushes to either sense, ground that gives way; "
+        "stages one after the other, [[analysis.stages]], in place of one push: pushes to either sense, settlements; "
         "each inherits the damage; the weight, with `settlements`, comes first",
         min_length=1,
         max_length=50,
     )
     main_stage: str | None = key(
-        None, "name of the stage whose numbers stand for the analysis; default the last push, or the last"
+        None, "name of the stage whose numbers are those of the analysis; default the last push, or the last stage"
     )
     mesh: ShellOptions = key(ShellOptions(), "elements, [analysis.mesh]")
     constant_damage: bool = key(True, "bring the weight on with damage before the push", source="thesis 4.3.1")
     events: int = key(20_000, "most events", ge=1, le=100_000_000)
     target_displacement: Length | None = key(None, "stop where the control displacement reaches it", gt=0)
-    stop_fraction: float = key(0.0, "stop where the load falls below this part of its peak", ge=0, lt=1)
+    stop_fraction: float = key(0.0, "stop when the load drops below this part of its peak", ge=0, lt=1)
     mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] = key(
         1e4, "stop where the compliance has grown by this factor"
     )
@@ -175,7 +175,7 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     )
     without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"] = key(
         "continue",
-        "where no load suits all points, see sla: equilibrium iterations in displacement control continue from there (rotating "
+        "if no load suits all points, see sla: equilibrium iterations in displacement control continue from there (rotating "
         "cracks; joints that slide from the first load on), or A stays and the greatest lower limit decides, which is the default "
         "of stages",
         source="thesis 4.3.1",

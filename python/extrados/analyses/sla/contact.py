@@ -123,8 +123,8 @@ def settle(core_model: core.Model, model: SlaModel, options: Sla, warnings: list
         core_model.end_stage(1.0)
         return True
     warnings.append(
-        "which dry joints slide under the constant loads alone was not found: they stick there, and slide only as the "
-        "reference load asks for it"
+        "no set of dry joints that slide under the constant loads alone was found: they stick there, and slide only under the "
+        "reference load"
     )
     core_model.set_damage(start.into(damage, at, True))
     return True

@@ -103,7 +103,7 @@ def _run(context: Context, options: Sla) -> Result:
         numbers |= repeat(context, options, result)
     result.results = out.Sla(**numbers)
     if any(c.events.interrupted for c in curves):
-        again = "; --resume goes on from them" if context.checkpoint is not None else ""
+        again = "; --resume continues from them" if context.checkpoint is not None else ""
         result.status, result.reason = "interrupted", f"interrupted; the events up to then are kept{again}"
     return result
 

@@ -16,8 +16,8 @@ from extrados.analyses.sla.contact import NotCarried, settle
 from extrados.analyses.sla.curve import AXIAL, FALLEN, FAR, FELL, TOO_FAR, envelope, fallen, states
 from extrados.analyses.sla.incremental import run_incremental
 from extrados.analyses.sla.kept import State, UnderWay
-from extrados.analyses.sla.model import MECHANISM, MECHANISM_OF_STONES, SlaModel
-from extrados.analyses.sla.tables import Sla
+from extrados.analyses.sla.model import MECHANISM, MECHANISM_OF_STONES, EventModel, SlaModel
+from extrados.analyses.sla.tables import Sla, Staged
 from extrados.core import lists
 from extrados.core import sla as core
 from extrados.core.errors import Cancelled, CoreError, status_code
@@ -176,8 +176,8 @@ class Curve:
             return True
         if left:
             self.warnings.append(
-                f"stage {self.name} ended by: {events.reason or 'number of events'}, without a state in equilibrium to go on "
-                f"from; not run: {', '.join(left)}"
+                f"stage {self.name} ended by: {events.reason or 'number of events'}, without a state in equilibrium from which "
+                f"to continue; not run: {', '.join(left)}"
             )
         return False
 
@@ -191,8 +191,8 @@ class Curve:
 
 
 def run_curves(
-    model: SlaModel,
-    options: Sla,
+    model: EventModel,
+    options: Staged,
     threads: int,
     progress: Callable[[float, float, str], None],
     damage: np.ndarray | None = None,
@@ -256,7 +256,7 @@ def run_curves(
     return curves
 
 
-def _settled(core_model: core.Model, model: SlaModel, growing: bool = False) -> None:
+def _settled(core_model: core.Model, model: EventModel, growing: bool = False) -> None:
     """Supports that have settled with the constant loads, or settle as these grow."""
     if len(model.settled):
         still = np.zeros(len(model.settled))
@@ -269,8 +269,8 @@ def _count(stage: core.Events | None) -> int:
 
 def bring_on_constant_loads(
     core_model: core.Model,
-    model: SlaModel,
-    options: Sla,
+    model: EventModel,
+    options: Staged,
     progress: Callable[[float, float, str], None],
     warnings: list[str],
     chain: Chain | None,
@@ -297,8 +297,8 @@ def bring_on_constant_loads(
 
 def _bring_on(
     core_model: core.Model,
-    model: SlaModel,
-    options: Sla,
+    model: EventModel,
+    options: Staged,
     progress: Callable[[float, float, str], None],
     warnings: list[str],
     chain: Chain | None,
@@ -306,7 +306,9 @@ def _bring_on(
     """As bring_on_constant_loads, without asking where they lead."""
     kept = None if chain is None or chain.state is None else chain.state[1]
     if kept is None:
-        rubs = settle(core_model, model, options, warnings)
+        rubs = False
+        if isinstance(model, SlaModel) and isinstance(options, Sla):  # joints of shells are not dry from the start
+            rubs = settle(core_model, model, options, warnings)
         if rubs or not options.constant_damage or not np.any(model.constant):
             return None, rubs
     way = UnderWay((core_model.damage(), 0)) if kept is None else UnderWay.of(kept)
@@ -327,8 +329,8 @@ def _bring_on(
 
 def _constant_stage(
     core_model: core.Model,
-    model: SlaModel,
-    options: Sla,
+    model: EventModel,
+    options: Staged,
     progress: Callable[[float, float, str], None],
     way: UnderWay,
     chain: Chain | None,
@@ -366,8 +368,8 @@ def _constant_stage(
 
 def run_reference_loads(
     core_model: core.Model,
-    model: SlaModel,
-    options: Sla,
+    model: EventModel,
+    options: Staged,
     sign: int,
     before: float,
     progress: Callable[[float, float, str], None],
@@ -542,7 +544,7 @@ def run_reference_loads(
     return curve
 
 
-def follow(core_model: core.Model, model: SlaModel, how: str | None) -> None:
+def follow(core_model: core.Model, model: EventModel, how: str | None) -> None:
     """How a stage goes on without equilibrium under its constant loads, see core.Model.follow."""
     reach = 1.0 if how is None else model.reach
     core_model.follow(how, LONGEST_STEP * reach, RUNAWAY * reach, 1.0 if model.driven else abs(model.unit))
@@ -550,8 +552,8 @@ def follow(core_model: core.Model, model: SlaModel, how: str | None) -> None:
 
 def _incremental_stage(
     core_model: core.Model,
-    model: SlaModel,
-    options: Sla,
+    model: EventModel,
+    options: Staged,
     sign: int,
     progress: Callable[[float, float, str], None],
     before: float,
@@ -584,7 +586,7 @@ def _state(core_model: core.Model, event: int, events: core.Events) -> State:
 
 def _replay(
     core_model: core.Model,
-    model: SlaModel,
+    model: EventModel,
     sign: int,
     events: core.Events,
     event: int,

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from extrados.analyses.sla.curve import FAR, FELL, TOO_FAR, has_fallen
-from extrados.analyses.sla.model import SlaModel
-from extrados.analyses.sla.tables import Sla
+from extrados.analyses.sla.model import EventModel
+from extrados.analyses.sla.tables import Staged
 from extrados.core import sla as core
 from extrados.core.calls import cancel_requested
 
@@ -64,8 +64,8 @@ def _has_fallen(rows: list[tuple[float, ...]], start: float, fraction: float) ->
 
 def run_incremental(
     core_model: core.Model,
-    model: SlaModel,
-    options: Sla,
+    model: EventModel,
+    options: Staged,
     sign: int,
     progress: Callable[[float, float, str], None],
 ) -> core.Events:

@@ -1,5 +1,6 @@
 """What is read off a curve: loads, displacements, counts and energies, the teeth of its laws, the openings of joints."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -7,9 +8,10 @@ import numpy as np
 from extrados.analyses.sla.bar_forces import bar_rows
 from extrados.analyses.sla.curve import AXIAL, FAR, FAR_ABOVE, bilinear, drop_of
 from extrados.analyses.sla.events import MECHANISM_REACHED, Curve
-from extrados.analyses.sla.model import SlaModel
+from extrados.analyses.sla.model import EventModel, SlaModel
 from extrados.analyses.sla.stored import point_fields, points_of_groups
-from extrados.analyses.sla.tables import Sla
+from extrados.analyses.sla.tables import Staged
+from extrados.core import sla as core
 from extrados.core.sla import EVENT, teeth
 from extrados.results.model import Result, TableData
 from extrados.schema.constants import GRAVITY
@@ -18,7 +20,7 @@ from extrados.schema.constants import GRAVITY
 HINGE, WIDE = 0.9, 0.1
 
 
-def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
+def numbers_of(model: EventModel, options: Staged, curve: Curve) -> dict[str, Any]:
     """Results of one curve; keys end in their unit."""
     events, greatest, unit = curve.events, curve.peak, model.unit
     last = curve.last
@@ -68,7 +70,7 @@ def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
     if options.probes:
         reached = [float(np.interp(x, d, p)) if x <= d[-1] else None for x in options.probes]
         numbers["probe_loads_N"] = reached
-    if model.bars:
+    if isinstance(model, SlaModel) and model.bars:
         numbers["bars"] = bar_rows(model, curve)
     if events.steps.any():
         numbers |= _of_steps(model, curve, peak, d, p)
@@ -84,7 +86,7 @@ def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
     return numbers
 
 
-def _of_steps(model: SlaModel, curve: Curve, peak: int, d: np.ndarray, p: np.ndarray) -> dict[str, Any]:
+def _of_steps(model: EventModel, curve: Curve, peak: int, d: np.ndarray, p: np.ndarray) -> dict[str, Any]:
     """Numbers of the steps of equilibrium iterations; d, p: the envelope [m], [N]; peak: its event, -1 where none was passed."""
     events, height = curve.events, model.reach
     steps = events.steps
@@ -127,7 +129,7 @@ def out_of_reach(curve: Curve) -> str | None:
     )
 
 
-def _acceleration(model: SlaModel, peak: float | None, greatest: float | None) -> dict[str, float | None]:
+def _acceleration(model: EventModel, peak: float | None, greatest: float | None) -> dict[str, float | None]:
     """Multipliers as accelerations, where the reference load is one of masses alone."""
     if model.acceleration is None:
         return {}
@@ -150,12 +152,14 @@ def tooth_counts(model: SlaModel) -> list[int]:
     """Least and greatest number of teeth of the cracking elements (of the widest and narrowest bands)."""
     laws: dict[tuple[core.Softening, float], tuple[float, float]] = {}
     for group, meshed in zip(model.planes, model.mesh.groups, strict=True):
-        if group.tension is not None:
+        if isinstance(group.tension, Sequence):
+            count = len(group.tension)
+            band, young = (np.broadcast_to(values, count).tolist() for values in (group.band, group.young))
             for k, law in enumerate(group.tension):
                 if law is not None and (meshed.dry is None or not meshed.dry[k]):
-                    narrow, wide = (group.band[k], group.band[k]) if group.reach is None else group.reach[k]
-                    low, high = laws.get((law, float(group.young[k])), (np.inf, 0.0))
-                    laws[law, float(group.young[k])] = (min(low, float(narrow)), max(high, float(wide)))
+                    narrow, wide = (band[k], band[k]) if group.reach is None else group.reach[k].tolist()
+                    low, high = laws.get((law, young[k]), (np.inf, 0.0))
+                    laws[law, young[k]] = (min(low, narrow), max(high, wide))
     counts = [len(teeth(law, young, h)[0]) for (law, young), ends in list(laws.items())[:50] for h in ends]
     return [min(counts), max(counts)] if counts else [0, 0]
 

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from extrados.model.places import Placed
 from extrados.model.properties import Material
 from extrados.model.structures.walls import Bar
 from extrados.views.mesh.mesh import ElementGroup, JointLaw, Mesh, corner_count, element_areas
+from extrados.views.shell.mesh import ShellMesh
 
 AXES = {"x": 0, "y": 1}
 POINTS_PER_THREAD = 20_000
@@ -28,8 +30,45 @@ MOST_CHANGES_OF_JOINTS = 1000
 FLOOR_OF_JOINTS = 1e-11
 
 
+class EventModel:
+    """What the event loop takes from a model: a wall in its plane, or a building of shells."""
+
+    if TYPE_CHECKING:
+        mesh: Mesh | ShellMesh
+        behaviour: core.Behaviour
+        constant: np.ndarray
+        reference: np.ndarray
+        unit: float
+        control: core.Monitor
+        mechanism_ratio: float
+        acceleration: float | None
+        already: float
+        settled: np.ndarray
+
+        @property
+        def dimensions(self) -> int: ...
+        @property
+        def extent(self) -> float: ...
+        @property
+        def reach(self) -> float: ...
+        @property
+        def driven(self) -> bool: ...
+        @property
+        def watched(self) -> list[core.Monitor]: ...
+        @property
+        def slides(self) -> bool: ...
+        @property
+        def continues(self) -> bool: ...
+        @property
+        def steps_alone(self) -> bool: ...
+
+    def open(self, options: Any, threads: int) -> core.Model:
+        """The model in the core; Refused names a free node or a bad element."""
+        raise NotImplementedError
+
+
 @dataclass
-class SlaModel:
+class SlaModel(EventModel):
     """A wall or stones ready for the core. constant, reference: nodal forces (nodes, 2) [N]; unit: resultant of the
     reference load, by which lambda becomes a force [N]; control: the displacement that is followed."""
 
@@ -239,8 +278,8 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     ratio = options.mechanism_ratio or (MECHANISM_OF_STONES if mesh.has_joints else MECHANISM)
     if ratio > MOST_OF_FLOOR / floor:
         raise BadGeometry(
-            f"mechanism_ratio: {ratio:g} is beyond what cracks that keep {floor:g} of their stiffness can show: what they "
-            f"keep would carry the load; at most {MOST_OF_FLOOR / floor:g}"
+            f"mechanism_ratio: {ratio:g} is too large: cracks keep {floor:g} of their stiffness, "
+            f"which would carry the load; at most {MOST_OF_FLOOR / floor:g}"
         )
     # Of stages, of which each has its own, that while the constant loads come on
     growing = reference if not options.stages else constant

@@ -120,7 +120,7 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
                 f"resume_from: the points of that wall lie up to {apart:.3g} m away from those of this one", RESUME
             )
         if len(get["event_point"]) and get["event_point"].max() < 0:
-            raise Refused("resume_from: that run was incremental and has no events to go on from", RESUME)
+            raise Refused("resume_from: that run was incremental and has no events from which to continue", RESUME)
         if stored["sla"].get("stages"):
             raise Refused(
                 "resume_from: that run was in stages, whose supports and loads are not kept: write one more stage",
@@ -151,7 +151,7 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
                 int(get["event_point"][event - 1]),
                 totals,
             )
-        lost = "joints that slide" if model.slides else "cracks that turn"
+        lost = "joints that slide" if model.slides else "cracks that rotate"
         by_events = not model.slides and stored["sla"].get("cracking") != "rotating"
         return _damage_at(event, get, None if by_events else lost), earlier
     except KeyError as error:

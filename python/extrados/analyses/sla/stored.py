@@ -36,7 +36,7 @@ def mesh_arrays(model: SlaModel) -> dict[str, Array]:
             for g, h in zip(model.mesh.groups, model.bands, strict=True)
         ]  # fmt: skip
         each = np.concatenate([np.repeat(h, n) for h, n in zip(reach, per, strict=True)])
-        arrays["point_reach"] = Array(each, ("points",), "m", "length along a crack that a point stands for")
+        arrays["point_reach"] = Array(each, ("points",), "m", "length along a crack that belongs to a point")
     return arrays
 
 
@@ -56,12 +56,11 @@ def events_of_curve(result: Result, unit: float, curve: Curve, prefix: str) -> N
         "lost": (
             e.lost,
             "J",
-            "work along that way that is not stored; what lies between events without equilibrium is no "
-            "state, so that it may fall",
+            "work along that way that is not stored; it may decrease, because events without equilibrium are no states",
         ),
-        "dissipated": (curve.dissipated, "J", "energy dissipated from state to state; never falls"),
+        "dissipated": (curve.dissipated, "J", "energy dissipated from state to state; never decreases"),
         "crack": (e.crack, "J", "area of the teeth passed"),
-        "scale": (e.scale, "", "part of all loads that is on, below 1 where they went down together"),
+        "scale": (e.scale, "", "part of all loads that is applied, below 1 if they were reduced together"),
     }
     for name, (data, u, about) in columns.items():
         result.arrays[f"{prefix}event_{name}"] = Array(data, dim, u, about)
@@ -82,7 +81,7 @@ def events_of_curve(result: Result, unit: float, curve: Curve, prefix: str) -> N
     if not prefix:
         for name in ("damage_start", "damage_end"):
             result.arrays[name] = Array(
-                getattr(curve, name).T, ("all_points", "damage_row"), "", "damage, to go on from"
+                getattr(curve, name).T, ("all_points", "damage_row"), "", "damage, for a run that continues"
             )
     d, p = curve.envelope(unit)
     result.arrays[f"{prefix}envelope_displacement"] = Array(d, (f"{prefix}envelope",), "m", "monotone envelope")
@@ -115,7 +114,7 @@ def curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> 
         if not prefix:
             result.arrays["state_damage"] = Array(
                 np.stack([s.damage.T for s in states]), (*dims, "all_points", "damage_row"), "",
-                "damage before the event, to go on from",
+                "damage before the event, for a run that continues",
             )  # fmt: skip
         result.arrays[f"{prefix}state_load"] = Array(curve.force(unit)[[s.event for s in states]], dims, "N", "load")
         result.arrays[f"{prefix}state_displacement"] = Array(

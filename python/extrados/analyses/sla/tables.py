@@ -91,16 +91,16 @@ class Stage(Table):
     name: str | None = key(
         None, "of the stage, in figures and results; default its number", min_length=1, max_length=40
     )
-    hold: list[Hold] = key([], "places held from this stage on, where they are at its start", max_length=100)
+    hold: list[Hold] = key([], "places held from this stage on, at their positions at its start", max_length=100)
     free: list[Hold] = key(
         [],
-        "supports taken away, of any stage or of the building: their forces are the loads of this stage, and go to nothing",
+        "supports removed in this stage, of any stage or of the building. Their reactions are ramped to zero",
         max_length=100,
     )
     reference: list[Load] = key(
         [],
-        "loads B of this stage, multiplied by lambda; or one displacement, by which places (supports too) move on from "
-        "where they are, and where they stay held",
+        "loads B of this stage, multiplied by lambda; or one displacement, by which places (supports too) move from "
+        "their present positions, and at which they stay held",
         max_length=100,
     )
     control: list[Watch] = key(
@@ -114,7 +114,7 @@ class Stage(Table):
     target_displacement: Length | None = key(
         None, "the stage ends exactly where the control displacement, counted from the unloaded wall, has this value"
     )
-    stop_fraction: float = key(0.0, "stop where the load falls below this part of the stage's peak", ge=0, lt=1)
+    stop_fraction: float = key(0.0, "stop when the load drops below this part of the stage's peak", ge=0, lt=1)
     events: int | None = key(None, "most events of the stage; default the analysis'", ge=1, le=10_000_000)
 
     @model_validator(mode="after")
@@ -124,7 +124,7 @@ class Stage(Table):
                 "free and reference: supports that are let go are the load of their stage; take two stages"
             )
         if not (self.free or self.reference):
-            raise ValueError("a stage needs what grows: expected reference, or free")
+            raise ValueError("a stage needs a load that grows: expected reference, or free")
         if sum(load.kind == "displacement" for load in self.reference) and len(self.reference) > 1:
             raise ValueError("a prescribed displacement stands alone in reference; give its places as parts")
         return self
@@ -179,7 +179,7 @@ class CrackOptions(Table):
     )
     cracking: Literal["rotating", "orthotropic", "isotropic"] = key(
         "rotating",
-        "cracks that turn with the principal strain, cracks fixed at their first tooth as in the thesis (they carry too "
+        "cracks that rotate with the principal strain, cracks fixed at their first tooth as in the thesis (they carry too "
         "much: see docs/sla.md), or one damage for all directions",
         source="Eq. 4.10",
     )
@@ -189,11 +189,26 @@ class CrackOptions(Table):
 
 
 class Staged:
-    """Stages one after the other: their names, and what cannot stand beside them."""
+    """What the event loop takes from the table of an analysis, and its stages one after the other: their names, and what cannot
+    stand beside them."""
 
     if TYPE_CHECKING:
         stages: list[Any]
         main_stage: str | None
+        directions: list[Literal["+", "-"]]
+        constant_damage: bool
+        events: int
+        target_displacement: float | None
+        stop_fraction: float
+        without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"]
+        continuation: Literal["newton", "implicit-explicit"]
+        states: list[int]
+        probes: list[float]
+
+        @property
+        def solution(self) -> str: ...
+        @property
+        def algorithm(self) -> str: ...
 
     @property
     def stage_names(self) -> list[str]:
@@ -273,7 +288,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         max_length=50,
     )
     main_stage: str | None = key(
-        None, "name of the stage whose numbers and figures stand for the analysis; default the last"
+        None, "name of the stage whose numbers and figures are those of the analysis; default the last"
     )
     control: list[Watch] = key(
         [], "displacement of the curve, a sum of terms; default the mean displacement under B", max_length=50
@@ -281,7 +296,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     mesh: MeshOptions = key(MeshOptions(), "elements, [analysis.mesh]")
     events: int = key(5000, "most events", ge=1, le=10_000_000)
     target_displacement: Length | None = key(None, "stop where the control displacement reaches it", gt=0)
-    stop_fraction: float = key(0.0, "stop where the load falls below this part of its peak", ge=0, lt=1)
+    stop_fraction: float = key(0.0, "stop when the load drops below this part of its peak", ge=0, lt=1)
     mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] | None = key(
         None, "stop where the compliance has grown by this factor; default 1e4, of stones 1e5"
     )
@@ -299,14 +314,14 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     solution: Literal["events", "incremental"] = key(
         "events",
         "one point after the other; or, to compare, steps of arc length with a secant iteration in which all overloaded "
-        "points lose teeth at once: `events` counts its steps then",
+        "points lose teeth together: `events` counts its steps then",
     )
     without_equilibrium: Literal["continue", "load-unload", "proportional", "force-release"] = key(
         "continue",
-        "where no multiplier of B suits all points: equilibrium iterations in displacement control go on from there (rotating "
+        "if no multiplier of B suits all points: equilibrium iterations in displacement control continue from there (rotating "
         "cracks without bed joints, bars and joints; else load-unload), or A stays and the greatest lower limit decides, or all loads of the "
-        "last state in equilibrium go down together (intermittent proportional loading); or the load never comes back: "
-        "what a tooth sets free goes onto the other points before the load grows again (force release)",
+        "last state in equilibrium are reduced together (intermittent proportional loading); or the load never comes back: "
+        "the force that a tooth sets free goes onto the other points before the load grows again (force release)",
         source="thesis 4.3.1; Pari, Hendriks and Rots 2020; Elias, Frantik and Vorechovsky 2010",
     )
     continuation: Literal["newton", "implicit-explicit"] = key(
@@ -335,9 +350,10 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         "verification by displacement, of a wall that its own masses push to +x, [analysis.verification]",
     )
     resume_from: str | None = key(
-        None, "results folder of an earlier run of the same wall to go on from, inside the deck's folder or absolute"
+        None,
+        "results folder of an earlier run of the same wall, from which to continue, inside the deck's folder or absolute",
     )
-    resume_event: int | None = key(None, "go on before this event of that run; default its last", ge=1)
+    resume_event: int | None = key(None, "continue before this event of that run; default its last", ge=1)
 
     @field_validator("directions")
     @classmethod

@@ -147,7 +147,8 @@ def _model(building: Building, options: Fragility, factor: dict[str, float], see
     }
     base = {name: getattr(building.supports, name) * factor[name] for name in BASE if name in factor}
     if "corners" in factor:
-        left = 1.0 - (1.0 - structure.thickness_factor) * factor["corners"]
+        factor_of_joints: float = getattr(structure, "thickness_factor", 1.0)
+        left = 1.0 - (1.0 - factor_of_joints) * factor["corners"]
         if left <= 0.0:
             raise NoView("its corners are worn away", ("analysis", "uncertain", "corners"))
         update["thickness_factor"] = left

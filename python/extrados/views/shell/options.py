@@ -17,7 +17,7 @@ class ShellOptions(Table):
         gt=0,
     )
     layers: int = key(5, "integration points through the thickness; 2 suffice where walls do not bend", ge=1, le=15)
-    through: Literal["gauss", "lobatto"] = key("lobatto", "where they lie; Lobatto's have one on each face")
+    through: Literal["gauss", "lobatto"] = key("lobatto", "their rule; Lobatto's have one on each face")
     selective: bool = key(False, "quadrilaterals with the in-plane shear strain of their middle (no shear locking)")
 
     @model_validator(mode="after")
