@@ -249,7 +249,8 @@ class _Work:
             self.context.warnings.append(f"the margin of rocking is not known: {row.reason}")
             return
         low, high = scaled_margin(found.results)
-        self._bracket("rocking", low, high)
+        down = self.rows["rocking"].outcome == "collapses"  # the run under the hazard itself is a factor of 1
+        self._bracket("rocking", low, 1.0 if high is None and down else high)
         words = f"{self.rows['rocking'].parameters}; its margin from {row.parameters}"
         if high is None and low != found.results.levels[-1]:
             words += "; at the next factor blocks slide or hinges form elsewhere, so that rocking bounds the margin from below alone"
