@@ -6,8 +6,9 @@
 In Fortran and C a fault is a changed sign or operator, constant, comparison or bound of a loop; in Python (`--python`), at
 the joins of strategies alone, a changed sign, a dropped key or filter, another set of blocks, a unit factor or an outcome. Its place
 is drawn from the seed; every package gets its share. A fault counts as caught if the build, a quick test of its package or a case
-fails; with `--suite properties` if the build or the property suite alone fails (tests/properties), of the kernels at faults
-of the joins, and of Python by the relations that run through the changed function, the quickest first. Tests that fail
+fails; with `--suite properties` if the build or the property suite alone fails (tests/properties): of Python the relations that
+run through the changed line, of the kernels those that call the changed module, the quickest first, and those whose answers change again with
+more cases. A fault that changes no answer of the suite, one that no relation runs through and one that exceeds its processor time are named. Tests that fail
 without a fault are found first, and skipped. The fate of each fault is kept in the place, and an interrupted run
 continues from there; `--again` tries those anew that were not caught, after tests were written. Those that are not caught
 are printed with their place, and all are noted for the verification book. equivalent_faults.toml names faults that change
@@ -33,6 +34,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 sys.path.insert(0, str(Path(__file__).parent))
 import apart
@@ -147,11 +149,14 @@ EQUIVALENT: dict[str, str] = {
     for row in tomllib.loads((Path(__file__).parent / "equivalent_faults.toml").read_text(encoding="utf-8"))["fault"]
 }
 #: Share of the whole count of the property suite that a fault is tried with
-SHARE = "0.15"
-#: The same, to find which functions a relation runs through
-FEW = "0.06"
-#: Tests that run through a function at least, else those of its file are run too
-FEWEST = 5
+SHARE = "0.06"
+#: Modules of the property suite that all relations share
+SHARED = ("asking", "buildings", "relations")
+#: That with which relations are asked again whose answers change
+MORE = 0.3
+#: Fates of a fault that no relation finds: an answer changes, none does, no relation runs through it, the time is up
+MISSED, UNCHANGED, NOWHERE, UNDECIDED = "", "no answer of the suite changes", "no relation runs through it", "undecided"
+NOT_CAUGHT = (MISSED, UNCHANGED, NOWHERE, UNDECIDED)
 
 
 @dataclass(frozen=True)
@@ -318,89 +323,138 @@ def commands(place: Path, room: str) -> list[tuple[list[str], str]]:
     ]
 
 
+@dataclass(frozen=True)
+class Row:
+    """A test of the property suite without a fault: seconds of a processor, digest of its answers, the lines of Python that it runs through."""
+
+    test: str
+    seconds: float
+    answers: str
+    lines: frozenset[tuple[str, int]]
+
+
+def _read(kept: Path) -> list[dict[str, Any]]:
+    return [json.loads(row) for row in kept.read_text(encoding="utf-8").splitlines()] if kept.exists() else []
+
+
+def rows_of(kept: Path) -> list[Row]:
+    """The tests noted in a file, the quickest first."""
+    found = [
+        Row(r["test"], r["seconds"], r["answers"], frozenset((file, n) for file, n in r["lines"])) for r in _read(kept)
+    ]
+    return sorted(found, key=lambda row: row.seconds)
+
+
+def environment_of(kept: Path, **more: str) -> dict[str, str]:
+    """Of a run of the property suite whose tests are noted in a file."""
+    return {
+        **os.environ,
+        "OMP_NUM_THREADS": "1",
+        "PYTHONDONTWRITEBYTECODE": "1",
+        "EXTRADOS_TRIALS": SHARE,
+        "EXTRADOS_TOUCHED": str(kept),
+        **more,
+    }
+
+
 @cache  # found before the first fault is planted
-def touched(place: Path) -> list[tuple[str, float, set[tuple[str, int]]]]:
-    """Tests of the property suite, their seconds, and the functions that they run through: file and first line. Found once,
-    by few cases, without a fault; tests that fail without one, with the cases that a fault is tried with, are skipped, and named."""
-    whole = hashlib.sha256()
-    for path in sorted([*(place / "tests" / "properties").glob("*.py"), *(place / PACKAGE).rglob("*.py")]):
+def touched(place: Path) -> list[Row]:
+    """Tests of the property suite without a fault, by the cases that a fault is tried with: each found once for each text of its chapter. Those
+    that fail are skipped, and named."""
+    folder, whole = place / "tests" / "properties", hashlib.sha256()
+    for path in [*(folder / f"{name}.py" for name in SHARED), *sorted((place / PACKAGE).rglob("*.py"))]:
         if path.name != "_build_info.py":  # the same of two builds
             whole.update(path.read_bytes())
     kept = place / f"touched-{whole.hexdigest()[:12]}.jsonl"
-    if not kept.exists():
-        half = kept.with_suffix(".part")
-        half.unlink(missing_ok=True)
-        words = [apart.python(place), "-m", "pytest", "-q", "-n", "0", "-p", "no:cacheprovider", "tests/properties"]
-        broken: set[str] = set()
-        for asked in ({"EXTRADOS_TOUCHED": str(half), "EXTRADOS_TRIALS": FEW}, {"EXTRADOS_TRIALS": SHARE}):
-            environment = {**os.environ, "OMP_NUM_THREADS": "1", **asked}
-            run = subprocess.run(words, cwd=place, env=environment, capture_output=True, text=True, errors="replace")
-            broken |= set(re.findall(r"^(?:FAILED|ERROR) (\S+)", run.stdout, re.M))
-        rows = [r for r in half.read_text(encoding="utf-8").splitlines() if json.loads(r)["test"] not in broken]
-        print("skipped, since they fail without a fault:", *sorted(broken or {"none"}), flush=True)
-        half.write_text("\n".join(rows) + "\n", encoding="utf-8")
-        half.rename(kept)
-    rows = map(json.loads, kept.read_text(encoding="utf-8").splitlines())
-    return sorted(
-        ((r["test"], r["seconds"], {(file, line) for file, line in r["touched"]}) for r in rows), key=lambda r: r[1]
-    )
-
-
-def relations_of(place: Path, fault: Fault) -> list[str]:
-    """The tests of the property suite that run through the changed function, and where few do through its file, or beside the
-    changed kernel, the quickest first; then, of a kernel, all others."""
-    rows = touched(place)
-    if not fault.in_python:
-        core = f"core/{KERNELS.get(fault.file, '')}"
-        near = [test for test, _, there in rows if any(file.startswith(core) for file, _ in there)]
-        return near + [test for test, _, _ in rows if test not in near]
-    file = fault.file.removeprefix(f"{PACKAGE}/")
-    tree = ast.parse((place / fault.file).read_text(encoding="utf-8"))
-    around = [
-        n for n in ast.walk(tree) if isinstance(n, ast.FunctionDef) and n.lineno <= fault.line <= (n.end_lineno or 0)
-    ]
-    first = max((min([n.lineno, *(d.lineno for d in n.decorator_list)]) for n in around), default=0)
-    through = [test for test, _, there in rows if (file, first) in there]
-    if len(through) >= FEWEST:
-        return through
-    return through + [test for test, _, there in rows if test not in through and any(file == name for name, _ in there)]
-
-
-def failing_relation(place: Path, fault: Fault, patience: int) -> str:
-    """The first test of the property suite that fails with a fault planted, or ""."""
-    chosen = relations_of(place, fault)
-    if not chosen:
-        return ""
-    environment = {**os.environ, "OMP_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1", "EXTRADOS_TRIALS": SHARE}
+    half = kept.with_suffix(".part")
+    half.unlink(missing_ok=True)
+    sources = {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.glob("*.py")}
+    known = [r for r in _read(kept) if r["source"] == sources.get(r["chapter"])]
     words = [
         apart.python(place),
         "-m",
         "pytest",
         "-q",
-        "-x",
         "-n",
-        "0",
+        "2",
+        "--dist",
+        "worksteal",
         "-p",
         "no:cacheprovider",
-        f"--timeout={patience}",
-        *chosen,
+        "tests/properties",
     ]
-    try:
-        run = subprocess.run(
-            words, cwd=place, env=environment, capture_output=True, text=True, errors="replace", timeout=4 * patience
-        )
-    except subprocess.TimeoutExpired:
-        return ""  # a slow machine sees nothing
-    if "+ Timeout +" in run.stdout + run.stderr:
-        return "a test that does not end"
-    failed = re.search(r"^(?:FAILED|ERROR) (\S+)", run.stdout, re.M)
-    return (
-        ""
-        if run.returncode == 0
-        else failed[1]
-        if failed
-        else f"exit {run.returncode}: {(run.stdout + run.stderr)[-200:]}"
-    )
+    words += [f"--deselect={r['test']}" for r in known]
+    environment = environment_of(half, EXTRADOS_LINES="1")
+    run = subprocess.run(words, cwd=place, env=environment, capture_output=True, text=True, errors="replace")
+    broken = set(re.findall(r"^(?:FAILED|ERROR) (\S+)", run.stdout, re.M))
+    print("skipped, since they fail without a fault:", *sorted(broken or {"none"}), flush=True)
+    known += [{**r, "source": sources[r["chapter"]]} for r in _read(half) if r["test"] not in broken]
+    kept.write_text("".join(json.dumps(r) + "\n" for r in known), encoding="utf-8")
+    return rows_of(kept)
+
+
+def span_of(tree: ast.Module, line: int) -> range:
+    """The lines of the innermost statement around a line; of one with a body, its head."""
+    around = [n for n in ast.walk(tree) if isinstance(n, ast.stmt) and n.lineno <= line <= (n.end_lineno or 0)]
+    inner = max(around, key=lambda n: n.lineno)
+    body = getattr(inner, "body", None)
+    return range(inner.lineno, body[0].lineno if body else (inner.end_lineno or line) + 1)
+
+
+def relations_of(place: Path, fault: Fault) -> list[Row]:
+    """The tests of the property suite that run through the changed statement or beside the changed kernel, the quickest first."""
+    rows = touched(place)
+    if not fault.in_python:
+        core = tuple(f"core/{name}" for name in KERNELS[fault.file].split())
+        return [row for row in rows if any(file.startswith(core) for file, _ in row.lines)]
+    file = fault.file.removeprefix(f"{PACKAGE}/")
+    span = span_of(ast.parse((place / fault.file).read_text(encoding="utf-8")), fault.line)
+    return [row for row in rows if any((file, line) in row.lines for line in span)]
+
+
+@cache
+def suite(place: Path, build: int) -> subprocess.Popen[str]:
+    """The property suite, loaded with a build, which waits for the faults of Python and the tests that it is asked for."""
+    words = [apart.python(place), "-m", "pytest", "-q", "-s", "-n", "0", "-p", "no:cacheprovider", "tests/properties"]
+    environment = environment_of(place / "unused", EXTRADOS_FAULTS="1")
+    return subprocess.Popen(words, cwd=place, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, errors="replace")  # fmt: skip
+
+
+def asked_of(
+    place: Path, build: int, fault: Fault, tests: list[str], share: float, patience: int
+) -> tuple[str, list[Row]]:
+    """The first of some tests that fails with a fault, or one of the `NOT_CAUGHT`, and what the tests before noted."""
+    kept, failed, process = place / "answers.jsonl", place / "failed.txt", suite(place, build)
+    kept.unlink(missing_ok=True)
+    assert process.stdin is not None and process.stdout is not None
+    question = {
+        "file": fault.file.removeprefix(f"{PACKAGE}/"), "line": fault.line, "new": fault.new if fault.in_python else "", "tests": tests,
+        "share": share, "patience": patience, "limit": 8 * patience, "kept": str(kept), "failed": str(failed),
+    }  # fmt: skip
+    process.stdin.write(json.dumps(question) + "\n")
+    process.stdin.flush()
+    code = next((int(text.split()[1]) for text in process.stdout if text.startswith("ended: ")), None)
+    by = {0: MISSED, 1: failed.read_text(encoding="utf-8") if code == 1 else "", -signal.SIGPROF: "a test that does not end",
+          -signal.SIGXCPU: UNDECIDED, -signal.SIGKILL: UNDECIDED}.get(code, f"exit {code}")  # fmt: skip
+    return by, rows_of(kept)
+
+
+def failing_relation(place: Path, fault: Fault, patience: int) -> str:
+    """The first test of the property suite that fails with a fault planted, the quickest first, then with more cases those
+    whose answers change; else one of the `NOT_CAUGHT`."""
+    chosen = relations_of(place, fault)
+    if not chosen:
+        return NOWHERE
+    build = 0 if fault.in_python else time.monotonic_ns()
+    by, seen = asked_of(place, build, fault, [row.test for row in chosen], float(SHARE), patience)
+    before = {row.test: row.answers for row in chosen}
+    changed = [row.test for row in seen if row.answers != before[row.test]]
+    if by == MISSED and changed:
+        by, _ = asked_of(place, build, fault, changed, MORE, patience)
+        by += " with more cases" if by not in NOT_CAUGHT else ""
+    if build:
+        suite(place, build).kill()
+    return UNCHANGED if by == MISSED and not changed else by
 
 
 def failing(place: Path, room: str, patience: int) -> str:
@@ -421,6 +475,8 @@ def failing(place: Path, room: str, patience: int) -> str:
 
 def caught_by(place: Path, fault: Fault, patience: int, properties: bool = False) -> str:
     """The test that fails with a fault planted, or ""; properties: of the property suite alone."""
+    if fault.in_python:
+        return failing_relation(place, fault, patience)
     plant(place, fault)
     try:
         if not fault.in_python:
@@ -474,7 +530,7 @@ def main() -> int:
     name = "fates.json" if not properties else f"fates-properties-{'python' if options.python else 'kernels'}.json"
     kept = place / name
     fates: dict[str, str] = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
-    todo = [f for f in chosen if options.only or str(f) not in fates or (options.again and not fates[str(f)])]
+    todo = [f for f in chosen if options.only or str(f) not in fates or (options.again and fates[str(f)] in NOT_CAUGHT)]
     todo.sort(key=lambda fault: fault.room)  # the tests of a package pass without a fault before its first is planted
     if properties and todo:
         touched(place)  # which passes without a fault
@@ -488,10 +544,14 @@ def main() -> int:
         begin = time.monotonic()
         by = fates[str(fault)] = caught_by(place, fault, options.patience, properties)
         seconds = time.monotonic() - begin
-        print(f"{k}/{len(todo)} {f'caught by {by}' if by else 'NOT CAUGHT'} ({seconds:.0f} s) {fault}", flush=True)
+        print(
+            f"{k}/{len(todo)} {f'caught by {by}' if by not in NOT_CAUGHT else f'NOT CAUGHT {by}'} ({seconds:.0f} s) {fault}",
+            flush=True,
+        )
         kept.write_text(json.dumps(fates, indent=1), encoding="utf-8")
-    equal = [fault for fault in chosen if not fates[str(fault)] and fault.change in EQUIVALENT]
-    missed = [str(fault) for fault in chosen if not fates[str(fault)] and fault not in equal]
+    loose = [fault for fault in chosen if fates[str(fault)] in NOT_CAUGHT]
+    equal = [fault for fault in loose if fault.change in EQUIVALENT]
+    missed = [f"{fault} {fates[str(fault)]}".strip() for fault in loose if fault not in equal]
     tried = len(chosen) - len(equal)
     print(f"{tried - len(missed)} of {tried} caught", *missed, sep="\n")
     excluded = [f"changes no result, and counts neither way: {fault}: {EQUIVALENT[fault.change]}" for fault in equal]

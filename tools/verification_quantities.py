@@ -73,10 +73,10 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
         r"scaling_misfit",
         r"greatest_misfit",
     ),
-    "probability": (r"fragility\S*\.(?!mean_peak)", r"(?:median|probability)$", r"share_of_starts"),
+    "probability": (r"fragility\S*\.(?!mean_peak|histories)", r"(?:median|probability)$", r"share_of_starts"),
     "weight and other data": (
         r"weight_N",
-        r"frame-\S*\.(?:piers|spandrels|moving_mass_kg|steps)$",
+        r"frame-\S*\.(?:piers|spandrels|moving_mass_kg|steps|histories)$",
         r"flanges",
         r"survey\.sections",
     ),
@@ -99,7 +99,7 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
         r"margin",
     ),
     "restitution": (r"restitution", r"rebound$"),
-    "frequency and period": (r"frequency_parameter", r"period_s$"),
+    "frequency and period": (r"frequency_parameter", r"period_s$", r"frequency_Hz$"),
     "damping and stiffness of contacts": (r"damping_ratio", r"critical_beta", r"joint_stiffness"),
     "time and number of impacts": (
         r"bounces$",

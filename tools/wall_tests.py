@@ -12,8 +12,9 @@ are those of `read_walls`. Each wall becomes one deck per method, as a user woul
     frame     one macro-element of `frame-pushover`: sections without tension, shear by the lesser of Mohr-Coulomb on the compressed
               part and Turnsek-Cacovic; without drift limits, to 2 % drift
 
-Empty cells are filled by these rules: friction 0.4; cohesion of the joints as tested; tensile strength of the diagonal
-test, else the cohesion; modulus 600 times the compressive strength. Crushing in limit analysis at 0.85 of the strength.
+Empty cells are filled by these rules: friction 0.4; cohesion of the joints as tested, and without it (stone masonry) shear by
+diagonal cracking alone; tensile strength of the diagonal test, else the cohesion; modulus 600 times the compressive strength.
+Crushing in limit analysis at 0.85 of the strength.
 Written: predictions.csv, one row per wall and method. Printed: bias (geometric mean of predicted over measured) and scatter
 (standard deviation of its logarithm), in all and by failure mode, the count of right failure modes and of missing results.
 """
@@ -61,6 +62,7 @@ class Wall:
     failure: str
     peak: float
     drift: float  # at the peak, mean of both senses; nan if not reported
+    ultimate: float = math.nan  # ultimate drift, the lower of both senses; nan if not reported
 
     @property
     def axial(self) -> float:
@@ -98,18 +100,20 @@ def read_walls(file: Path) -> list[Wall]:
     for row in csv.DictReader(lines):
         number = {key: float(value) for key, value in row.items() if value and key not in _TEXTS}
         peaks = [number[key] for key in ("peak_pos_kN", "peak_neg_kN") if key in number]
+        ends = [number[key] for key in ("ultimate_drift_pos_pct", "ultimate_drift_neg_pct") if key in number]
         drifts = [number[key] for key in ("drift_at_peak_pos_pct", "drift_at_peak_neg_pct") if key in number]
-        compressive, cohesion = 1e6 * number["masonry_compressive_MPa"], 1e6 * number["shear_strength_initial_MPa"]
+        compressive = 1e6 * number["masonry_compressive_MPa"]
+        cohesion = 1e6 * number.get("shear_strength_initial_MPa", math.nan)
         walls.append(
             Wall(
                 name=f"{row['n']} {row['name']}", height=number["height_m"], length=number["length_m"],
-                thickness=number["thickness_m"], unit_length=1e-3 * number["unit_length_mm"],
-                unit_height=1e-3 * number["unit_height_mm"], compressive=compressive,
+                thickness=number["thickness_m"], unit_length=1e-3 * number.get("unit_length_mm", math.nan),
+                unit_height=1e-3 * number.get("unit_height_mm", math.nan), compressive=compressive,
                 tensile=1e6 * number["masonry_tensile_diagonal_MPa"] if "masonry_tensile_diagonal_MPa" in number else cohesion,
                 young=1e6 * number.get("young_MPa", 1e-6 * MODULUS * compressive), cohesion=cohesion,
                 friction=number.get("friction", FRICTION), span=number["shear_span_over_height"],
-                pressure=1e6 * number["vertical_stress_MPa"], failure=row["failure"], peak=1e3 * sum(peaks) / len(peaks),
-                drift=1e-2 * sum(drifts) / len(drifts) if drifts else math.nan,
+                pressure=1e6 * number["vertical_stress_MPa"], failure=row.get("failure", ""), peak=1e3 * sum(peaks) / len(peaks) if peaks else math.nan,
+                drift=1e-2 * sum(drifts) / len(drifts) if drifts else math.nan, ultimate=1e-2 * min(ends, default=math.nan),
             )
         )  # fmt: skip
     return walls
@@ -182,10 +186,11 @@ def _beam(wall: Wall) -> dict[str, Any]:
 
 def by_codes(wall: Wall) -> dict[str, Predicted]:
     """The least strength that each code gives the wall as a pier, all partial and confidence factors at 1."""
+    high = wall.height * max(wall.span, 1.0)
     deck = {
-        "structure": {"kind": "panel", "width": wall.length, "height": wall.height, "thickness": wall.thickness},
+        "structure": {"kind": "panel", "width": wall.length, "height": high, "thickness": wall.thickness},
         "material": {"density": MASONRY, "compressive_strength": wall.compressive},
-        "joints": {"cohesion": wall.cohesion},
+        **({} if math.isnan(wall.cohesion) else {"joints": {"cohesion": wall.cohesion}}),
         "analysis": [
             {
                 "kind": "code-checks",
@@ -286,24 +291,41 @@ BOND_TENSION, UNIT_TENSION = 0.7, 0.1
 
 
 def by_macro_element(wall: Wall) -> dict[str, Predicted]:
-    """One pier under its axial load; its top does not rotate where the shear span is half its height."""
+    """One pier under its axial load by two laws; its top does not rotate where the shear span is half its height, and a cantilever is
+    as high as its shear span."""
+    return {name: _pier(wall, law) for name, law in (("frame", "least"), ("frame-reversed", "reversed"))}
+
+
+def _pier(wall: Wall, law: str) -> Predicted:
+    """Strength, and drifts at which 99 % of it is reached and at which it falls below 80 %. Without an initial shear strength a pier
+    fails diagonally, whatever the law."""
     from extrados.core.frame import STATE, Frame, MacroElement
 
-    double = wall.span < 0.75
+    double, diagonal = wall.span < 0.75, math.isnan(wall.cohesion)
+    height = wall.height * max(wall.span, 1.0)
     pier = MacroElement(
-        (-1, -1, -1, 0, 1, -1 if double else 2), wall.height, wall.length, wall.thickness, wall.young,
-        0.4 * wall.young * wall.length * wall.thickness / (1.2 * wall.height), CRUSHES_AT * wall.compressive, shear="least",
-        cohesion=wall.cohesion, friction=wall.friction, tension=wall.tensile,
-        slenderness=min(max(wall.height / wall.length, 1.0), 1.5), second_order=False,
+        (-1, -1, -1, 0, 1, -1 if double else 2), height, wall.length, wall.thickness, wall.young,
+        0.4 * wall.young * wall.length * wall.thickness / (1.2 * height), CRUSHES_AT * wall.compressive,
+        shear="turnsek-cacovic" if diagonal else law, cohesion=0.0 if diagonal else wall.cohesion, friction=wall.friction,
+        tension=wall.tensile,
+        slenderness=min(max(wall.height / wall.length, 1.0), 1.5), second_order=False, drifts=LIMITS,
     )  # fmt: skip
     n = 2 if double else 3
     weight, along = np.zeros(n), np.zeros(n)
     weight[1], along[0] = -wall.axial, 1.0
     with Frame([pier], [], np.zeros((n, n)), weight, np.zeros((n, n))) as frame:
-        path = frame.push(along, along, 0.02 * wall.height, 400, 0.0)
+        path = frame.push(along, along, 0.02 * wall.height, 800, 0.0)
     peak = int(path.multiple.argmax())
     sheared = bool((path.state[: peak + 1, 0] == STATE["shear"]).any())
-    return {"frame": Predicted(float(path.multiple[peak]), "S" if sheared else "F")}
+    drift = path.control / wall.height
+    reached = int((path.multiple >= 0.99 * path.multiple[peak]).argmax())
+    fallen = np.flatnonzero(path.multiple[peak:] < 0.8 * path.multiple[peak])
+    drop = float(drift[peak + fallen[0]]) if len(fallen) else math.nan
+    return Predicted(float(path.multiple[peak]), "S" if sheared else "F", "", float(drift[reached]), drop)
+
+
+#: Drift limits in flexure and in shear, of NTC 2018 7.8.2.2.1 and 7.8.2.2.2
+LIMITS = (0.010, 0.005)
 
 
 METHODS: dict[str, Callable[[Wall], dict[str, Predicted]]] = {
@@ -341,8 +363,25 @@ def statistics(pairs: list[tuple[Wall, Predicted]]) -> tuple[float, float, int]:
 
 def count_right_modes(pairs: list[tuple[Wall, Predicted]]) -> tuple[int, int]:
     """Of the walls that failed in flexure, shear or sliding alone, how many failures are predicted, and all."""
-    pure = [(wall.mode, found.failure) for wall, found in pairs if wall.mode != "H" and found.failure]
+    pure = [(wall.mode, found.failure) for wall, found in pairs if wall.mode not in ("", "H") and found.failure]
     return sum(mode[0] == failure for mode, failure in pure), len(pure)
+
+
+def print_drifts(walls: list[Wall], found: list[dict[str, Predicted]]) -> None:
+    """Drifts at which a method predicts the loss of 20 %, beside the lower measured ultimate drift, by measured failure."""
+    for method in sorted({name for by in found for name, one in by.items() if one.drop > 0.0}):
+        for mode in ("S", "H", "F"):
+            pairs = [
+                (by[method].drop, wall.ultimate)
+                for wall, by in zip(walls, found, strict=True)
+                if wall.mode == mode and method in by and by[method].drop > 0.0 and wall.ultimate > 0.0
+            ]
+            if len(pairs) > 1:
+                ratios = np.log([predicted / measured for predicted, measured in pairs])
+                print(
+                    f"{method}, failure {mode}: ultimate drift predicted/measured {math.exp(ratios.mean()):.2f}, scatter "
+                    f"{ratios.std(ddof=1):.2f}; unsafe {sum(r > 0.0 for r in ratios)} of {len(pairs)}"
+                )
 
 
 def main() -> None:
@@ -378,6 +417,7 @@ def main() -> None:
             for method, one in by.items():
                 table.writerow([wall.name, wall.failure, f"{wall.peak / 1e3:.2f}", method, f"{one.strength / 1e3:.2f}",
                                 one.failure, one.why_not, f"{wall.drift:.5f}", f"{one.drift:.5f}", f"{one.drop:.5f}"])  # fmt: skip
+    print_drifts(walls, found)
     print(f"{'method':16}{'all':>18}{'shear':>18}{'hybrid':>18}{'flexure':>18}{'right mode':>12}{'none':>6}")
     for method in sorted({name for by in found for name in by}):
         pairs = [

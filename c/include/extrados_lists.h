@@ -148,7 +148,8 @@
   ENTRY(1, friction, "mohr-coulomb") \
   ENTRY(2, diagonal, "turnsek-cacovic") \
   ENTRY(3, least, "least") \
-  ENTRY(4, damage, "damage")
+  ENTRY(4, damage, "damage") \
+  ENTRY(5, reversed, "reversed")
 
 /* How far a macro-element has come; the greater number counts */
 #define EXTRADOS_FRAME_STATE_LIST(ENTRY) \

@@ -1,12 +1,12 @@
 !> Runs of discrete elements, of the plane (built by api_dem) or of space (api_dem3).
 !>
-!> laws, options and rigid; then start and run, as often as wanted; then summary, effort and history of the last run.
+!> laws, options, rigid and ties; then start and run, as often as wanted; then summary, effort and history of the last run.
 !> A run that pauses continues where run is called again; its state can be kept, and given to resume instead of start.
 module api_dem_run
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: laws, options, rigid, start, run, state_size, state, resume, summary, effort, history
+   public :: laws, options, rigid, ties, start, run, state_size, state, resume, summary, effort, history, tensions
 
 contains
 
@@ -97,6 +97,30 @@ contains
       end if
       call handle_leave(handle)
    end subroutine rigid
+
+   !> Ties, chains and hoops, see dem_ties
+   subroutine ties(handle, ntie, nanchor, nbody, value, first, closed, body, point, place, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use dem_handle, only : built_model, model_take
+      use dem_ties, only : tie_set_new
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: ntie
+      integer(c_int), intent(in) :: nanchor
+      integer(c_int), intent(in) :: nbody                     !! of the model
+      real(c_double), intent(in) :: value(5, ntie)            !! stiffness [N/m], length [m], prestress, least, most [N]
+      integer(c_int), intent(in) :: first(ntie + 1)           !! first point of each, 1-based
+      integer(c_int), intent(in) :: closed(ntie)              !! 1: a hoop
+      integer(c_int), intent(in) :: body(nanchor)             !! 1-based; 0: the ground
+      integer(c_int), intent(in) :: point(nanchor)            !! of the line, 1-based
+      real(c_double), intent(in) :: place(3, nanchor)         !! in the frame of the body [m]
+      integer(c_int), intent(out) :: status
+      class(built_model), pointer :: built
+      call model_take(handle, built, status)
+      if (status /= status_ok) return
+      call tie_set_new(value, first, closed, body, point, place, int(nbody), built%ties, status)
+      call handle_leave(handle)
+   end subroutine ties
 
    !> A run that has not begun, instead of the last one
    subroutine start(handle, nt, wanted, status)
@@ -297,5 +321,30 @@ contains
       end associate
       call handle_leave(handle)
    end subroutine history
+
+   !> Tensions in the ties that the last run recorded
+   subroutine tensions(handle, ntie, nt, tension, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_invalid_argument
+      use dem_handle, only : run_take
+      use dem_simulation, only : simulation
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: ntie
+      integer(c_int), intent(in) :: nt                        !! points, see summary
+      real(c_double), intent(out) :: tension(ntie, nt)        !! [N]
+      integer(c_int), intent(out) :: status
+      class(simulation), pointer :: run
+      tension = 0.0_c_double
+      call run_take(handle, run, status)
+      if (status /= status_ok) return
+      associate (record => run%record)
+         status = status_invalid_argument
+         if (ntie == size(record%tension, 1) .and. nt <= record%points) then
+            status = status_ok
+            tension = record%tension(:, 1:nt)
+         end if
+      end associate
+      call handle_leave(handle)
+   end subroutine tensions
 
 end module api_dem_run

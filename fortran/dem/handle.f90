@@ -15,15 +15,18 @@ module dem_handle
    use dem_run, only : run_begin, run_on
    use dem_simulation, only : run_options, simulation
    use dem_state, only : state_load
+   use dem_ties, only : tie_set, tie_set_copy
    use, intrinsic :: iso_c_binding, only : c_f_pointer, c_funloc, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
    implicit none
    private
-   public :: built_model, model_register, model_destroy, model_take, run_take, paused_run_take, set_laws, set_options
+   public :: built_model, model_register, model_destroy, model_take, run_take, paused_run_take, set_laws, set_options, &
+      count_ties
    public :: new_run, resume_run, run_built
 
    type, abstract :: built_model
       type(run_options) :: options
       type(rigid_setting) :: rigid                 !! contacts without springs
+      type(tie_set) :: ties
       type(joint_law), allocatable :: law(:)       !! the first is that of contacts that form later
       integer :: highest_law = 0                   !! that a joint has
       logical :: ready = .false.                   !! the options were given
@@ -147,6 +150,14 @@ contains
       status = status_ok
    end subroutine set_laws
 
+   !> Number of ties
+   pure function count_ties(built) result(ties)
+      class(built_model), intent(in) :: built
+      integer :: ties
+      ties = 0
+      if (allocated(built%ties%item)) ties = size(built%ties%item)
+   end function count_ties
+
    !> How to run
    subroutine set_options(built, options, status)
       class(built_model), intent(inout) :: built
@@ -221,6 +232,16 @@ contains
       if (status /= status_ok) deallocate (built%run)
    end subroutine resume_run
 
+   !> The ties of what was built, into the run that was made of it
+   subroutine put_ties(built, status)
+      class(built_model), intent(inout), target :: built
+      integer(c_int), intent(out) :: status
+      class(jointed_model), pointer :: model
+      model => built%run%get_model()
+      call tie_set_copy(built%ties, model%ties, status)
+      if (status /= status_ok) deallocate (built%run)
+   end subroutine put_ties
+
    !> A run that has not begun, instead of the last one
    subroutine new_run(built, wanted, status)
       class(built_model), intent(inout) :: built
@@ -230,6 +251,7 @@ contains
       if (.not. built%ready) return
       if (allocated(built%run)) deallocate (built%run)
       call built%new_run(wanted, status)
+      if (status == status_ok) call put_ties(built, status)
       if (status == status_ok) built%run%options = built%options
    end subroutine new_run
 

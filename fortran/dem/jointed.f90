@@ -1,9 +1,10 @@
 !> What models of jointed rigid bodies have in common, in the plane and in space: their clock, the laws of their joints,
-!> and their contacts without springs.
+!> their ties, and their contacts without springs.
 module dem_jointed
    use dem_clock, only : model_clock
    use dem_joint, only : joint_law
    use dem_rigid, only : rigid_solver
+   use dem_ties, only : tie_set
    implicit none
    private
    public :: jointed_model
@@ -11,6 +12,7 @@ module dem_jointed
    type, extends(model_clock) :: jointed_model
       type(joint_law), allocatable :: law(:)          !! the first is that of contacts that form later
       type(joint_law), allocatable :: own_law(:)      !! while joints are braced: as they are
+      type(tie_set) :: ties
       type(rigid_solver) :: rigid                     !! instead of springs where its setting is used
    end type jointed_model
 

@@ -8,10 +8,12 @@ module dem_model
    use dem_jointed, only : jointed_model
    use dem_law, only : apply_pair_law
    use dem_loading, only : move_rate
+   use dem_ties, only : add_tie_stiffness, stretch_ties, trace_ties
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: block_model, advance_model, critical_step, prepare_step, predict_velocity, move_body, finish_step
+   public :: block_model, advance_model, critical_step, prepare_step, predict_velocity, pull_ties, move_body, &
+      finish_step
 
    type, extends(jointed_model) :: block_model
       type(body_set) :: set
@@ -21,6 +23,7 @@ module dem_model
       real(wp) :: pull(2) = 0.0_wp             !! body force of the last step [m/s^2]
       real(wp) :: pull_before(2) = 0.0_wp      !! and of the one before
       real(wp) :: base(2) = 0.0_wp             !! velocity of the ground [m/s], moving base only
+      real(wp) :: base_before(2) = 0.0_wp      !! the same in the step before
       real(wp) :: base_place(2) = 0.0_wp       !! its displacement [m]
       ! Contacts without springs, see dem_moreau
       real(wp), allocatable :: ahead(:, :)     !! (5, bodies) where the old velocities lead to
@@ -53,6 +56,7 @@ contains
          do k = 1, model%contacts%pairs
             call act_pair(model, model%contacts%pair(k))
          end do
+         call pull_ties(model)
          do k = 1, size(model%set%item)
             call move_body(model, model%set%item(k), model%stale)
          end do
@@ -94,6 +98,7 @@ contains
                call act_pair(model, model%contacts%pair(k))
             end do
          end do
+         call pull_ties(model)
          !$omp end single
          !$omp do schedule(static) reduction(.or. : stale)
          do k = 1, size(model%set%item)
@@ -116,6 +121,7 @@ contains
       call begin_step(model%model_clock, ground)
       model%pull_before = model%pull
       model%pull = model%gravity
+      model%base_before = model%base
       if (model%load%moving_base) then
          model%base = model%base + model%kick * ground(1:2)
       else
@@ -176,6 +182,50 @@ contains
       end associate
    end subroutine act_pair
 
+   !> Forces of the ties, added to the bodies: they are few
+   pure subroutine pull_ties(model)
+      type(block_model), intent(inout) :: model
+      real(wp) :: rate(2)
+      integer :: k
+      if (size(model%ties%item) == 0) return
+      call place_anchors(model)
+      call stretch_ties(model%ties)
+      do k = 1, size(model%ties%anchor)
+         associate (one => model%ties%anchor(k))
+            rate = model%base_before
+            if (one%body > 0) then
+               associate (b => model%set%item(one%body))
+                  b%fx = b%fx + one%force(1)
+                  b%fy = b%fy + one%force(2)
+                  b%moment = b%moment + (one%at(1) - b%x) * one%force(2) - (one%at(2) - b%y) * one%force(1)
+                  if (.not. b%fixed) cycle
+                  rate = [b%vx - b%spin * (one%at(2) - b%y), b%vy + b%spin * (one%at(1) - b%x)]
+               end associate
+            end if
+            model%ties%support_work = model%ties%support_work &
+               - 0.5_wp * model%drift * dot_product(one%force(1:2) + one%before(1:2), rate)
+         end associate
+      end do
+   end subroutine pull_ties
+
+   !> Where the anchors of the ties are
+   pure subroutine place_anchors(model)
+      type(block_model), intent(inout) :: model
+      integer :: k
+      do k = 1, size(model%ties%anchor)
+         associate (one => model%ties%anchor(k))
+            if (one%body == 0) then
+               one%at = one%place + [model%base_place, 0.0_wp]
+            else
+               associate (b => model%set%item(one%body))
+                  one%at = [b%x + b%c * one%place(1) - b%s * one%place(2), &
+                     b%y + b%s * one%place(1) + b%c * one%place(2), 0.0_wp]
+               end associate
+            end if
+         end associate
+      end do
+   end subroutine place_anchors
+
    !> Velocity and position after the step
    pure subroutine move_body(model, b, stale)
       type(block_model), intent(in) :: model
@@ -223,23 +273,23 @@ contains
       call end_step(model%model_clock)
    end subroutine finish_step
 
-   !> A step that is stable for all contacts that may close: 2 / omega, with omega^2 below the greatest
+   !> A step that is stable for all contacts that may close, and for the ties: 2 / omega, with omega^2 below the greatest
    !> eigenvalue of any body on its springs, twice as stiff where the neighbour moves too [s]
    subroutine critical_step(model, step, status)
-      type(block_model), intent(in) :: model
+      type(block_model), intent(inout) :: model
       real(wp), intent(out) :: step          !! [s]
       integer(c_int), intent(out) :: status
-      real(wp), allocatable :: k(:, :)
+      real(wp), allocatable :: k(:, :), square(:)
       integer :: n, i, side, failed
       type(overlap) :: now
       real(wp) :: stiff_n, stiff_s, length, share, greatest
 
       step = 0.0_wp
-      allocate (k(6, size(model%set%item)), stat=failed)
+      allocate (k(6, size(model%set%item)), square(size(model%set%item)), stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
       if (failed /= 0) return
       k = 0.0_wp
-      do n = 1, model%contacts%pairs
+      do n = 1, merge(0, model%contacts%pairs, model%rigid%setting%used)
          associate (pair => model%contacts%pair(n), a => model%set%item(model%contacts%pair(n)%bodies(1)), &
                     b => model%set%item(model%contacts%pair(n)%bodies(2)))
             call measure_overlap(pair, a, b, now)
@@ -260,7 +310,7 @@ contains
          end associate
       end do
       ! A body that touches nothing yet will land, on its longest edge at the worst.
-      do n = 1, size(model%set%parts)
+      do n = 1, merge(0, size(model%set%parts), model%rigid%setting%used)
          associate (c => model%set%item(model%set%parts(n)%owner))
             if (c%fixed .or. any(k(1:3, model%set%parts(n)%owner) > 0.0_wp)) cycle
             length = maxval(model%set%edges(model%set%parts(n)%first:model%set%parts(n)%last)%length)
@@ -270,12 +320,35 @@ contains
                2.0_wp * model%law(1)%shear_stiffness * length)
          end associate
       end do
+      call stiffen_by_ties(model, square)
       greatest = 0.0_wp
       do n = 1, size(model%set%item)
-         greatest = max(greatest, greatest_eigenvalue(k(:, n)))
+         greatest = max(greatest, square(n) + greatest_eigenvalue(k(:, n)))
       end do
       step = 2.0_wp / sqrt(max(greatest, tiny(1.0_wp)))
    end subroutine critical_step
+
+   !> What the ties add to the squares of the frequencies of the bodies, see add_tie_stiffness
+   pure subroutine stiffen_by_ties(model, square)
+      type(block_model), intent(inout) :: model
+      real(wp), intent(out) :: square(:)     !! (bodies) [1/s^2]
+      integer :: k
+      square = 0.0_wp
+      if (size(model%ties%item) == 0) return
+      call place_anchors(model)
+      call trace_ties(model%ties)
+      do k = 1, size(model%ties%anchor)
+         associate (one => model%ties%anchor(k))
+            one%answer = 0.0_wp
+            if (one%body == 0) cycle
+            associate (b => model%set%item(one%body), pull => one%share * model%ties%pull(:, one%point))
+               one%answer = sqrt(b%inverse_mass * (pull(1)**2 + pull(2)**2) &
+                  + b%inverse_inertia * ((one%at(1) - b%x) * pull(2) - (one%at(2) - b%y) * pull(1))**2)
+            end associate
+         end associate
+      end do
+      call add_tie_stiffness(model%ties, square)
+   end subroutine stiffen_by_ties
 
    !> Add a spring along (dx, dy) at a point to the mass-scaled 3 x 3 stiffness of a body
    pure subroutine add_spring(k, b, dx, dy, x, y, stiffness)

@@ -5,7 +5,7 @@ module dem_moreau
    use dem_bodies, only : body
    use dem_contacts, only : contact_pair, overlap, measure_overlap, choose_edges
    use dem_law, only : point_force, point_frame, frame_of, hand_over, find_relative_velocity
-   use dem_model, only : block_model, predict_velocity, prepare_step
+   use dem_model, only : block_model, predict_velocity, prepare_step, pull_ties
    use dem_rigid, only : number_bodies, parting, solve_step
    use nonsmooth_impulses, only : along_normal, along_tangent, impulse_problem, in_plane, problem_room
    use, intrinsic :: iso_c_binding, only : c_int
@@ -85,6 +85,9 @@ contains
       associate (rigid => model%rigid, problem => model%rigid%problem)
          do k = 1, size(model%set%item)
             call predict_velocity(model, model%set%item(k))
+         end do
+         call pull_ties(model)
+         do k = 1, size(model%set%item)
             associate (b => model%set%item(k))
                if (b%fixed) then
                   model%ahead(:, k) = led_to(b, model%step, [b%px, b%py, b%pspin])
@@ -92,9 +95,9 @@ contains
                end if
                model%ahead(:, k) = led_to(b, model%step, [b%vx, b%vy, b%spin])
                problem%rate(3 * rigid%node(k) - 2:3 * rigid%node(k)) = [b%vx, b%vy, b%spin]
-               b%px = b%vx + model%kick * model%pull(1)
-               b%py = b%vy + model%kick * model%pull(2)
-               b%pspin = b%spin
+               b%px = b%vx + model%kick * (b%fx * b%inverse_mass + model%pull(1))
+               b%py = b%vy + model%kick * (b%fy * b%inverse_mass + model%pull(2))
+               b%pspin = b%spin + model%kick * b%moment * b%inverse_inertia
                problem%free(3 * rigid%node(k) - 2:3 * rigid%node(k)) = [b%px, b%py, b%pspin]
             end associate
          end do

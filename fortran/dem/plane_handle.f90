@@ -6,7 +6,7 @@ module dem_plane_handle
       status_out_of_memory, status_wrong_handle
    use dem_bodies, only : body_set, body_set_new, body_turn
    use dem_contacts, only : overlap, measure_overlap
-   use dem_handle, only : built_model, model_register, model_take
+   use dem_handle, only : built_model, count_ties, model_register, model_take
    use dem_loading, only : loading, support_move
    use dem_model, only : block_model
    use dem_plane_run, only : block_simulation
@@ -189,7 +189,8 @@ contains
       allocate (run, stat=failed)
       if (failed /= 0) return
       call start_model(built, run%model, status)
-      if (status == status_ok) call run_record_new(size(built%set%item), 3, .false., wanted, run%record, status)
+      if (status == status_ok) call run_record_new(size(built%set%item), 3, .false., count_ties(built), &
+         wanted, run%record, status)
       if (status /= status_ok) return
       run%domain = built%domain
       call move_alloc(run, built%run)

@@ -15,6 +15,7 @@ module dem_plane_run
    use dem_simulation, only : simulation, model_sizes, slides_not
    use dem_search, only : search_pairs
    use dem_tape, only : tape
+   use dem_ties, only : forget_tie_losses, tie_energy, tie_loss
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
@@ -135,9 +136,10 @@ contains
                now%work = now%work + b%work
             end associate
          end do
-         now%friction = model%contacts%friction_loss
+         now%friction = model%contacts%friction_loss + tie_loss(model%ties)
+         now%elastic = tie_energy(model%ties)
          now%damping = model%contacts%damping_loss
-         now%work = now%work + model%contacts%support_work
+         now%work = now%work + model%contacts%support_work + model%ties%support_work
          do k = 1, model%contacts%pairs
             associate (pair => model%contacts%pair(k))
                if (.not. model%rigid%setting%used) now%elastic = now%elastic + elastic_energy(model%law(pair%law), pair)
@@ -281,6 +283,7 @@ contains
          contacts%friction_loss = 0.0_wp
          contacts%damping_loss = 0.0_wp
          contacts%support_work = 0.0_wp
+         call forget_tie_losses(run%model%ties)
          b%work = 0.0_wp
          b%mass_loss = 0.0_wp
          b%bounces = 0

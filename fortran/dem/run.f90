@@ -314,6 +314,7 @@ contains
          record%points = record%points + 1
          record%time(record%points) = model%t - model%drift
          record%energy(:, record%points) = energy_row(energy, record%start)
+         record%tension(:, record%points) = model%ties%item%tension
       end associate
       call run%record_state()
    end subroutine record_point

@@ -42,6 +42,7 @@ module dem_simulation
       real(wp), allocatable :: turn(:, :, :, :) !! (3, 3, bodies, nt) columns: the bodies' own axes; plane: of no body
       real(wp), allocatable :: rate(:, :, :)    !! (3 or 6, bodies, nt) velocity, spin; relative to the ground
       real(wp), allocatable :: energy(:, :)     !! (dem_energy_count, nt) [J]
+      real(wp), allocatable :: tension(:, :)    !! (ties, nt) [N]
       integer :: points = 0
       integer(c_int) :: reason = stop_end
       integer :: blamed(2) = 0               !! bodies that caused the stop, 0 none
@@ -70,7 +71,7 @@ module dem_simulation
    contains
       procedure(model_of), deferred :: get_model         !! clock, laws of joints and rigid contacts
       procedure(search_pairs), deferred :: find_pairs    !! who is near whom
-      procedure(critical), deferred :: find_critical_step  !! greatest stable step on springs
+      procedure(critical), deferred :: find_critical_step  !! greatest stable step on springs and ties
       procedure(steps_on_springs), deferred :: advance_springs  !! up to so many, fewer where pairs change
       procedure(may_fail), deferred :: number_unknowns   !! of rigid contacts, after a search
       procedure(may_fail), deferred :: solve_contacts    !! forces of rigid contacts, added to the bodies
@@ -195,17 +196,19 @@ module dem_simulation
 contains
 
    !> A record for `bodies` bodies at the times `wanted`
-   subroutine run_record_new(bodies, rates, attitudes, wanted, record, status)
+   subroutine run_record_new(bodies, rates, attitudes, ties, wanted, record, status)
       integer, intent(in) :: bodies
       integer, intent(in) :: rates                   !! of a body
       logical, intent(in) :: attitudes               !! they are no part of its place
+      integer, intent(in) :: ties
       real(wp), intent(in) :: wanted(:)              !! [s]
       type(run_record), intent(out) :: record
       integer(c_int), intent(out) :: status
       integer :: nt, failed
       nt = size(wanted)
       allocate (record%wanted(nt), record%time(nt), record%place(3, bodies, nt), record%rate(rates, bodies, nt), &
-         record%turn(3, 3, merge(bodies, 0, attitudes), nt), record%energy(dem_energy_count, nt), stat=failed)
+         record%turn(3, 3, merge(bodies, 0, attitudes), nt), record%energy(dem_energy_count, nt), &
+         record%tension(ties, nt), stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
       if (failed == 0) record%wanted(:) = wanted
    end subroutine run_record_new
@@ -220,7 +223,7 @@ contains
       if (.not. gone) gone = turned > options%collapse_turn .or. dropped > options%collapse_drop
    end function slides_not
 
-   !> Greatest stable step, or any_step where contacts have no springs, and the one to take where the options name none
+   !> Greatest stable step, or any_step where neither contacts nor ties have springs, and the one to take where the options name none
    subroutine find_stable_step(run, stable, suitable, status)
       class(simulation), intent(inout), target :: run
       real(wp), intent(out) :: stable                !! [s]
@@ -228,14 +231,14 @@ contains
       integer(c_int), intent(out) :: status
       class(jointed_model), pointer :: model
       model => run%get_model()
-      if (model%rigid%setting%used) then
-         status = status_ok
-         stable = any_step
-         suitable = suitable_step(model%rigid, model%quasi_static)
-      else
+      status = status_ok
+      stable = any_step
+      suitable = any_step
+      if (.not. model%rigid%setting%used .or. size(model%ties%item) > 0) then
          call run%find_critical_step(stable, status)
          suitable = run%options%fraction * stable
       end if
+      if (model%rigid%setting%used) suitable = min(suitable, suitable_step(model%rigid, model%quasi_static))
    end subroutine find_stable_step
 
    !> Up to so many steps, fewer where pairs must be searched again

@@ -103,6 +103,9 @@ contains
       call on%pass(model%shaking, storage_size(model%shaking))
       call on%pass(model%stale, storage_size(model%stale))
       call walk_effort(model%rigid, on)
+      call on%pass(model%ties%item, storage_size(model%ties%item))
+      call on%pass(model%ties%anchor, storage_size(model%ties%anchor))
+      call on%pass(model%ties%support_work, storage_size(model%ties%support_work))
       associate (record => run%record)
          n = record%points
          call on%pass(record%wanted, storage_size(record%wanted))
@@ -111,6 +114,7 @@ contains
          call on%pass(record%turn(:, :, :, 1:n), storage_size(record%turn))
          call on%pass(record%rate(:, :, 1:n), storage_size(record%rate))
          call on%pass(record%energy(:, 1:n), storage_size(record%energy))
+         call on%pass(record%tension(:, 1:n), storage_size(record%tension))
          call on%pass(record%blamed, storage_size(record%blamed))
          call on%pass(record%settling, storage_size(record%settling))
          call on%pass(record%searches, storage_size(record%searches))

@@ -4,7 +4,7 @@ module dem3_handle
    use common_kinds, only : wp
    use common_status, only : status_ok, status_bad_index, status_invalid_argument, status_not_ready, &
       status_out_of_memory, status_wrong_handle
-   use dem_handle, only : built_model, model_register, model_take
+   use dem_handle, only : built_model, count_ties, model_register, model_take
    use dem_rigid, only : set_rigid
    use dem_simulation, only : run_record_new
    use dem3_bodies, only : body_set, body_set_new, copy_bodies
@@ -190,7 +190,7 @@ contains
       status = status_out_of_memory
       allocate (run, stat=failed)
       if (failed /= 0) return
-      call run_record_new(size(built%set%item), 6, .true., wanted, run%record, status)
+      call run_record_new(size(built%set%item), 6, .true., count_ties(built), wanted, run%record, status)
       if (status /= status_ok) return
       associate (model => run%model)
          call copy_bodies(built%set, model%set, status)

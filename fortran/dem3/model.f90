@@ -6,6 +6,7 @@ module dem3_model
    use dem_energy, only : energy_terms
    use dem_joint, only : joint_law
    use dem_jointed, only : jointed_model
+   use dem_ties, only : add_tie_stiffness, stretch_ties, tie_energy, tie_loss, trace_ties
    use dem3_bodies, only : body, body_set, cross, place_part, spin_of, turn_freely
    use dem3_dowels, only : act_dowel, dowel, dowel_energy
    use dem3_law, only : apply_pair_law, bond_points, contact_pair, contact_point, drop_points, elastic_energy, &
@@ -15,7 +16,7 @@ module dem3_model
    implicit none
    private
    public :: solid_model, set_distances, search_pairs, set_mortar, colour_pairs, advance_model, critical_step, &
-      energy_now, prepare_step, predict_velocity, move_body, look_anew
+      energy_now, prepare_step, predict_velocity, pull_ties, move_body, look_anew
 
    type, extends(jointed_model) :: solid_model
       type(body_set) :: set
@@ -327,6 +328,7 @@ contains
             call act_pair(model, model%pair(model%sweep(c)))
          end do
          call bear_on_dowels(model)
+         call pull_ties(model)
          do k = 1, size(model%set%item)
             call move_body(model, model%set%item(k), model%stale)
          end do
@@ -367,6 +369,7 @@ contains
             call act_pair(model, model%pair(model%sweep(k)))
          end do
          call bear_on_dowels(model)
+         call pull_ties(model)
          !$omp end single
          !$omp do schedule(static) reduction(.or. : stale)
          do k = 1, size(model%set%item)
@@ -403,6 +406,38 @@ contains
          end associate
       end do
    end subroutine bear_on_dowels
+
+   !> Forces of the ties, added to the bodies: they are few. The ground and the supports rest
+   pure subroutine pull_ties(model)
+      type(solid_model), intent(inout) :: model
+      integer :: k
+      if (size(model%ties%item) == 0) return
+      call place_anchors(model)
+      call stretch_ties(model%ties)
+      do k = 1, size(model%ties%anchor)
+         associate (one => model%ties%anchor(k))
+            if (one%body == 0) cycle
+            associate (b => model%set%item(one%body))
+               if (b%fixed) cycle
+               b%force = b%force + one%force
+               b%moment = b%moment + cross(one%at - b%x, one%force)
+            end associate
+         end associate
+      end do
+   end subroutine pull_ties
+
+   !> Where the anchors of the ties are
+   pure subroutine place_anchors(model)
+      type(solid_model), intent(inout) :: model
+      integer :: k
+      do k = 1, size(model%ties%anchor)
+         associate (one => model%ties%anchor(k))
+            one%at = one%place
+            if (one%body > 0) one%at = model%set%item(one%body)%x &
+               + matmul(model%set%item(one%body)%turn, one%place)
+         end associate
+      end do
+   end subroutine place_anchors
 
    !> Geometry of a pair, where a body has moved far enough
    pure subroutine look_anew(model, pair)
@@ -469,16 +504,16 @@ contains
       type(solid_model), intent(inout) :: model
       real(wp), intent(out) :: step          !! [s]
       integer(c_int), intent(out) :: status
-      real(wp), allocatable :: stiffness(:, :, :)
+      real(wp), allocatable :: stiffness(:, :, :), square(:)
       real(wp) :: greatest, share, normal(3), gap, at(3), area
       type(joint_law) :: spring
       integer :: k, i, side, who, failed
       step = 0.0_wp
-      allocate (stiffness(6, 6, size(model%set%item)), stat=failed)
+      allocate (stiffness(6, 6, size(model%set%item)), square(size(model%set%item)), stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
       if (failed /= 0) return
       stiffness = 0.0_wp
-      do k = 1, model%pairs
+      do k = 1, merge(0, model%pairs, model%rigid%setting%used)
          associate (pair => model%pair(k), parts => model%set%parts)
             call find_points(model%set, model%far, model%margin, pair)
             share = merge(1.0_wp, 2.0_wp, model%set%item(parts(pair%part(1))%owner)%fixed &
@@ -495,7 +530,7 @@ contains
             end do
          end associate
       end do
-      do k = 1, size(model%set%parts)   ! what touches nothing yet will land, on its largest face at the worst
+      do k = 1, merge(0, size(model%set%parts), model%rigid%setting%used)   ! what touches nothing yet will land, on its largest face at the worst
          who = model%set%parts(k)%owner
          associate (b => model%set%item(who), one => model%set%parts(k))
             if (b%fixed .or. any(abs(stiffness(:, :, who)) > 0.0_wp)) cycle
@@ -516,12 +551,38 @@ contains
             end do
          end associate
       end do
+      call stiffen_by_ties(model, square)
       greatest = 0.0_wp
       do k = 1, size(model%set%item)
-         if (.not. model%set%item(k)%fixed) greatest = max(greatest, above_eigenvalues(stiffness(:, :, k)))
+         if (.not. model%set%item(k)%fixed) greatest = max(greatest, square(k) + above_eigenvalues(stiffness(:, :, k)))
       end do
       step = 2.0_wp / sqrt(max(greatest, tiny(1.0_wp)))
    end subroutine critical_step
+
+   !> What the ties add to the squares of the frequencies of the bodies, see add_tie_stiffness
+   pure subroutine stiffen_by_ties(model, square)
+      type(solid_model), intent(inout) :: model
+      real(wp), intent(out) :: square(:)     !! (bodies) [1/s^2]
+      real(wp) :: pull(3), swing(3)
+      integer :: k
+      square = 0.0_wp
+      if (size(model%ties%item) == 0) return
+      call place_anchors(model)
+      call trace_ties(model%ties)
+      do k = 1, size(model%ties%anchor)
+         associate (one => model%ties%anchor(k))
+            one%answer = 0.0_wp
+            if (one%body == 0) cycle
+            associate (b => model%set%item(one%body))
+               if (b%fixed) cycle
+               pull = one%share * model%ties%pull(:, one%point)
+               swing = matmul(cross(one%at - b%x, pull), b%turn)
+               one%answer = sqrt(b%inverse_mass * dot_product(pull, pull) + sum(swing**2 / b%inertia))
+            end associate
+         end associate
+      end do
+      call add_tie_stiffness(model%ties, square)
+   end subroutine stiffen_by_ties
 
    !> Add the springs at a point to the 6 x 6 stiffness of a body, scaled by its masses, in its own axes
    pure subroutine add_spring(law, area, normal, at, b, stiffness)
@@ -595,8 +656,9 @@ contains
          now%potential = now%potential - b%mass * dot_product(model%gravity, b%x - model%drift * b%v - b%rest)
          now%work = now%work + b%work
       end do
-      now%friction = model%lost(1)
+      now%friction = model%lost(1) + tie_loss(model%ties)
       now%damping = model%lost(2)
+      now%elastic = tie_energy(model%ties)
       now%work = now%work + model%support_work
       do k = 1, model%pairs
          associate (pair => model%pair(k))

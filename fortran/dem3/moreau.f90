@@ -10,7 +10,7 @@ module dem3_moreau
    use dem_rigid, only : number_bodies, parting, solve_step
    use dem3_bodies, only : body, cross, turn_freely
    use dem3_law, only : contact_pair, contact_point
-   use dem3_model, only : look_anew, predict_velocity, prepare_step, solid_model
+   use dem3_model, only : look_anew, predict_velocity, prepare_step, pull_ties, solid_model
    use dem3_patch, only : measure_feature
    use nonsmooth_impulses, only : along_normal, along_tangent, impulse_problem, in_space, problem_room
    use, intrinsic :: iso_c_binding, only : c_int
@@ -104,11 +104,16 @@ contains
                   b%swing = 0.0_wp
                end if
                call predict_velocity(model, b)
+            end associate
+         end do
+         call pull_ties(model)
+         do k = 1, size(model%set%item)
+            associate (b => model%set%item(k))
                model%ahead(k) = b
                if (b%fixed) cycle
                model%ahead(k)%x = b%x + model%step * b%v
                call turn_freely(model%ahead(k), model%step)
-               call set_rate(problem, rigid%node(k), b, model%kick * model%pull)
+               call set_rate(problem, rigid%node(k), b, model%kick, model%pull)
             end associate
          end do
          do k = 1, model%pairs
@@ -138,16 +143,17 @@ contains
    end subroutine solve_contacts
 
    !> Velocities of a body before the step, and as they would be after it without contacts
-   pure subroutine set_rate(problem, rank, b, change)
+   pure subroutine set_rate(problem, rank, b, kick, pull)
       type(impulse_problem), intent(inout) :: problem
       integer, intent(in) :: rank
       type(body), intent(in) :: b
-      real(wp), intent(in) :: change(3)             !! of the velocity by the body force [m/s]
+      real(wp), intent(in) :: kick                  !! [s]
+      real(wp), intent(in) :: pull(3)               !! body force [m/s^2]
       associate (at => freedoms * rank)
          problem%rate(at - 5:at - 3) = b%v
          problem%rate(at - 2:at) = matmul(b%spin, b%turn)
-         problem%free(at - 5:at - 3) = b%v + change
-         problem%free(at - 2:at) = problem%rate(at - 2:at)
+         problem%free(at - 5:at - 3) = b%v + kick * (b%force * b%inverse_mass + pull)
+         problem%free(at - 2:at) = problem%rate(at - 2:at) + kick * matmul(b%moment, b%turn) / b%inertia
       end associate
    end subroutine set_rate
 

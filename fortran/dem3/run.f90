@@ -8,6 +8,7 @@ module dem3_run
    use dem_jointed, only : jointed_model
    use dem_simulation, only : model_sizes, simulation, slides_not
    use dem_tape, only : tape, loading
+   use dem_ties, only : forget_tie_losses
    use dem3_bodies, only : body, spin_of, turn_freely
    use dem3_law, only : contact_point
    use dem3_moreau, only : greatest_speed, number_model_unknowns => number_unknowns, &
@@ -255,6 +256,7 @@ contains
          do k = 1, size(model%dowels)
             model%dowels(k)%dash = 0.0_wp
          end do
+         call forget_tie_losses(model%ties)
          model%lost = 0.0_wp
          model%support_work = 0.0_wp
          model%set%item%work = 0.0_wp

@@ -2,7 +2,8 @@
 module frame_handle
    use common_handles, only : handle_new, handle_take
    use common_kinds, only : wp
-   use common_lists, only : handle_frame, frame_shear_count, frame_shear_diagonal, frame_shear_least, frame_shear_damage
+   use common_lists, only : handle_frame, frame_shear_count, frame_shear_diagonal, frame_shear_least, frame_shear_damage, &
+      frame_shear_reversed
    use common_status, only : status_ok, status_bad_index, status_invalid_argument, status_not_finite, &
       status_not_ready, status_out_of_memory
    use frame_element, only : macro_element
@@ -87,7 +88,8 @@ contains
          any(choice(3, :) >= frame_shear_count) .or. .not. all(choice(4, :) == 3 .or. choice(4, :) == 5)) return
       if (any(property(5:9, :) <= 0.0_wp) .or. any(property(11, :) < 0.0_wp)) return
       if (any(choice(1, :) == 0 .and. (property(11, :) <= 0.0_wp .or. property(22, :) <= 0.0_wp))) return
-      if (any((choice(3, :) == frame_shear_diagonal .or. choice(3, :) == frame_shear_least) .and. &
+      if (any((choice(3, :) == frame_shear_diagonal .or. choice(3, :) == frame_shear_least .or. &
+         choice(3, :) == frame_shear_reversed) .and. &
          (property(14, :) <= 0.0_wp .or. property(15, :) <= 0.0_wp))) return
       if (any(choice(3, :) == frame_shear_damage .and. (property(16, :) <= 0.0_wp .or. property(17, :) >= 2.0_wp .or. &
          property(18, :) <= 0.0_wp))) return

@@ -5,7 +5,7 @@
 module frame_laws
    use common_kinds, only : wp
    use common_lists, only : frame_shear_none, frame_shear_friction, frame_shear_diagonal, frame_shear_least, &
-      frame_shear_damage
+      frame_shear_damage, frame_shear_reversed
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -166,27 +166,30 @@ contains
    !> Resistance R to sliding of a pier, its derivatives by the normal force and by the greatest end moment.
    !>
    !> friction: c t L' + mu N on the compressed length L' = 3 (L/2 - M/N), at most L. diagonal: L t f_t/b
-   !> sqrt(1 + N/(L t f_t)). least: the lesser of both. damage: mu N, beside `back_stress`. Nothing without pressure.
+   !> sqrt(1 + N/(L t f_t)). least: the lesser of both. reversed: the same, with cohesion on the part 2 L' - L alone that opens
+   !> in neither sense of a reversed load. damage: mu N, beside `back_stress`. Nothing without pressure.
    pure subroutine shear_resistance(law, normal, moment, resistance, by)
       type(shear_law), intent(in) :: law
       real(wp), intent(in) :: normal          !! N [N]
       real(wp), intent(in) :: moment          !! greatest moment of its ends, not negative [N m]
       real(wp), intent(out) :: resistance     !! [N]
       real(wp), intent(out) :: by(2)          !! derivatives by N and by the moment
-      real(wp) :: pressed, area, root, split
+      real(wp) :: pressed, area, root, split, bonded, slope
       resistance = 0.0_wp
       by = 0.0_wp
       if (normal <= 0.0_wp) return
       area = law%length * law%thickness
       select case (law%kind)
-      case (frame_shear_friction, frame_shear_least)
+      case (frame_shear_friction, frame_shear_least, frame_shear_reversed)
          resistance = law%friction * normal + law%cohesion * area
          by(1) = law%friction
          pressed = 3.0_wp * (0.5_wp * law%length - moment / normal)
          if (pressed < law%length) then
-            resistance = law%friction * normal + law%cohesion * law%thickness * max(0.0_wp, pressed)
-            if (pressed > 0.0_wp) by = [law%friction + 3.0_wp * law%cohesion * law%thickness * moment / normal**2, &
-               -3.0_wp * law%cohesion * law%thickness / normal]
+            slope = merge(2.0_wp, 1.0_wp, law%kind == frame_shear_reversed)
+            bonded = law%length - slope * (law%length - pressed)
+            resistance = law%friction * normal + law%cohesion * law%thickness * max(0.0_wp, bonded)
+            slope = 3.0_wp * slope * law%cohesion * law%thickness / normal
+            if (bonded > 0.0_wp) by = [law%friction + slope * moment / normal, -slope]
          end if
       case (frame_shear_damage)
          resistance = law%friction * normal
@@ -194,7 +197,7 @@ contains
       case default
          resistance = huge(1.0_wp)
       end select
-      if (law%kind /= frame_shear_diagonal .and. law%kind /= frame_shear_least) return
+      if (all(law%kind /= [frame_shear_diagonal, frame_shear_least, frame_shear_reversed])) return
       root = sqrt(1.0_wp + normal / (area * law%tension))
       split = area * law%tension / law%slenderness * root
       if (split >= resistance) return

@@ -30,9 +30,18 @@ def served(tmp_path: Path) -> Iterator[Served]:
     found.close()
 
 
+@pytest.fixture(scope="session")
+def shared(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    """One server for all tests that do not name `served`: a server takes 2 s to start, and each page has a session of its own."""
+    found = Served(tmp_path_factory.mktemp("shared"))
+    yield found
+    found.close()
+
+
 @pytest.fixture
-def page(browser: Any, served: Served, request: pytest.FixtureRequest) -> Iterator[Any]:
+def page(browser: Any, request: pytest.FixtureRequest) -> Iterator[Any]:
     """The page, open and ready; its picture is kept at the end, and nothing may have gone wrong in it."""
+    served = request.getfixturevalue("served" if "served" in request.fixturenames else "shared")
     context = browser.new_context(viewport=SIZE, accept_downloads=True)
     opened = context.new_page()
     troubles: list[str] = []

@@ -73,12 +73,21 @@ def test_results_are_looked_at_side_by_side(page: Any, served: Served) -> None:
     page.wait_for_selector(".column >> nth=1 >> .chart .dots")
     page.select_option("select[aria-label='Analysis of run B']", "rocking")
     page.wait_for_selector(".column >> nth=1 >> .chart .line")
+    differ = page.locator(".apart tbody tr", has_text="peak rotation rad")
+    peaks = [extrados.load(served.folder / "results" / name)["rocking"].peak_rotation_rad for name in ("one", "two")]
+    assert float(differ.locator("td").nth(2).inner_text()) == pytest.approx(peaks[1] / peaks[0], rel=1e-3)
     page.screenshot(path=SHOTS / "results-side-by-side.png")
     page.click("text=Run the deck…")
     page.fill("dialog input[type=text]", "computed.toml")
     page.click("dialog button[type=submit]")
     until(page, "window.extrados.welcome.runs.some(r => r.path === 'results/computed')", timeout=120_000)
     assert extrados.load(served.folder / "results" / "computed")["tilt"].collapse_acceleration_g > 0.3
+    page.select_option("select[aria-label='Run A']", "results/computed")
+    until(page, "window.extrados.results.columns[0].words?.analysis === 'tilt'")
+    page.locator("summary", has_text="Figures of the report").first.click()
+    until(page, "[...document.querySelectorAll('.figures img')].filter(i => i.naturalWidth > 100).length >= 2")
+    page.locator(".figures").first.scroll_into_view_if_needed()
+    page.screenshot(path=SHOTS / "results-figures.png")
 
 
 def test_pictures_and_films_come_out(page: Any, served: Served) -> None:

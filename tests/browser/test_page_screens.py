@@ -53,6 +53,18 @@ def fits(page: Any) -> None:
     assert page.evaluate(BEYOND) == []
 
 
+def serious(page: Any) -> None:
+    """axe-core finds no serious or critical violation."""
+    found = pytest.importorskip("axe_playwright_python", reason="axe-core is not installed: make browser")
+    source = (Path(found.__file__).parent / "axe.min.js").read_text("utf-8")
+    page.evaluate(f"() => {{ {source}; window.axe = window.axe ?? axe; }}")
+    told = page.evaluate(
+        """async () => (await window.axe.run(document, { resultTypes: ["violations"] })).violations
+            .filter(v => ["serious", "critical"].includes(v.impact)).map(v => [v.id, v.nodes.slice(0, 4).map(n => n.html.slice(0, 160))])"""
+    )
+    assert told == []
+
+
 @BY_SIZE
 def test_nothing_overflows_and_all_is_reachable(screen: Any) -> None:
     page, size = screen, screen.viewport_size
@@ -153,18 +165,51 @@ def test_a_finger_drags_under_a_loupe_and_two_enlarge(screen: Any) -> None:
 @pytest.mark.parametrize("screen", [SCREENS[0], SCREENS[2]], indirect=True, ids=["390x844", "1366x768"])
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
 def test_axe_finds_nothing_serious(screen: Any, dark: bool) -> None:
-    found = pytest.importorskip("axe_playwright_python", reason="axe-core is not installed: make browser")
-    source = (Path(found.__file__).parent / "axe.min.js").read_text("utf-8")
     page = screen
     if dark:
         page.click("[aria-label='Dark or light']")
-    page.evaluate(f"() => {{ {source}; window.axe = window.axe ?? axe; }}")
     open_text(page, ROCKING)
     for tab in ("structure", "motion", "results"):
         page.click(f"[data-tab={tab}]")
         page.wait_for_timeout(300)
-        told = page.evaluate(
-            """async () => (await window.axe.run(document, { resultTypes: ["violations"] })).violations
-                .filter(v => ["serious", "critical"].includes(v.impact)).map(v => [v.id, v.nodes.slice(0, 4).map(n => n.html.slice(0, 160))])"""
+        serious(page)
+
+
+@BY_SIZE
+def test_the_sheet_fits_and_is_drawn_on_by_finger(screen: Any) -> None:
+    """All tools are reachable; two touches draw a pier; axe-core finds nothing serious in both themes."""
+    page, size = screen, screen.viewport_size
+    page.evaluate("window.extrados.sheet.begin(true)")
+    until(page, "window.extrados.draft !== null")
+    fits(page)
+    x, y = page.evaluate(
+        "(() => { const r = document.querySelector('svg.sheet').getBoundingClientRect(); return [r.left + r.width / 2, r.top + r.height / 2]; })()"
+    )
+    if page.evaluate("matchMedia('(pointer: coarse)').matches"):
+        small = page.evaluate(
+            """[...document.querySelectorAll(".sheet-bar button, .sheet-bar select, .sheet-bar .button")].map(e => [e.getBoundingClientRect(), e.textContent])
+                .filter(([r]) => r.height < 43.5 || r.width < 43.5).map(([, text]) => text)"""
         )
-        assert told == [], tab
+        assert small == []
+        link = page.context.new_cdp_session(page)
+        for kind, points in (
+            ("Start", [(x, y)]),
+            ("Move", [(x + 20, y - 40)]),
+            ("Move", [(x + 60, y - 90)]),
+            ("End", []),
+        ):
+            link.send(
+                "Input.dispatchTouchEvent",
+                {"type": f"touch{kind}", "touchPoints": [{"x": px, "y": py} for px, py in points]},
+            )
+    else:
+        page.mouse.click(x, y)
+        page.mouse.click(x + 60, y - 90)
+    until(page, "window.extrados.sheet.blocks.length === 5")
+    settled(page)
+    page.screenshot(path=SHOTS / f"screen-{size['width']}x{size['height']}-sheet.png")
+    fits(page)
+    serious(page)
+    page.click("[aria-label='Dark or light']")
+    serious(page)
+    page.screenshot(path=SHOTS / f"screen-{size['width']}x{size['height']}-sheet-dark.png")

@@ -102,3 +102,21 @@ def test_the_page_makes_such_a_file_too(page: Any, tmp_path: Path) -> None:
     assert 50_000 < (tmp_path / "made.html").stat().st_size < 3_000_000
     settled(page)
     assert capacity(page) == before, "the deck at hand stays as it was"
+
+
+def test_the_page_is_printed_without_its_buttons(page: Any, tmp_path: Path) -> None:
+    """On paper: title, drawing and numbers, light also from the dark page and from another panel."""
+    page.evaluate("window.print = () => { window.printed = true; }")
+    page.click("[aria-label='Dark or light']")
+    page.click("[data-side=teach]")
+    page.click("text=Export")
+    page.click("text=Print…")
+    assert page.evaluate("window.printed") is True
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    page.emulate_media(media="print")
+    assert page.locator(".extrados").get_attribute("data-theme") == "light"
+    assert page.locator(".page.answer").is_visible() and "Capacity to +x" in page.locator(".page.answer").inner_text()
+    assert page.locator(".stage").is_visible() and page.locator(".page.teach").is_hidden()
+    assert page.evaluate("[...document.querySelectorAll('button, select')].every(e => !e.getClientRects().length)")
+    page.pdf(path=SHOTS / "print.pdf", format="A4", print_background=True)
+    assert (SHOTS / "print.pdf").read_bytes().startswith(b"%PDF")

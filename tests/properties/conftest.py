@@ -1,34 +1,131 @@
-"""Which functions of the package each test of this folder runs through: tools/seeded_faults.py asks it once."""
+"""What tools/seeded_faults.py asks of the tests of this folder: their lines of the package, their answers, and runs with a fault planted."""
 
+import gc
+import hashlib
 import json
 import os
+import re
+import resource
+import signal
 import sys
 import time
 from collections.abc import Iterator
+from functools import _lru_cache_wrapper
 from pathlib import Path
+from types import CodeType, FrameType, FunctionType
 from typing import Any
 
+import asking
+import numpy as np
 import pytest
+from _pytest.runner import runtestprotocol
 
 import extrados
+import trials
+from extrados.results.model import Result
+
+ROOT = str(Path(extrados.__file__).parent)
+#: Seconds of a processor after which a test ends the process by SIGPROF; 0: none
+PATIENCE = [0.0]
+
+
+def plant(file: str, line: int, new: str) -> None:
+    """Put another line into the functions of a file of the package that is loaded."""
+    path = Path(ROOT) / file
+    lines = path.read_text(encoding="utf-8").split("\n")
+    lines[line - 1] = new
+    made: dict[tuple[str, int], CodeType] = {}
+
+    def note(code: CodeType) -> None:
+        made[code.co_qualname, code.co_firstlineno] = code
+        for inner in code.co_consts:
+            if isinstance(inner, CodeType):
+                note(inner)
+
+    note(compile("\n".join(lines), str(path), "exec"))
+    for there in gc.get_objects():
+        if isinstance(there, FunctionType) and there.__code__.co_filename == str(path):
+            there.__code__ = made[there.__code__.co_qualname, there.__code__.co_firstlineno]
+
+
+def tried(asked: dict[str, Any], items: dict[str, pytest.Item]) -> int:
+    """Run tests with a fault, until one fails, whose name is written to a file: 1; 0 where none does."""
+    if asked["new"]:
+        plant(asked["file"], asked["line"], asked["new"])
+    PATIENCE[0], trials.SHARE, os.environ["EXTRADOS_TOUCHED"] = asked["patience"], asked["share"], asked["kept"]
+    resource.setrlimit(resource.RLIMIT_CPU, (asked["limit"], asked["limit"]))
+    for name in asked["tests"]:
+        if any(report.failed for report in runtestprotocol(items[name], log=False)):
+            Path(asked["failed"]).write_text(name, encoding="utf-8")
+            return 1
+    return 0
+
+
+def pytest_runtestloop(session: pytest.Session) -> bool | None:
+    """With EXTRADOS_FAULTS: tests named by standard input are run in forks of this process, each with its fault; how each ended is printed."""
+    if "EXTRADOS_FAULTS" not in os.environ:
+        return None
+    items = {item.nodeid: item for item in session.items}
+    for text in sys.stdin:
+        sys.stdout.flush()
+        child = os.fork()
+        if not child:
+            try:
+                os._exit(tried(json.loads(text), items))
+            finally:
+                os._exit(2)
+        print(f"\nended: {os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])}", flush=True)
+    return True
+
+
+def answer_of(result: Result) -> bytes:
+    """All that a result holds, but how long it took and where its files lie."""
+    held = json.dumps([result.status, result.reason, result.answer, result.warnings, result.results.as_json(), repr(result.verdict)], default=str)  # fmt: skip
+    held = re.sub(r'"[^"]*seconds[^"]*": [^,}]*|/tmp/[^\s"]*', "", held)
+    arrays = [np.asarray(a.data).tobytes() for _, a in sorted(result.arrays.items())]
+    columns = [repr(np.asarray(c).tolist()) for _, t in sorted(result.tables.items()) for c in t.columns.values()]
+    return b"".join([held.encode(), *arrays, "".join(columns).encode()])
 
 
 @pytest.fixture(autouse=True)
-def _touched(request: pytest.FixtureRequest) -> Iterator[None]:
-    """Notes the seconds of a test and the functions of the package that it runs through, where EXTRADOS_TOUCHED names a file."""
+def _noted(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Where EXTRADOS_TOUCHED names a file, notes of a test there: seconds of a processor, a digest of all answers, and with EXTRADOS_LINES the
+    lines that it runs through."""
     place = os.environ.get("EXTRADOS_TOUCHED")
     if not place:
         yield
         return
-    root, seen, begin = str(Path(extrados.__file__).parent), set(), time.perf_counter()
+    asking._KEPT.clear()  # what was answered in another test runs through no line
+    for kept in gc.get_objects():
+        if isinstance(kept, _lru_cache_wrapper) and kept.__module__.startswith("extrados"):
+            kept.cache_clear()
+    digest, lines, plain = hashlib.sha256(), set(), extrados.run
 
-    def note(frame: Any, event: str, _: Any) -> None:  # of each call, and of no line
-        seen.add(frame.f_code)
+    def run(*args: Any, **keys: Any) -> Any:
+        made = plain(*args, **keys)
+        for result in made.results:
+            digest.update(answer_of(result))
+        return made
 
-    sys.settrace(note)
+    def line(frame: FrameType, event: str, _: Any) -> Any:
+        lines.add((frame.f_code, frame.f_lineno))
+        return line
+
+    def call(frame: FrameType, event: str, _: Any) -> Any:
+        return line(frame, event, _) if frame.f_code.co_filename.startswith(ROOT) else None
+
+    monkeypatch.setattr(extrados, "run", run)
+    begin = time.process_time()
+    signal.setitimer(signal.ITIMER_PROF, PATIENCE[0])
+    if "EXTRADOS_LINES" in os.environ:
+        sys.settrace(call)
     yield
     sys.settrace(None)
-    found = {(os.path.relpath(c.co_filename, root), c.co_firstlineno) for c in seen if c.co_filename.startswith(root)}
-    row = {"test": request.node.nodeid, "seconds": time.perf_counter() - begin, "touched": sorted(found)}
+    signal.setitimer(signal.ITIMER_PROF, 0.0)
+    found = sorted({(os.path.relpath(c.co_filename, ROOT), n) for c, n in lines})
+    callspec = getattr(request.node, "callspec", None)
+    relation = callspec.params.get("relation") if callspec else None
+    chapter = Path(relation.holds.__code__.co_filename if relation else request.node.path).name
+    row = {"test": request.node.nodeid, "chapter": chapter, "seconds": time.process_time() - begin, "answers": digest.hexdigest(), "lines": found}  # fmt: skip
     with open(place, "a", encoding="utf-8") as file:
         file.write(json.dumps(row) + "\n")

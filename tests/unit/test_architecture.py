@@ -3,6 +3,7 @@
 import ast
 import re
 import subprocess
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -65,7 +66,8 @@ MAY_USE = {
 }
 
 
-def read_modules() -> dict[str, ast.Module]:
+@cache  # by the first test that needs it, not by each process that collects tests
+def modules() -> dict[str, ast.Module]:
     """Name -> syntax tree of every module of the package."""
     found = {}
     for path in sorted(PACKAGE.rglob("*.py")):
@@ -80,14 +82,16 @@ def imported_of(tree: ast.Module) -> set[str]:
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and node.module and node.module.split(".")[0] == "extrados":
             names = {f"{node.module}.{alias.name}" for alias in node.names}
-            found |= {name if name in MODULES else node.module for name in names if name not in BUILT}
+            found |= {name if name in modules() else node.module for name in names if name not in BUILT}
         elif isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names if alias.name.split(".")[0] == "extrados"}
-    return found & set(MODULES)
+    return found & set(modules())
 
 
-MODULES = read_modules()
-GRAPH = {name: imported_of(tree) - {name} for name, tree in MODULES.items()}
+@cache
+def graph() -> dict[str, set[str]]:
+    """Name -> the modules that it imports, of every module of the package."""
+    return {name: imported_of(tree) - {name} for name, tree in modules().items()}
 
 
 def layer_of(module: str) -> str:
@@ -126,12 +130,12 @@ def circles_of(graph: dict[str, set[str]]) -> list[list[str]]:
 
 
 def test_circles_are_found() -> None:
-    graph = {"a": {"b"}, "b": {"c"}, "c": {"b", "d"}, "d": set(), "e": {"a", "f"}, "f": {"e"}}
-    assert circles_of(graph) == [["b", "c"], ["e", "f"]]
+    found = {"a": {"b"}, "b": {"c"}, "c": {"b", "d"}, "d": set(), "e": {"a", "f"}, "f": {"e"}}
+    assert circles_of(found) == [["b", "c"], ["e", "f"]]
 
 
 def test_no_import_circle() -> None:
-    assert circles_of(GRAPH) == []
+    assert circles_of(graph()) == []
 
 
 def test_layers_stand_in_order() -> None:
@@ -140,16 +144,24 @@ def test_layers_stand_in_order() -> None:
         assert below <= set(names[:place]), name
 
 
-@pytest.mark.parametrize("module", MODULES)
-def test_a_module_imports_only_lower_layers(module: str) -> None:
-    here = layer_of(module)
-    assert here in LAYERS, f"{here} is a new package: give it a place among the layers"
-    assert {layer_of(other) for other in GRAPH[module]} - {here} <= LAYERS[here]
+def test_a_module_imports_only_lower_layers() -> None:
+    unplaced = {layer_of(module) for module in modules()} - set(LAYERS)
+    assert not unplaced, "new packages: give them a place among the layers"
+    higher = {}
+    for module, imported in graph().items():
+        here = layer_of(module)
+        if found := {layer_of(other) for other in imported} - {here} - LAYERS[here]:
+            higher[module] = found
+    assert not higher
 
 
-@pytest.mark.parametrize("module", MODULES)
-def test_no_private_name_of_another_module(module: str) -> None:
-    tree, foreign = MODULES[module], []
+def test_no_private_name_of_another_module() -> None:
+    assert not {module: found for module, tree in modules().items() if (found := private_names_of_others(tree))}
+
+
+def private_names_of_others(tree: ast.Module) -> list[str]:
+    """Private names of other modules that a module imports, or reads as attributes."""
+    foreign = []
     own = {getattr(node, "name", "") for node in ast.walk(tree)}
     own |= {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
     own |= {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute) and of_itself(node)}
@@ -158,7 +170,7 @@ def test_no_private_name_of_another_module(module: str) -> None:
             foreign += [alias.name for alias in node.names if is_private(alias.name)]
         elif isinstance(node, ast.Attribute) and is_private(node.attr) and not of_itself(node):
             foreign += [node.attr] if node.attr not in own | STANDARD else []
-    assert not foreign
+    return foreign
 
 
 def is_private(name: str) -> bool:

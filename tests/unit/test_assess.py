@@ -662,8 +662,8 @@ def test_elements_that_a_millionth_turns_are_open(monkeypatch: pytest.MonkeyPatc
             "unit_length": 0.4,
             "unit_height": 0.2,
             "thickness": 0.2,
-            "height": 0.8,
-            "legs": [{"length": 1.2}, {"length": 0.8}],
+            "height": 0.4,
+            "legs": [{"length": 0.8}, {"length": 0.8}],
         },
     ],
 )

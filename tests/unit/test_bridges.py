@@ -154,7 +154,7 @@ def test_parts_that_do_not_fit_are_named(keys: dict[str, Any], words: str) -> No
         ({"spans": [SPAN, SPAN]}, "2 spans need 1 pier"),
         ({"spans": [{**SPAN, "rise": 4.5}]}, "rises by at most half its span"),
         ({"spans": [{**SPAN, "shape": "pointed"}]}, "rises by at least half its span"),
-        ({"surfacing": ROAD}, "surfacing lies on fill"),
+        ({"surfacing": ROAD}, "surfacing: requires fill"),
     ],
 )
 def test_wrong_tables_are_complaints(keys: dict[str, Any], words: str) -> None:
@@ -325,6 +325,7 @@ def test_weight_spread_and_pushes_of_fill_each_help() -> None:
     assert wide > narrow
 
 
+@pytest.mark.verify
 def test_rings_that_part_are_weaker_and_slide_at_their_own_friction() -> None:
     place = moving([2.0])
     whole = run(place, fill=FILL)["collapse_load_N"]

@@ -52,6 +52,7 @@ def test_whole_rings_overturn_about_the_base(facets: int, direction: float, arm:
     assert found.weight_N == pytest.approx(volume * DENSITY * GRAVITY, rel=1e-10)
 
 
+@pytest.mark.verify
 def test_blocks_of_a_ring_are_never_stronger_than_the_ring() -> None:
     whole = tilt().collapse_acceleration_g
     few, slippery = (tilt(blocks=8, rings=4, friction=f).collapse_acceleration_g for f in (0.75, 0.3))

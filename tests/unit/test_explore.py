@@ -1,7 +1,9 @@
 """Sessions of the page without a browser: the numbers are a run's, the text its author's."""
 
 import base64
+import re
 import struct
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -10,6 +12,7 @@ import numpy as np
 import pytest
 
 import extrados
+from extrados.explore.answers import standalone
 from extrados.explore.document import Document, as_written
 from extrados.explore.film import BadFilm, film
 from extrados.explore.frames import Reply
@@ -458,3 +461,76 @@ def test_what_is_needed_carries_the_acceleration_once_it_is_put_in(session: Sess
 def test_a_wrong_acceleration_is_refused(session: Session, given: Any) -> None:
     (reply,) = do(session, do="needed", acceleration=given)
     assert "acceleration" in reply.words["bad"]
+
+
+def test_drawn_blocks_are_a_deck_that_keeps_the_rest_of_it(session: Session) -> None:
+    """A blank sheet has no model; blocks on it give their deck; in the deck at hand unchanged blocks stay as written."""
+    (empty,) = do(session, do="draw", blocks=[], ground=[], fresh=True)
+    assert "block" in empty.words["trouble"][0] and 'kind = "blocks"' in empty.words["draft"]
+    assert 'kind = "arch"' in session.document.text, "the deck at hand stays"
+    square = {"name": "pier", "points": [[0, 0], [1, 0], [1, 2], [0, 2]]}
+    (first,) = do(session, do="draw", blocks=[square], ground=[], fresh=True)
+    assert first.words["scene"]["capacity"]["plus_g"] == pytest.approx(0.5)
+    text = session.document.text.replace('name = "pier"', 'name = "pier"  \ndensity = "1.8 t/m^3"').replace(
+        "2.0", '"200 cm"'
+    )
+    do(session, do="open", text=f"# mine\n{text}", here="same")
+    (told,) = do(session, do="sheet")
+    assert told.words["sheet"] == {"blocks": [square], "ground": []}
+    top = {"name": "block 1", "points": [[0, 2], [1, 2], [1, 3], [0, 3]]}
+    (second,) = do(session, do="draw", blocks=[square, top], ground=[[0, 0, 1, 0]])
+    assert second.words["scene"]["capacity"]["plus_g"] == pytest.approx(1 / 3, rel=0.05)
+    now = session.document.text
+    assert now.startswith("# mine") and '"200 cm"' in now and '"1.8 t/m^3"' in now and "ground = " in now
+    (apart,) = do(session, do="draw", blocks=[square, {**top, "points": [[5, 2], [6, 2], [6, 3]]}], ground=[])
+    assert "block 1" in apart.words["trouble"][0] and "ground" not in apart.words["draft"]
+    assert session.document.text == now
+
+
+TIED = """[structure]
+kind = "arch"
+radius = 5.0
+thickness = 1.0
+embrace = 180.0
+voussoirs = 24
+
+[joints]
+friction = "no-sliding"
+types = [{ joints = ["joint 0"], friction = 0.0 }]
+
+[[ties]]
+start = ["-500 cm", 0.0]   # at the springing
+end = [5.0, 0.0]
+start_stone = "voussoir 1"
+end_stone = "voussoir 24"
+
+[[analysis]]
+kind = "tilt"
+"""
+
+
+def test_a_tie_is_dragged_and_the_capacity_follows(session: Session) -> None:
+    """Handles of a tie: its height, its anchorages; a higher tie leaves less of the arch below it to open. The capacity is
+    that of a run; an anchorage stays in the blocks."""
+    (opened,) = do(session, do="open", text=TIED)
+    assert {"tie-0-level", "tie-0-start", "tie-0-end"} <= session.handles.keys()
+    capacities = [opened.words["scene"]["capacity"]["plus_g"]]
+    for place in ([-4.9, 1.2], [-4.4, 2.4]):
+        for which, x in (("start", place[0]), ("end", -place[0])):
+            at = (np.array([x, place[1]]) - session.anchor).tolist()
+            (reply,) = do(session, do="drag", handle=f"tie-0-{which}", to=at, ends=True)
+            assert "complaints" not in reply.words and "limit" not in reply.words, reply.words.get("limit")
+        capacities.append(reply.words["scene"]["capacity"]["plus_g"])
+    text = session.document.text
+    run = extrados.run(tomllib.loads(text))
+    assert run["tilt"].collapse_acceleration_g == pytest.approx(capacities[-1], rel=1e-9)
+    assert len({round(c, 6) for c in capacities}) == 3
+    assert 'start_stone = "voussoir 1"' not in text and 'kind = "tilt"' in text
+    (reply,) = do(session, do="drag", handle="tie-0-start", to=[0.0, 2.0], ends=True)
+    assert "the anchorage of a tie lies in a block" in reply.words["limit"]
+
+
+def test_a_page_without_a_server_has_every_module_that_its_modules_import() -> None:
+    for k, name in enumerate(standalone.MODULES):
+        imported = re.findall(r'from "\./([\w]+\.js)"', (standalone.STATIC / name).read_text("utf-8"))
+        assert set(imported) <= set(standalone.MODULES[:k]), name

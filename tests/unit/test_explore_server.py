@@ -244,6 +244,11 @@ HOSTILE_MESSAGES: list[tuple[str, str]] = [
     ("a key with a way out", '{"do": "set", "changes": {"../x": 1}}'),
     ("too many changes", json.dumps({"do": "set", "changes": {f"structure.k{i}": 1 for i in range(1000)}})),
     ("stones without number", '{"do": "set", "changes": {"structure.voussoirs": 100000000}}'),
+    ("a sheet of no blocks", '{"do": "draw", "blocks": {"a": 1}, "ground": []}'),
+    ("a sheet with a name in two lines", '{"do": "draw", "blocks": [{"name": "a\\n[motion]", "points": [[0, 0], [1, 0], [1, 1]]}], "ground": []}'),
+    ("a sheet with words for places", '{"do": "draw", "blocks": [{"name": "a", "points": [["open(/etc/passwd)", 0], [1, 0], [1, 1]]}], "ground": []}'),
+    ("a sheet of too many blocks", json.dumps({"do": "draw", "blocks": [{"name": "a", "points": []}] * 1001, "ground": []})),
+    ("a sheet of too many vertices", json.dumps({"do": "draw", "blocks": [{"name": "a", "points": [[0, 0]] * 8001}], "ground": []})),
     ("a number of a thousand digits", '{"do": "set", "changes": {"structure.radius": 1' + "0" * 1000 + "}}"),
 ]  # fmt: skip
 
@@ -497,6 +502,22 @@ def test_idle_connections_shut_no_page_out(folder: Path, monkeypatch: pytest.Mon
                     while link.recv(4096):
                         pass
         until(lambda: not page.server.server_state.connections)
+    finally:
+        page.close()
+
+
+def test_an_open_page_is_no_idle_connection(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A socket outlasts the time within which a request has to be whole, and is not among those that give way to others."""
+    monkeypatch.setattr(server, "WHOLE_REQUEST", 0.5)
+    page = Page(folder)
+    try:
+        with page.open() as link, contextlib.ExitStack() as stack:
+            for _ in range(2 * server.MOST_IDLE):
+                stack.enter_context(socket.create_connection(("127.0.0.1", page.port), timeout=30))
+            time.sleep(1.5)
+            link.send('{"do": "list", "of": 7}')
+            words, _ = unpack(link.recv(30))
+            assert words["of"] == 7
     finally:
         page.close()
 

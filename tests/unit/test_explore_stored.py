@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import extrados
+from extrados.explore.folder import Folder, NotThere
 from extrados.results.store import StoreError
 from extrados.running.run import Run
 from extrados.show.charts import shown
@@ -111,3 +112,23 @@ def test_of_a_run_without_a_name_the_words_are_told_and_an_unknown_one_is_refuse
     assert arrays == {} and [row["name"] for row in words["analyses"]] == ["local-mechanism"]
     with pytest.raises(StoreError, match="no analysis 'tilt'"):
         shown(run_of("mechanism"), "tilt")
+
+
+def test_figures_of_a_stored_run_are_those_of_its_report(tmp_path: Path) -> None:
+    """Of one analysis, not of another whose name begins alike; none by a link, none of a run that has them not."""
+    deck = {"structure": ARCH, "analysis": [{"kind": "thrust"}, {"kind": "thrust"}]}
+    out = tmp_path / "results"
+    extrados.run(deck).write(out)
+    folder = Folder(tmp_path)
+    names = {name: {stem for stem, _ in folder.figures("results", name)} for name in ("thrust", "thrust-2")}
+    written = {path.stem for path in out.glob("figures/thrust-*.svg")}
+    assert {f"{name}-{stem}" for name, stems in names.items() for stem in stems} == written and names[
+        "thrust"
+    ] == names["thrust-2"]
+    assert all("<svg" in svg for _, svg in folder.figures("results", "thrust"))
+    with pytest.raises(NotThere):
+        folder.figures("results", "../thrust")
+    (out / "figures" / "thrust-stolen.svg").symlink_to(tmp_path.parent / "x.svg")
+    (tmp_path.parent / "x.svg").write_text("<svg>secret</svg>")
+    with pytest.raises(NotThere):
+        folder.figures("results", "thrust")

@@ -146,6 +146,7 @@ def test_uncertain_values_are_sampled_evenly() -> None:
     assert tangent.mean() == pytest.approx(0.25, rel=2e-3) and tangent.std() == pytest.approx(0.025, rel=0.03)
 
 
+@pytest.mark.verify
 def test_sobol_indices_are_those_of_a_full_factorial() -> None:
     """All 64 widths under all 16 motions: variances of the means over rows and columns, written out."""
     analysis = {"kind": "fragility", "count": 16, "seed": 5, "uncertain": {"width": 0.1}, "sensitivity": 1024}

@@ -135,7 +135,7 @@ def test_nothing_is_handed_over_where_all_conditions_hold() -> None:
 SLIDING = [(mu, period, a) for mu in np.arange(1, 9) / 10 for period in (0.3, 0.6, 1.2) for a in (0.25, 0.5, 0.8, 1.2)]
 
 
-@pytest.mark.parametrize(("width", "height"), [(0.45, 1.0), (0.3, 0.9)])
+@pytest.mark.parametrize(("width", "height"), [pytest.param(0.45, 1.0, marks=pytest.mark.verify), (0.3, 0.9)])
 def test_blocks_that_slide_or_rock_end_as_on_rigid_contacts(width: float, height: float) -> None:
     """96 sines over friction .1 to .8: the outcome of the whole motion, and where it slides, how far."""
     block = {"kind": "block", "width": width, "height": height}
@@ -156,7 +156,7 @@ def test_blocks_that_slide_or_rock_end_as_on_rigid_contacts(width: float, height
 CELLS = [(period, factor) for period in (0.7, 0.9, 1.1, 1.3, 1.5) for factor in (2.0, 2.5, 3.0, 3.5, 4.0)]
 
 
-@pytest.mark.parametrize("cell", [pytest.param(c, marks=() if c in {(0.7, 4.0), (1.3, 2.5), (1.5, 2.0)} else pytest.mark.verify) for c in CELLS])  # fmt: skip
+@pytest.mark.parametrize("cell", [pytest.param(c, marks=() if c in {(0.7, 4.0), (1.3, 2.5)} else pytest.mark.verify) for c in CELLS])  # fmt: skip
 def test_the_vault_ends_as_on_rigid_contacts(cell: tuple[float, float]) -> None:
     """All 25 cells of its map; fixed hinges err in 9 of them."""
     found, contacts = both(VAULT, 0.7, sine(0.134 * cell[1], cell[0]))

@@ -52,11 +52,15 @@ def _run(folder: Path, *command: str, **more: str) -> str:
     return done.stdout
 
 
-def test_no_command_runs_what_lies_in_its_folder(folder: Path) -> None:
-    for words in (
-        "check deck.toml", "run deck.toml --out r", "report r", "compare r r", "explain tilt", "new arch", "schema",
-        "cases .", "export deck.toml --to compas", "assess . --out all", "version",
-    ):  # fmt: skip
+@pytest.mark.parametrize("commands", [
+    ["check deck.toml", "run deck.toml --no-figures --out r"],
+    pytest.param(
+        ["run deck.toml --out r", "report r", "compare r r", "explain tilt", "new arch", "schema", "cases .",
+         "export deck.toml --to compas", "assess . --out all", "version"], marks=pytest.mark.verify,
+    ),
+], ids=["quick", "all"])  # fmt: skip
+def test_no_command_runs_what_lies_in_its_folder(folder: Path, commands: list[str]) -> None:
+    for words in commands:
         _run(folder, str(SCRIPT), *words.split())
 
 

@@ -113,6 +113,7 @@ DECKS = {
     "rigid solids": (BLOCK, SINE, {"kind": "dem", "end_time": 0.2, "solver": "nonsmooth", "direction": 0.0}),
     "sla of a panel": (WALL, None, {"kind": "sla", "mesh": {"size": 0.5}, "events": 30}),
     "pushover": (HOUSE, None, {"mesh": {"size": 0.9, "layers": 3}, "events": 25}),
+    "modes": (ARCH, None, {}),
     "frame-modes": (HOUSE, None, {}),
     "frame-pushover": (
         HOUSE,
@@ -120,6 +121,7 @@ DECKS = {
         {"directions": [0.0], "senses": ["+"], "patterns": ["uniform"], "eccentricities": [0.0]},
     ),
     "frame-history": (HOUSE, SINE, {"end_time": 0.5}),
+    "frame-fragility": (HOUSE, SINE, {"by": "pushover", "count": 2, "uncertain": {"young": 0.2}}),
     "walls of a plan": (HOUSE, None, {"kind": "local-mechanism", "mechanism": "building"}),
     "rocking of a stack": (STACK_OF_TWO, SINE, {"kind": "rocking"}),
     "sla of rows": (STACK, None, {"kind": "sla", "mesh": {"size": 0.5, "joints": "rows"}, "events": 30}),
@@ -160,7 +162,9 @@ def test_every_property_has_two_values_here_and_every_kind_a_deck() -> None:
     assert {*DECKS, *LONG} >= set(kinds.ANALYSES)
 
 
-@pytest.mark.parametrize("name", DECKS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.verify] if name == "strengthen" else []) for name in DECKS]
+)
 def test_no_property_is_silently_without_effect(name: str) -> None:
     """Another value changes the answer, or it is told to be left out, or refused, or fixed by the method in so many words."""
     silent = []

@@ -43,6 +43,7 @@ USERS = {
     "failure-curves": (BLOCK, ""),
     "assess": (BLOCK, "budget = 5.0"),
     "frame-history": (HOUSE, "end_time = 0.5"),
+    "frame-fragility": (HOUSE, 'by = "pushover"\ncount = 2\nuncertain = { young = 0.2 }'),
 }
 
 

@@ -37,6 +37,7 @@ def wall_run(threads: int) -> dem3.Run:
         return model.run(motions)
 
 
+@pytest.mark.verify
 def test_threads_give_the_same_bits_on_a_busy_machine():
     """While other processes take all cores; the bench of solids measures the time."""
     others = [subprocess.Popen([sys.executable, "-c", BUSY]) for _ in range(2 * (os.cpu_count() or 1))]

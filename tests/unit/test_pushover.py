@@ -346,3 +346,19 @@ def test_stages_of_a_building_continue_under_load_reversal():
     assert forth.end_load_N == pytest.approx(back.end_load_N, rel=0.02)
     assert rocking < back.end_load_N < 1.15 * rocking
     assert back.equilibrium_steps > 5 and back.unbalanced_steps == 0
+
+
+@pytest.mark.parametrize(("ratios", "warned"), [([1.0], False), ([1.0, 0.8], True)])
+def test_the_load_of_unequal_drives_is_not_the_base_shear(ratios: list[float], warned: bool) -> None:
+    """One drive: the wall carries the load. Floor and roof in an unnatural ratio: more, with a warning."""
+    drives = [{"wall": "1", "storey": 2 - k, "ratio": ratio} for k, ratio in enumerate(ratios)]
+    deck = {
+        "structure": {"kind": "building", "storeys": ["3 m", "3 m"], "walls": [{"name": "1", "start": [0, 0], "end": [3, 0], "thickness": 0.3}]},
+        "material": {"young": "2 GPa", "poisson": 0.2, "density": 1800, "tensile_strength": "0.1 MPa", "fracture_energy": "20 N/m"},
+        "analysis": [{"kind": "pushover", "drives": drives, "mesh": {"size": "0.75 m"}, "events": 3, "states": [1]}],
+    }  # fmt: skip
+    (found,) = extrados.run(deck).results
+    (wall,) = found.results.walls
+    assert any("not the base shear" in text for text in found.warnings) == warned
+    assert wall.elastic_share > 1.1 if warned else wall.elastic_share == pytest.approx(1.0, abs=1e-9)
+    assert found["state_wall_shear"][0, 0] == pytest.approx(wall.elastic_share * found["state_load"][0], rel=1e-3)

@@ -248,6 +248,7 @@ def test_results_say_where_when_and_by_whom(tmp_path: Path) -> None:
         assert file["tilt/joint_name"].asstr()[0] == run.dataset("tilt")["joint_name"].values[0]
 
 
+@pytest.mark.verify
 def test_a_cluster_gives_the_bits_of_one(cluster) -> None:
     address, _ = cluster
     over = {"structure.thickness": [1.2, 1.3, 1.4]}

@@ -181,6 +181,7 @@ def test_other_rules_remain_and_what_cannot_be_followed_is_reported() -> None:
     assert any("Equilibrium iterations follow rotating cracks" in text for text in result.warnings)
 
 
+@pytest.mark.verify
 def test_shells_are_followed_by_the_same_iterations() -> None:
     """A box of four walls, whose walls in the push have openings: beyond the last event the load continues where it was."""
     opening = [{"storey": 1, "x": [1.0, 2.0], "z": [1.0, 2.0]}]
@@ -227,6 +228,7 @@ def test_a_free_pier_pushed_anywhere_keeps_its_axial_load(at: float, end: float)
         assert ends[0] == pytest.approx(ends[1], rel=0.02)
 
 
+@pytest.mark.verify
 def test_a_stage_has_the_drift_of_the_same_run_without_stages() -> None:
     whole = pier(0.1, 50.0, 0.125, crushing=True, target_displacement=2e-2)
     staged = pier(0.1, 50.0, 0.125, crushing=True)

@@ -53,8 +53,10 @@ def pushed(limit: SolidLimit, direction: float = 0.0) -> Programme:
     return found
 
 
-@pytest.mark.parametrize("friction", [0.3, 0.65, "no-sliding"])
-@pytest.mark.parametrize("name", PLANE)
+@pytest.mark.parametrize(("name", "friction"), [
+    pytest.param(name, friction, marks=[pytest.mark.verify] if name == "wall with a door" and friction == 0.65 else [])
+    for name in PLANE for friction in (0.3, 0.65, "no-sliding")
+])  # fmt: skip
 def test_plane_structures_in_space_are_the_plane_ones(name: str, friction: Any) -> None:
     plane = run(PLANE[name], friction)
     if isinstance(plane.results, SelfWeight):

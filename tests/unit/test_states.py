@@ -182,6 +182,7 @@ def test_a_box_slides_on_its_sole_by_itself() -> None:
     assert verdict.bound != "upper" and not verdict.violated and "at most" not in found.answer
 
 
+@pytest.mark.verify
 def test_a_sole_under_some_walls_does_not_lift_the_limit_of_all() -> None:
     """Walls without a bed joint resist by the friction and cohesion of [joints], those on one by its own."""
     structure = {"kind": "building", "storeys": [3.0], "walls": WALLS, "beds": [{"name": "sole", "walls": ["a", "b"]}]}

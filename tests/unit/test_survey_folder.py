@@ -25,6 +25,11 @@ analysis = [{ kind = "assess", budget = 5, strategies = ["tilt", "rocking"] }]
 COLUMN = 'structure = {{ kind = "column", width = {}, height = 6.0, drums = 3 }}\n'
 
 
+@pytest.fixture(autouse=True)
+def _coarse_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(style, "save", quick_save)
+
+
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     place = tmp_path / "towers"
@@ -35,8 +40,7 @@ def folder(tmp_path: Path) -> Path:
     return place
 
 
-def test_the_worst_comes_first(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(style, "save", quick_save)
+def test_the_worst_comes_first(folder: Path, tmp_path: Path) -> None:
     rows = survey.assess_folder(folder, tmp_path / "out", figures=False)
     assert [r.building for r in rows] == ["w0.8", "w1.2", "w2.0"]
     assert [r.least_margin for r in rows] == pytest.approx([0.8 / 6 / 0.3, 1.2 / 6 / 0.3, 2.0 / 6 / 0.3])
@@ -116,6 +120,7 @@ def test_results_that_must_lie_beside_a_folder_are_those_of_the_ranking(folder: 
     assert "0.5" in (out / "ranking.csv").read_text() and moved.least_margin == pytest.approx(0.5)
 
 
+@pytest.mark.verify
 def test_a_cluster_gives_the_same_ranking(cluster, folder: Path, tmp_path: Path) -> None:
     address, _ = cluster
     apart = survey.assess_folder(folder, tmp_path / "a", scheduler=address, figures=False)

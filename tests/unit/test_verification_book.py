@@ -93,5 +93,18 @@ def test_the_package_has_the_scatter_of_the_bridges() -> None:
     (bridges,) = uncertainties_of("moving-load")
     assert (bridges.count, bridges.strategy) == (6, "live load on bridges")
     assert bridges.bias == pytest.approx(0.67, abs=0.02) and bridges.scatter == pytest.approx(0.56, abs=0.03)
-    assert uncertainties_of("rocking") == []
+    assert [row.quantity for row in uncertainties_of("rocking")] == ["restitution"]
+    (frames,) = uncertainties_of("frame-pushover")
+    assert (frames.count, frames.quantity) == (126, "peak load")
     assert {row.comparison for row in read_uncertainties()} <= set(expectations.PROOFS)
+
+
+def test_a_series_of_tests_is_judged_by_its_statistics() -> None:
+    """A wall of a table is neither wrong nor wide by itself, and enters bias and scatter."""
+    quantity = "frame-pushover.peak_load_N"
+    row = expectations.Row(quantity, 100.0, 0.1, True, "experiment", "table", (), "failure S", scatter="one test")
+    series = [book.Found(f"wall {k}", row, value, series=True) for k, value in enumerate((50.0, 200.0))]
+    assert not any(one.wrong for one in series) and book.Found("case", row, 50.0).wrong
+    (line,) = book.statistics_of(series)
+    assert (line["count"], line["bias"]) == (2, "1.0000")
+    assert "±" not in book.line(series[0]) and "differs" not in book.line(series[0])

@@ -216,7 +216,10 @@ def response_to_sine(model: ArchModel, amplitude: float, period: float) -> tuple
     return len(found), fallen
 
 
-@pytest.mark.parametrize(("amplitude", "period", "impacts"), [(0.5, 1.1417, 1), (1.0, 0.6669, 1), (1.0, 1.4419, 0)])
+@pytest.mark.parametrize(
+    ("amplitude", "period", "impacts"),
+    [(0.5, 1.1417, 1), pytest.param(1.0, 0.6669, 1, marks=pytest.mark.verify), (1.0, 1.4419, 0)],
+)
 def test_failing_sines_of_fig_5_7_against_scipy(oppenheim, amplitude: float, period: float, impacts: int) -> None:
     """`cases/arch/figure-5-7`: the arch recovers under a sine 0.1 % shorter, and collapses under one 0.1 % longer after this many impacts."""
     assert response_to_sine(oppenheim, amplitude, 0.999 * period)[1] is None

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from extrados.bridges.forms import exported
 from extrados.core.frame import Frame, MacroElement
 from extrados.decks.reader import make_deck
 from extrados.views.frame.options import FrameOptions
@@ -131,3 +132,96 @@ def test_a_pier_of_fibres_without_tension(double):
     path = Frame([pier], [], np.zeros((n, n)), weight, np.zeros((n, n))).push(along, along, float(u[-1]), 300, 0.0)
     ours = np.interp(u, path.control, path.multiple)
     assert ours[1:] == pytest.approx(v[1:], rel=3e-3)
+
+
+def interpreted(script: str) -> None:
+    """Run an exported script by Tcl, its commands given to OpenSeesPy; Macroelement3d as an elastic beam between rigid links."""
+    tcl = pytest.importorskip("tkinter").Tcl()
+    where: dict[str, tuple[float, ...]] = {}
+
+    def value(text: str):
+        try:
+            return int(text)
+        except ValueError:
+            try:
+                return float(text)
+            except ValueError:
+                return text
+
+    def call(name: str):
+        def run(*words: str) -> str:
+            if name == "node":
+                where[words[0]] = tuple(float(x) for x in words[1:])
+            if name == "element" and words[0] == "Macroelement3d":
+                return beam(words[1:])
+            getattr(ops, name)(*(value(w) for w in words))
+            return ""
+
+        return run
+
+    def beam(words: tuple[str, ...]) -> str:
+        tag, i, j, e = words[:4]
+        axis, sort = np.array([float(x) for x in words[4:7]]), words[10]
+        length, depth, thickness, young, shear = (float(x) for x in words[11:16])
+        middle = np.array(where[e])
+        ends = (100_000 + 2 * int(tag), 100_001 + 2 * int(tag))
+        for end, node, sign in zip(ends, (i, j), (-0.5, 0.5), strict=True):
+            ops.node(end, *(middle + sign * length * axis).tolist())
+            ops.rigidLink("beam", int(node), end)
+        ops.fix(int(e), 1, 0, 1, 0, 1, 0)  # the middle node belongs to the element that stands for it here
+        area, inertia = depth * thickness, thickness * depth**3 / 12
+        ops.geomTransf("Linear", int(tag), 0.0, 1.0, 0.0)
+        ops.element(
+            "ElasticTimoshenkoBeam", int(tag), *ends, young, shear, area if sort == "-pier" else 1e-9, 2 * inertia, 1.0, inertia,
+            area / 1.2, area / 1.2, int(tag),
+        )  # fmt: skip
+        return ""
+
+    def pattern(sort: str, tag: str, series: str, body: str) -> str:
+        ops.timeSeries(series, int(tag))
+        ops.pattern(sort, int(tag), int(tag))
+        tcl.eval(body)
+        return ""
+
+    ops.wipe()
+    for name in ("wipe", "model", "node", "fix", "equalDOF", "element", "rigidLink", "uniaxialMaterial", "load", "constraints", "numberer",
+                 "system", "test", "algorithm", "integrator", "analysis", "analyze", "loadConst", "wipeAnalysis"):  # fmt: skip
+        tcl.createcommand(name, call(name))
+    tcl.createcommand("pattern", pattern)
+    tcl.eval(script)
+
+
+def test_the_exported_frame_of_a_house_moves_as_this_one():
+    """Walls side by side, floors as springs between their displacements, corners as vertical springs: the same displacements."""
+    facade = FACADE["structure"]["walls"][0]
+    house = {
+        "kind": "building", "storeys": [3.2, 2.9],
+        "walls": [
+            facade,
+            {"name": "right", "start": [7, 0], "end": [7, 5], "thickness": 0.4},
+            {"name": "back", "start": [7, 5], "end": [0, 5], "thickness": 0.4, "openings": [{"storey": 1, "x": [2, 3], "z": [0.8, 2.1]}]},
+            {"name": "left", "start": [0, 5], "end": [0, 0], "thickness": 0.4},
+        ],
+        "floors": [{"storey": k, "young": 5e7, "thickness": 0.05, "load": 3e3} for k in (1, 2)],
+    }  # fmt: skip
+    deck = make_deck({**FACADE, "structure": house, "analysis": [{"kind": "frame-modes"}]})
+    frame = deck.building.frame(FrameOptions())
+    interpreted(exported(deck, "opensees-frame"))
+    nodes = {freedom: k + 1 for k, node in reversed(list(enumerate(frame.nodes))) if node.level
+             for freedom in [frame.along[node.wall, node.level]]}  # fmt: skip
+    before = np.array([ops.nodeDisp(nodes[f], 1) for f in sorted(nodes)])
+    ops.constraints("Penalty", 1e15, 1e15)
+    ops.numberer("Plain")
+    ops.system("UmfPack")
+    ops.test("NormDispIncr", 1e-6, 50)
+    ops.algorithm("Newton")
+    ops.integrator("LoadControl", 1.0)
+    ops.analysis("Static")
+    assert ops.analyze(1) == 0
+    theirs = np.array([ops.nodeDisp(nodes[f], 1) for f in sorted(nodes)]) - before
+    unit = frame.unit(np.array([1.0, 0.0]))
+    forces = frame.mass @ unit
+    with frame.core() as core:
+        rest = core.at_rest()
+    ours = np.linalg.solve(rest.tangent, forces / (forces @ unit))[sorted(nodes)]
+    assert theirs == pytest.approx(ours, rel=0.01, abs=0.01 * float(np.abs(ours).max()))

@@ -21,6 +21,7 @@ def array(run: Any, analysis: str, name: str) -> np.ndarray:
     return np.asarray(run.arrays[analysis][name].data)
 
 
+@pytest.mark.verify
 @pytest.mark.parametrize("prestress", [-1e6, 0.0, 1e6])
 def test_every_event_of_the_prestressed_beam(prestress: float) -> None:
     """4.3.1: multiplier, equilibrium and deflection of all events agree with a script apart from the program, for all three beams."""
@@ -37,6 +38,7 @@ def test_every_event_of_the_prestressed_beam(prestress: float) -> None:
     np.testing.assert_allclose(load, 1000.0 * course.multiplier[:last], rtol=2e-3, atol=5.0)
 
 
+@pytest.mark.verify
 def test_cycles_162_163_and_218_of_figures_4_5_and_4_6() -> None:
     """4.3.1: equilibrium at cycle 162, none at 163 and 218, for every depth from 106 to 120 mm.
 
@@ -104,6 +106,7 @@ def test_worn_corners_do_not_overturn_the_under_damped_block(radius: float) -> N
         assert found.outcome == "rocked" and found.bounces > 200 and found.peak_slip_m < 0.03
 
 
+@pytest.mark.verify
 def test_the_buttressed_vault_collapses_in_the_printed_order() -> None:
     """7.2.3: both buttresses tilt slightly to the left, both to the right, the left one to the left, the arch collapses while both lean
     outward, both recover."""

@@ -116,6 +116,7 @@ def test_the_reference_converges() -> None:
         reference(0.05, 0.002, "hordijk", 24).opening_after_peak(0.25)
 
 
+@pytest.mark.verify
 def test_few_elements_do_not_carry_a_discrete_crack_down_its_tail_either() -> None:
     """Twelve pairs of nodes end above half of the peak, 24 above a quarter: with the last of them the crack is through."""
     for elements, part in ((12, 0.5), (24, 0.25)):
@@ -125,6 +126,7 @@ def test_few_elements_do_not_carry_a_discrete_crack_down_its_tail_either() -> No
             few.opening_after_peak(part)
 
 
+@pytest.mark.verify
 def test_a_small_beam_is_rigid_and_plastic() -> None:
     """Where the crack is long before it opens, all of the ligament carries its strength: P l/4 = ft t a^2/2."""
     path = cohesive_path(beam_of(1e-4, 4e-6), YOUNG, NU, STRENGTH, ENERGY, "linear", 200)
@@ -132,6 +134,7 @@ def test_a_small_beam_is_rigid_and_plastic() -> None:
     assert 0.97 < path.load.max() / plastic < 1.0
 
 
+@pytest.mark.verify
 def test_a_beam_of_default_elements_meets_the_cohesive_crack() -> None:
     """Hordijk, 50 mm, twelve elements over the ligament."""
     found = errors(0.05, "hordijk", 12)
@@ -161,18 +164,20 @@ def strip(mesh: dict) -> float:
     return result.results["crack_energy_J"] / (ENERGY * 0.03 * 0.03)
 
 
+@pytest.mark.verify
 def test_a_crack_along_the_mesh_takes_its_fracture_energy() -> None:
     """Squares, one row of which cracks through."""
     lines = [0.001 * k for k in range(29, 72, 2)]
     assert strip({"size": 0.002, "lines_x": lines}) == pytest.approx(1.0, abs=0.01)
 
 
-def test_a_crack_across_random_triangles_takes_its_fracture_energy() -> None:
+@pytest.mark.parametrize(
+    "seed", [1, pytest.param(2, marks=pytest.mark.verify), pytest.param(3, marks=pytest.mark.verify)]
+)
+def test_a_crack_across_random_triangles_takes_its_fracture_energy(seed: int) -> None:
     """Each of three meshes, though no crack is as straight as the section."""
-    for seed in (1, 2, 3):
-        assert strip({"size": 0.002, "element": "T3", "pattern": "random", "seed": seed}) == pytest.approx(
-            1.0, abs=0.05
-        )
+    mesh = {"size": 0.002, "element": "T3", "pattern": "random", "seed": seed}
+    assert strip(mesh) == pytest.approx(1.0, abs=0.05)
 
 
 def test_fixed_cracks_do_not_meet_it() -> None:

@@ -36,11 +36,19 @@ def test_flanges_make_the_walls_stronger_and_cracks_wrap_round() -> None:
     """
     whole = pushed(["1", "B", "2", "A"])
     shear = {row.wall: row.shear_N for row in whole.results.walls}
-    gain = {name: shear[name] / pushed([name]).results.greatest_load_N for name in "12"}
+    gain = {name: shear[name] / pushed([name]).results.walls[0].shear_N for name in "12"}
     print(f"with flanges over alone: wall 1 {gain['1']:.2f}, wall 2 {gain['2']:.2f}")
-    assert gain["1"] > 1.3 and gain["2"] > gain["1"]
-    assert sum(shear.values()) == pytest.approx(whole.results.greatest_load_N, rel=0.05)
+    assert gain["1"] > 1.1 and gain["2"] > 1.3 * gain["1"]
+    assert any("not the base shear" in text for text in whole.warnings)
     number = {row.wall: k for k, row in enumerate(whole.results.walls)}
+    # The curves of single walls, Fig. 4-14: wall 1 reaches its peak before wall 2. The floor moves by 0.8 of the roof: the load is
+    # the work of both drives over the displacement of the roof, up to 14 % less than the shear of the walls
+    held = whole["event_equilibrium"][whole["state_event"] - 1] > 0
+    carried = whole["state_wall_shear"][held]
+    assert held.sum() > 10
+    over = carried.sum(axis=1) / whole["state_load"][held]
+    assert 1.0 < over.min() and over.max() < 1.16
+    assert carried[:, number["1"]].argmax() < carried[:, number["2"]].argmax()
     of, s, z = (whole[f"place_{name}"] for name in ("wall", "s", "z"))
     last = int(np.flatnonzero(whole["event_equilibrium"][whole["state_event"] - 1] > 0)[-1])
     width = whole["state_width"][last]

@@ -98,7 +98,8 @@ class Swept:
             if len(self.members):
                 yield self.members, {n: self.arrays[n] for n in names}
             return
-        members, rows = np.zeros(0, int), {n: [] for n in names}  # type: dict[str, list[np.ndarray]]
+        members = np.zeros(0, int)
+        rows: dict[str, list[np.ndarray]] = {n: [] for n in names}
         for first, length in self.parts:
             part = self.pick(first, names)
             members = np.concatenate([members, np.arange(first, first + length)])
@@ -157,17 +158,18 @@ class _Batches:
         self, context: Context, name: str, job: Job, count: int, tell: Callable[[int], None], large: bool = False
     ):
         self.context, self.count, self.tell = context, count, tell
+        self.kept = context.checkpoint
         #: first member -> rows, or where they lie
         self.parts: dict[int, dict[str, np.ndarray] | Path] = {}
         self.rows: dict[int, int] = {}
         self.names: tuple[str, ...] = ()
-        self.on_disk = large and context.checkpoint is not None and count > IN_MEMORY
+        self.on_disk = large and self.kept is not None and count > IN_MEMORY
         self.name = ""
-        self.again = "; --resume continues from here" if context.checkpoint is not None else ""
-        if context.checkpoint is not None:
+        self.again = "; --resume continues from here" if self.kept is not None else ""
+        if self.kept is not None:
             self.name = f"{name}-{fingerprint(job)[:16]}-{count}"
             end = 0
-            for first, arrays, path in context.checkpoint.placed(self.name, context.warnings):
+            for first, arrays, path in self.kept.placed(self.name, context.warnings):
                 if end <= first <= count - _rows(arrays):
                     self._put(first, arrays, path)
                     end = first + _rows(arrays)
@@ -182,7 +184,10 @@ class _Batches:
 
     def _pick(self, first: int, names: Sequence[str]) -> dict[str, np.ndarray]:
         part = self.parts[first]
-        return self.context.checkpoint.pick(part, names) if isinstance(part, Path) else {n: part[n] for n in names}
+        if not isinstance(part, Path):
+            return {n: part[n] for n in names}
+        assert self.kept is not None  # rows lie on disk in a checkpoint alone
+        return self.kept.pick(part, names)
 
     def missing(self) -> list[tuple[int, int]]:
         """Ranges (first, end) without rows."""
@@ -194,7 +199,7 @@ class _Batches:
         return gaps + ([(at, self.count)] if at < self.count else [])
 
     def add(self, first: int, arrays: dict[str, np.ndarray]) -> None:
-        path = self.context.checkpoint.keep(self.name, first, arrays) if self.name else None
+        path = None if self.kept is None else self.kept.keep(self.name, first, arrays)
         self._put(first, arrays, path)
         self.done += _rows(arrays)
         self.tell(self.done)

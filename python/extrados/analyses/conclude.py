@@ -12,11 +12,12 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.table import Analysis
 from extrados.motions.from_deck import is_set
 from extrados.motions.tables import Pulse, SinePulse, StepPulse
-from extrados.results.assumptions import Assumption, spoken
+from extrados.results.assumptions import Assumption, Origin, spoken
 from extrados.results.model import Result
 from extrados.results.verdict import judge
 from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import unit_of
+from extrados.schema.table import Table
 from extrados.views.building import Building
 
 
@@ -31,13 +32,11 @@ class MotionDemand:
             None if motion is None or motion.floor is not None else motion
         ):  # a floor turns a pulse into another motion
             case StepPulse() as m:
-                self.pulse, self.duration_s = "step", m.duration
+                self.pulse, self.duration_s, self.amplitude_g = "step", m.duration, abs(m.amplitude) / GRAVITY
             case SinePulse() as m:
-                self.pulse, self.duration_s = "sine", m.period
+                self.pulse, self.duration_s, self.amplitude_g = "sine", m.period, abs(m.amplitude) / GRAVITY
             case Pulse() as m:
-                self.pulse, self.duration_s = m.shape, m.period
-        if self.pulse:
-            self.amplitude_g = abs(context.deck.motion.amplitude) / GRAVITY
+                self.pulse, self.duration_s, self.amplitude_g = m.shape, m.period, abs(m.amplitude) / GRAVITY
 
     @cached_property
     def peak_g(self) -> float | None:
@@ -102,6 +101,7 @@ def assumptions_of(options: Analysis, deck: Building, building: Building) -> dic
     deck: the building as the deck's own tables say it; building: as the analysis sees it.
     """
     found = {}
+    origin: Origin
     for key, fixed in options.rests_on(building).items():
         if key == getattr(options, "vary", None):
             continue
@@ -109,7 +109,8 @@ def assumptions_of(options: Analysis, deck: Building, building: Building) -> dic
         if fixed is not None:
             found[key] = Assumption(value=fixed, unit="", origin="method", exceptions=False)
             continue
-        own, override = getattr(building, table), getattr(options, table, None)
+        own: Table = getattr(building, table)
+        override = getattr(options, table, None)
         if override is not None and name in override.model_fields_set:
             origin = "analysis"
         else:

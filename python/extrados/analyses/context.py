@@ -68,10 +68,10 @@ class Context:
     @cached_property
     def given_motion(self) -> "Motion":
         """The motion of the deck, made once."""
+        from extrados.motions.formats.record import RecordError
         from extrados.motions.from_deck import make_motion
-        from extrados.motions.records import RecordError
 
-        model = self.deck.motion
+        model = self.deck.require_motion()
         known = f"{model.model_dump_json()} {self.deck.folder}"
         if known not in self.motions:
             try:
@@ -86,8 +86,8 @@ class Context:
         if isinstance(model, tables.Record):
             _ = self.motion
         elif isinstance(model, tables.Suite | tables.Generated | tables.Compatible):
+            from extrados.motions.formats.record import RecordError
             from extrados.motions.from_deck import refuse_set
-            from extrados.motions.records import RecordError
 
             try:
                 refuse_set(model, folder)

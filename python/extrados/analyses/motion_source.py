@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Protocol
 
@@ -11,10 +12,10 @@ from extrados.analyses.context import Context, Refused
 from extrados.core import motion as core_motion
 from extrados.core.rocking import Ground
 from extrados.motions import tables as models
+from extrados.motions.formats.record import RecordError
 from extrados.motions.from_deck import generated_set, make_motion, member_name, suite_members, suite_motion
 from extrados.motions.generated import GeneratedSet
 from extrados.motions.motion import Motion
-from extrados.motions.records import RecordError
 
 MOST_NOTES = 10  # of a suite, shown with the result
 
@@ -62,10 +63,8 @@ class CompatibleSource:
     folder: str
 
     def grounds(self, first: int, count: int, threads: int) -> list[Ground | str]:
-        return [
-            _try(lambda k=k: make_motion(self.model.model_copy(update={"member": k + 1}), Path(self.folder)))
-            for k in range(first, first + count)
-        ]
+        members = (self.model.model_copy(update={"member": k + 1}) for k in range(first, first + count))
+        return [_try(partial(make_motion, member, Path(self.folder))) for member in members]
 
 
 def _try(make: Callable[[], Motion], notes: list[str] | None = None) -> Ground | str:
@@ -105,7 +104,7 @@ def source_of(context: Context, seed: int | None, duration: float | None = None)
         if isinstance(model, models.Suite):
             notes: list[str] = []
             members = suite_members(model, folder)
-            grounds = [_try(lambda m=m: suite_motion(model, m, folder), notes) for m in members]
+            grounds = [_try(partial(suite_motion, model, m, folder), notes) for m in members]
             if all(isinstance(g, str) for g in grounds):
                 raise Refused(
                     f"none of the {len(grounds)} records of the suite can be read; the first: {grounds[0]}", ("motion",)

@@ -4,6 +4,7 @@ A need is a step without mechanics that raises Refused or BadGeometry with the k
 kinds share stand here, those of a package in its `needs.py`, which the steps load when they are taken.
 """
 
+import functools
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -59,7 +60,7 @@ def _needs(context: Context, options: Analysis) -> Iterator[Need]:
     elif options.view == "blocks":
         yield lambda: _bound(building, options)
     elif options.view == "shell":
-        yield lambda: building.shell(options.mesh)
+        yield functools.partial(building.shell, getattr(options, "mesh", None))
     yield from kinds.load(kinds.ANALYSES[options.kind].needs)(context, options)
 
 

@@ -1,6 +1,6 @@
 """The base of the analysis tables."""
 
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal, TypeAlias
 
 from pydantic import model_validator
 
@@ -10,10 +10,16 @@ from extrados.schema.table import Table, key, override_of
 if TYPE_CHECKING:
     from extrados.views.building import Building
 
-MaterialOverride = override_of(Material, __name__)
-JointsOverride = override_of(Joints, __name__)
-SupportsOverride = override_of(Supports, __name__)
-InitialOverride = override_of(Initial, __name__)
+if TYPE_CHECKING:  # made of the tables of the building, key by key
+    MaterialOverride: TypeAlias = Table
+    JointsOverride: TypeAlias = Table
+    SupportsOverride: TypeAlias = Table
+    InitialOverride: TypeAlias = Table
+else:
+    MaterialOverride = override_of(Material, __name__)
+    JointsOverride = override_of(Joints, __name__)
+    SupportsOverride = override_of(Supports, __name__)
+    InitialOverride = override_of(Initial, __name__)
 #: The tables of a building that an analysis may override for itself
 OVERRIDES = ("material", "joints", "supports", "initial")
 

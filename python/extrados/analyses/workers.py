@@ -101,6 +101,7 @@ def main() -> None:
             batch = pipe.recv()
         except EOFError:
             return
+        told: tuple[Any, Exception | None]
         try:
             told = (job.run(*batch), None)
         except Exception as error:

@@ -4,7 +4,7 @@ import logging
 from collections.abc import Callable
 from typing import Any
 
-from extrados.bridges import compas, itasca, opensees
+from extrados.bridges import compas, frame_script, itasca, opensees
 from extrados.decks.reader import Deck, DeckError
 from extrados.model.errors import BadGeometry, NoView
 from extrados.model.geometry.assembly import Assembly
@@ -17,8 +17,20 @@ FORMS: dict[str, tuple[Callable[[Deck], str], str, str]] = {
     "compas": (compas.written, ".json", "the stones as an Assembly of compas_assembly"),
     "udec": (itasca.udec, ".dat", "the stones of a plane section as blocks of UDEC 7"),
     "3dec": (itasca.threedec, ".dat", "the stones in space as blocks of 3DEC 7"),
+    "opensees-frame": (
+        frame_script.macroelements,
+        ".tcl",
+        "the frame of macro-elements of a building for OpenSees with Macroelement3d",
+    ),
+    "frame-tables": (
+        frame_script.tables,
+        ".txt",
+        "the frame of macro-elements of a building as tables of text, as TREMURI orders them",
+    ),
     "opensees": (opensees.written, ".py", "a rocking block, or else a mesh with dry joints, as a script of OpenSeesPy"),
 }
+#: Those that hold nothing but the geometry of blocks
+BLOCKS = ("compas", "udec", "3dec")
 
 
 def exported(deck: Deck, form: str) -> str:
@@ -29,7 +41,7 @@ def exported(deck: Deck, form: str) -> str:
         raise DeckError([f"{form} needs a [structure]"])
     try:
         text = FORMS[form][0](deck)
-        if form != "opensees" and (left := _beyond_geometry(deck)):
+        if form in BLOCKS and (left := _beyond_geometry(deck)):
             log.warning("%s: the file holds the geometry of the blocks. Not exported: %s", form, ", ".join(left))
         return text
     except BadGeometry as error:

@@ -13,7 +13,7 @@ import typer
 
 from extrados import interrupts, room
 from extrados.cli.checking import check
-from extrados.cli.elsewhere import explore, export
+from extrados.cli.elsewhere import explore, export, import_plan
 from extrados.cli.reference import cases, explain, new, schema, version
 from extrados.cli.running import assess, motion, run
 from extrados.cli.stored import compare, plot, report
@@ -22,7 +22,7 @@ from extrados.cli.terminal import NOT_DONE, Commands
 app = Commands(no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__)
 #: In the order in which `extrados --help` lists them. What a command needs it imports as it is called.
 COMMANDS = (
-    run, motion, check, schema, explain, new, cases, report, compare, assess, plot, explore, export, version,
+    run, motion, check, schema, explain, new, cases, report, compare, assess, plot, explore, export, import_plan, version,
 )  # fmt: skip
 for command in COMMANDS:
     app.command()(command)

@@ -64,7 +64,13 @@ def _forms(begun: str) -> list[str]:
 def export(
     deck: Annotated[Path, typer.Argument(help="the deck")],
     form: Annotated[
-        str, typer.Option("--to", help="compas, udec, 3dec or opensees", autocompletion=_forms, show_default=False)
+        str,
+        typer.Option(
+            "--to",
+            help="compas, udec, 3dec, opensees, opensees-frame or frame-tables",
+            autocompletion=_forms,
+            show_default=False,
+        ),
     ],
     out: Annotated[Path | None, typer.Option(help="file; default results/<deck name>.<ending>")] = None,
 ) -> None:
@@ -84,3 +90,43 @@ def export(
         except OSError as error:
             raise StoreError(f"{place}: cannot be written: {reason(error)}") from None
     out_console.say(f"{FORMS[form][2]}: {place}")
+
+
+def import_plan(
+    drawing: Annotated[Path, typer.Argument(help="the drawing, DXF")],
+    walls: Annotated[
+        list[str], typer.Option("--walls", help="layer of the walls; may be given again", show_default=False)
+    ],
+    openings: Annotated[
+        list[str] | None, typer.Option("--openings", help="layer of the openings; default: gaps in the walls")
+    ] = None,
+    thickness: Annotated[
+        float | None, typer.Option("--thickness", help="of walls drawn by their axes [m]; default: lines are faces")
+    ] = None,
+    storeys: Annotated[str, typer.Option("--storeys", help="heights [m] of the storeys, from the ground")] = "3.0",
+    unit: Annotated[
+        str | None, typer.Option("--unit", help="of the drawing, where it has none: m, cm, mm, in, ft")
+    ] = None,
+) -> None:
+    """Print a deck of a building from the plan of a drawing: walls by their faces or axes, doors and windows by gaps or a layer."""
+    from extrados.bridges.plan_drawing import deck_of_plan
+    from extrados.decks.reader import DeckError
+    from extrados.model.errors import BadGeometry
+    from extrados.model.files import LARGEST_FILE
+    from extrados.schema import files
+
+    try:
+        heights = [float(part) for part in storeys.split(",")]
+    except ValueError:
+        raise typer.BadParameter(f"{storeys}: expected heights such as 3.0,2.8", param_hint="--storeys") from None
+    if not all(0.5 < height < 20.0 for height in heights) or len(heights) > 50:
+        raise typer.BadParameter(f"{storeys}: expected heights between 0.5 and 20 m", param_hint="--storeys")
+    if thickness is not None and not 0.0 < thickness < 5.0:
+        raise typer.BadParameter(f"{thickness:g}: expected metres above 0 and below 5", param_hint="--thickness")
+    with errors():
+        try:
+            print(
+                deck_of_plan(files.read(drawing, LARGEST_FILE), walls, openings or [], thickness, heights, unit), end=""
+            )
+        except BadGeometry as error:
+            raise DeckError([str(error)]) from None

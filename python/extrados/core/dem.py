@@ -7,7 +7,7 @@ import numpy as np
 
 from extrados import _core
 from extrados.core.calls import indices, integers, real
-from extrados.core.dem_run import STILL, BodyModel, FoundRun, Law, RunOptions
+from extrados.core.dem_run import STILL, BodyModel, FoundRun, Law, RunOptions, Ties
 from extrados.core.errors import check
 from extrados.core.ground import Ground, as_motion_set
 from extrados.schema.constants import GRAVITY
@@ -32,6 +32,7 @@ class Bodies:
     depth: float
     laws: list[Law]
     joints: dict[tuple[int, int], int] = field(default_factory=dict)
+    ties: Ties | None = None
 
 
 @dataclass(frozen=True)
@@ -122,6 +123,7 @@ class Model(BodyModel[Run]):
                     real("rate", np.transpose(nothing if rate is None else rate), (3, n)),
                 )
                 check(status, "initial displacements")
+            self._put_ties(bodies.ties, lambda place, body: place[:, :2] - bodies.centroid[body])
             self._put_moves(moves)
             self._put_surroundings()
             self._put_options(settle=shift is None and rate is None)

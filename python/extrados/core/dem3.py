@@ -6,7 +6,7 @@ import numpy as np
 
 from extrados import _core
 from extrados.core.calls import indices, integers, real
-from extrados.core.dem_run import STILL, BodyModel, FoundRun, Law, RunOptions
+from extrados.core.dem_run import STILL, BodyModel, FoundRun, Law, RunOptions, Ties
 from extrados.core.errors import check
 from extrados.core.ground import Ground, as_motion_set
 from extrados.schema.constants import GRAVITY
@@ -52,6 +52,7 @@ class Solids:
     laws: list[Law]
     joints: dict[tuple[int, int], int] = field(default_factory=dict)
     dowels: Dowels | None = None
+    ties: Ties | None = None
 
 
 @dataclass(frozen=True)
@@ -131,6 +132,9 @@ class Model(BodyModel[Run]):
             status = _core.api_dem3.joints(self.handle, np.asfortranarray(joints + 1, dtype=np.int32))
             check(status, "joints")
             self._put_dowels(solids.dowels)
+            self._put_ties(
+                solids.ties, lambda place, body: np.einsum("ni,nij->nj", place - solids.centroid[body], axes[body])
+            )
             status = _core.api_dem3.surroundings(
                 self.handle, real("gravity", options.gravity, (3,)), real("way", options.way, (3,)), float(options.domain),
                 real("rate", np.transpose(np.zeros((n, 6)) if rate is None else rate), (6, n)),

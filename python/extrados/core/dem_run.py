@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from extrados import _core
 from extrados.core import lists
-from extrados.core.calls import interruptible, long_call, real, room_for, thread_count
+from extrados.core.calls import integers, interruptible, long_call, real, room_for, thread_count
 from extrados.core.errors import check, status_code
 from extrados.core.ground import Ground, MotionSet
 from extrados.core.handles import Owner
@@ -99,6 +99,40 @@ class Effort:
         )  # fmt: skip
 
 
+@dataclass(frozen=True)
+class Ties:
+    """Ties, chains and hoops (ties): one tension each along a line of points that the bodies carry (fortran/dem/ties.f90).
+
+    stiffness: force per change of length [N/m]; prestress, least and greatest tension [N]: least below 0 for compression,
+    a bound of 0 is slackness, at another one it yields, infinite never. first: its first point; closed: the last
+    point is joined to the first. Anchors (anchors): point, body, -1 for the ground, place (anchors, 2 or 3) as drawn [m];
+    anchors of one point share its force in equal parts.
+    """
+
+    stiffness: np.ndarray
+    prestress: np.ndarray
+    least: np.ndarray
+    most: np.ndarray
+    first: np.ndarray
+    closed: np.ndarray
+    body: np.ndarray
+    point: np.ndarray
+    place: np.ndarray
+
+    def lengths(self) -> np.ndarray:
+        """Length of each as drawn (ties) [m]."""
+        points = np.zeros((int(self.point.max()) + 1, self.place.shape[1]))
+        np.add.at(points, self.point, self.place)
+        points /= np.bincount(self.point)[:, None]
+        found = []
+        for first, end, closed in zip(self.first, [*self.first[1:], len(points)], self.closed, strict=True):
+            line = points[first:end]
+            found.append(
+                np.linalg.norm(np.diff(np.concatenate([line, line[:1]]) if closed else line, axis=0), axis=1).sum()
+            )
+        return np.array(found)
+
+
 #: Before any run, and of springs
 NO_EFFORT = Effort(0, 0, 0, 0, 0.0, 0.0)
 
@@ -109,7 +143,8 @@ class FoundRun:
 
     time (t) [s]; place (t, n, 3): x, y [m] and rotation [rad] relative to the ground, or in space the centroids [m]; rate
     (t, n, 3 or 6); energy: see ENERGIES, each (t) [J]; settled (n, 3): place after settling; residual: greatest energy from
-    nowhere over the energy that went round; bounces and airborne time [s] of each body; effort: of rigid contacts.
+    nowhere over the energy that went round; bounces and airborne time [s] of each body; tension (t, ties) [N]; effort: of rigid
+    contacts.
     """
 
     reason: str
@@ -129,6 +164,7 @@ class FoundRun:
     residual: float
     bounces: np.ndarray
     airborne: np.ndarray
+    tension: np.ndarray
     effort: Effort
     interrupted: bool = False
 
@@ -146,6 +182,37 @@ class BodyModel(Owner, ABC, Generic[Found]):
     in_space: ClassVar[bool] = False
     count: int
     options: RunOptions
+    _ties: int = 0
+
+    def _put_ties(self, ties: Ties | None, place: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> None:
+        """Ties; place: the places (anchors, 2 or 3) of anchors in the frames of their bodies (anchors), of none in the ground."""
+        if ties is None:
+            return
+        n, anchors = len(ties.stiffness), len(ties.body)
+        real("places of ties", ties.place, (anchors, None))
+        bodies = integers("bodies of ties", np.asarray(ties.body) + 1, anchors)
+        if np.any(bodies < 0) or np.any(bodies > self.count):
+            raise IndexError(f"a tie names a body that is not there; there are {self.count}")
+        on = np.flatnonzero(ties.body >= 0)
+        own = np.zeros((anchors, 3))
+        own[:, : ties.place.shape[1]] = ties.place
+        local = place(ties.place[on], ties.body[on])
+        own[on, : local.shape[1]] = local
+        most = np.finfo(float).max
+        values = [
+            ties.stiffness,
+            ties.lengths(),
+            ties.prestress,
+            np.maximum(ties.least, -most),
+            np.minimum(ties.most, most),
+        ]
+        status = _core.api_dem_run.ties(
+            self.handle, self.count, real("ties", np.array(values), (5, n)), integers("points", np.append(ties.first, ties.point.max() + 1) + 1),
+            integers("closed", np.asarray(ties.closed, dtype=np.int32), n), bodies, integers("points", ties.point + 1, anchors),
+            real("places of ties", own.T, (3, anchors)),
+        )  # fmt: skip
+        check(status, "ties: stiffness above 0, prestress between the least and the greatest tension")
+        self._ties = n
 
     def _put_laws(self, laws: Sequence[Law]) -> None:
         status = _core.api_dem_run.laws(
@@ -263,13 +330,15 @@ class BodyModel(Owner, ABC, Generic[Found]):
         when, place, rate, energy, status = _core.api_dem_run.history(self.handle, self.count, self.rates, points)
         check(status, "history of the run")
         least_step, critical_step, stop_time, residual = (float(value) for value in measures)
+        tension, status = _core.api_dem_run.tensions(self.handle, self._ties, points)
+        check(status, "tensions of the ties")
         took, measures, status = _core.api_dem_run.effort(self.handle)
         check(status, "effort of the run")
         return {
             "reason": REASONS[reason], "blamed": [k - 1 for k in (first, second) if k > 0], "time": when, "place": place.T,
             "rate": rate.T, "energy": dict(zip(ENERGIES, energy, strict=True)), "stop_time": stop_time, "steps": steps,
             "settling_steps": settling, "searches": searches, "most_pairs": pairs, "step": least_step,
-            "critical_step": critical_step, "residual": residual, "interrupted": interrupted,
+            "critical_step": critical_step, "residual": residual, "interrupted": interrupted, "tension": tension.T,
             "effort": Effort(*(int(n) for n in took), *(float(value) for value in measures)),
         }  # fmt: skip
 

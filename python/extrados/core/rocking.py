@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -35,7 +35,9 @@ __all__ = [
 ]  # fmt: skip
 
 #: Outcomes by their number, from 0; events by theirs.
-OUTCOMES = tuple(lists.words("rocking_outcome").values())
+#: End of a motion, and its words in the order of the core
+Outcome = Literal["no-hinging", "recovery", "collapse"]
+OUTCOMES = cast(tuple[Outcome, ...], tuple(lists.words("rocking_outcome").values()))
 #: Outcome of a run that failed or was not run
 FAILED = -1
 EVENTS = lists.words("rocking_event")
@@ -183,7 +185,7 @@ class Response:
     and greatest of them at any time, and the path that stays (restraints) [N, m; of turns N m, rad].
     """
 
-    outcome: str
+    outcome: Outcome
     half_cycles: int
     impacts: int
     peak: float

@@ -35,6 +35,9 @@ from extrados.core.sla_parts import (
     Softening,
     Springs,
     Stop,
+)
+from extrados.core.sla_parts import (
+    Group as Group,
 )  # fmt: skip
 
 __all__ = [

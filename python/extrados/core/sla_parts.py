@@ -296,6 +296,10 @@ class Springs:
     stiffness: np.ndarray
 
 
+#: A group of elements of one sort
+Group = Plane | Bars | Joints | Springs
+
+
 @dataclass(frozen=True)
 class Behaviour:
     """Of cracked material: `cracking` orthotropic (fixed), rotating or isotropic; shear `retention` constant, None for thesis Eq. 4.11; `closure`

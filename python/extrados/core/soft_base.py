@@ -10,7 +10,7 @@ from extrados.core import lists
 from extrados.core.calls import long_call, real, room_for
 from extrados.core.errors import check, status_code
 from extrados.core.ground import Ground, MotionSet
-from extrados.core.rocking import EVENTS, OUTCOMES, Body
+from extrados.core.rocking import EVENTS, OUTCOMES, Body, Outcome
 
 
 @dataclass(frozen=True)
@@ -81,7 +81,7 @@ class SoftBaseResponse:
     end: rotation, sinking and their rates; landings of the left and the right edge; half_cycles: see soft_base_body; events: (kind, time [s], edge), -1 left,
     1 right."""
 
-    outcome: str
+    outcome: Outcome
     landings: tuple[int, int]
     half_cycles: int
     peak: tuple[float, float]

@@ -9,7 +9,7 @@ from extrados import _core
 from extrados.core.calls import long_call, real, room_for
 from extrados.core.errors import check, status_code
 from extrados.core.ground import Ground, MotionSet
-from extrados.core.rocking import EVENTS, OUTCOMES
+from extrados.core.rocking import EVENTS, OUTCOMES, Outcome
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class StackResponse:
     events: (kind, time [s], contact), 1 on the ground, 2 between.
     """
 
-    outcome: str
+    outcome: Outcome
     impacts: tuple[int, int]
     peak: tuple[float, float]
     stop_time: float

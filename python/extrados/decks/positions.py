@@ -3,6 +3,8 @@
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import zip_longest
+from typing import Any
 
 _HEADER = re.compile(r"^\s*(\[\[?)\s*([^\]]*[^\]\s])\s*\]\]?")
 _KEY = re.compile(r"""^\s*((?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*')(?:\s*\.\s*(?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*'))*)\s*=""")
@@ -84,6 +86,8 @@ class Positions:
 
     name: str = "deck"
     lines: Mapping[Path, int] = field(default_factory=lambda: {(): 0})
+    #: What the keys hold, for the names of the tables of a list
+    data: Any = None
 
     def line(self, path: Path) -> int:
         """Line of a key, or of the nearest table around it; 0 without a text."""
@@ -96,4 +100,23 @@ class Positions:
         named, colon, rest = what.partition(": ")
         if colon and f".{named}." in f".{shown}.":  # the words name the key themselves
             what = rest
+        what += self.entry(path, what)
         return f"{self.name}:{f'{line}:' if line else ''} {f'{shown}: ' if shown else ''}{what}"
+
+    def entry(self, path: Path, what: str) -> str:
+        """Of a key within a list of tables that have names: name and number of the table, where the words do not have the name."""
+        found, value, named = [], self.data, False
+        for part, after in zip_longest(path, path[1:]):
+            try:
+                value = value[part]
+            except (KeyError, IndexError, TypeError):
+                break
+            if isinstance(part, str) and isinstance(after, int) and isinstance(value, list) and after < len(value):
+                one = value[after]
+                name = one.get("name") if isinstance(one, dict) else None
+                if isinstance(name, str) and f"'{name}'" not in what:
+                    found.append(f"{part} '{name[:40]}'")
+                    named = True
+                elif named:
+                    found.append(f"{part} {after + 1}")
+        return f" ({', '.join(found)})" if found else ""

@@ -22,6 +22,7 @@ from extrados.decks.positions import Path as Key
 from extrados.decks.positions import Positions, key_lines
 from extrados.decks.toml import loads
 from extrados.decks.words import LANGUAGES, WORDS
+from extrados.model.errors import WHOLE, NoView
 from extrados.model.properties import Initial, Joints, Material, Supports
 from extrados.model.structure import Structure
 from extrados.schema import files
@@ -83,6 +84,12 @@ class Deck:
     def structure(self) -> Structure | None:
         """The geometry; None in a deck without [structure]."""
         return self.building.structure
+
+    def require_motion(self) -> Motion:
+        """The table of [motion]; NoView in a deck without it."""
+        if self.motion is None:
+            raise NoView("the deck has no [motion]", WHOLE)
+        return self.motion
 
     @property
     def identity(self) -> str:
@@ -166,12 +173,14 @@ def read_text(raw: bytes, name: str = "deck.toml", folder: Path | None = None) -
         raise DeckError([f"{name}:{line}: {what}"]) from None
     except ValueError as error:  # too deep, or integers of more digits than Python converts
         raise DeckError([f"{name}: {error}"]) from None
-    return _Checker(Positions(name, key_lines(text))).deck(data, folder or Path.cwd(), hashlib.sha256(raw).hexdigest())
+    return _Checker(Positions(name, key_lines(text), data)).deck(
+        data, folder or Path.cwd(), hashlib.sha256(raw).hexdigest()
+    )
 
 
 def make_deck(data: dict[str, Any], folder: Path | None = None) -> Deck:
     """A deck from Python dictionaries, checked like a file."""
-    return _Checker(Positions()).deck(data, folder or Path.cwd(), "")
+    return _Checker(Positions(data=data)).deck(data, folder or Path.cwd(), "")
 
 
 def check_table(model: type[Table], section: str, data: dict[str, Any], name: str) -> Any:

@@ -46,7 +46,7 @@ def seen(building: Building, mesh: Any = None) -> Drawn | None:
 def of_solids(assembly: SolidAssembly) -> Drawn:
     """Blocks in space: `vertex` (nv, 3) [m], `face` numbers of vertices one face after the other, `face_start`,
     `face_body` whose they are, `body_centre` (nb, 3) [m]."""
-    found = {name: array.data for name, array in scene_arrays(assembly).items()}
+    found = {name: array.numbers for name, array in scene_arrays(assembly).items()}
     vertex = found["solid_vertex"]
     words = {
         "sort": "space", "of": "solids", "blocks": len(assembly.mass), "joints": len(assembly.a), "measures": assembly.measures,

@@ -26,6 +26,8 @@ ASKED = {
     "hello",
     "open",
     "blocks",
+    "sheet",
+    "draw",
     "analysis",
     "drag",
     "set",

@@ -75,9 +75,9 @@ def _item(value: Any) -> Any:
     if isinstance(value, list) and value and isinstance(value[0], dict):
         made = tomlkit.array()
         for row in value:
-            table = tomlkit.inline_table()
-            table.update({k: _item(v) for k, v in row.items()})
-            made.append(table)
+            line = tomlkit.inline_table()
+            line.update({k: _item(v) for k, v in row.items()})
+            made.append(line)
         return made
     if isinstance(value, dict):
         table = tomlkit.table()

@@ -24,6 +24,8 @@ from extrados.schema.places import CASES
 DEEP, MOST, MOST_FOLDERS = 4, 500, 2000
 #: Bytes of a run that a page is shown
 LARGEST_RUN = 400_000_000
+#: Bytes and number of the figures of an analysis that a page is shown
+LARGEST_FIGURES, MOST_FIGURES = 12_000_000, 60
 WAITS = 10.0  # s: a run ends so long after its last line
 SKIPPED = {"node_modules", "__pycache__", "build", "dist"}
 PLACE = re.compile(r"(?:[\w][\w .+-]{0,100}/){0,6}[\w][\w .+-]{0,100}")
@@ -161,12 +163,30 @@ class Folder:
             raise StoreError(f"{path}: holds {size / 1e6:.0f} MB, more than a page is shown ({LARGEST_RUN / 1e6:g} MB)")
         return read(target)
 
+    def figures(self, path: str, name: str) -> list[tuple[str, str]]:
+        """The figures of an analysis as the report of a stored run has them: name and SVG text."""
+        target, names = self.inside(path), [row["name"] for row in self.run(path).analyses]
+        if name not in names:
+            raise NotThere(f"the run has no analysis {name[:60]!r}")
+        longer = tuple(f"{other}-" for other in names if other.startswith(f"{name}-"))
+        found, left = [], LARGEST_FIGURES
+        for place in sorted(target.glob(f"figures/{name}-*.svg"))[:MOST_FIGURES]:
+            if place.name.startswith(longer):
+                continue
+            try:
+                text = files.read(place.relative_to(self.root).as_posix(), left, self.root).content.decode("utf-8")
+            except (files.BadFile, UnicodeDecodeError) as error:
+                raise NotThere(f"{place.name}: {error}") from None
+            left -= len(text)
+            found.append((place.stem.removeprefix(f"{name}-"), text))
+        return found
+
     def compute(self, deck: str) -> Iterator[tuple[str, bool]]:
-        """Run a deck of the folder by the command line, without figures; lines as they come, empty ones meanwhile; at
+        """Run a deck of the folder by the command line; lines as they come, empty ones meanwhile; at
         the end ("", True). What is left of it is ended when nobody listens any more."""
         target = self.inside(deck)
         child = subprocess.Popen(
-            python_command("extrados", "run", str(target.relative_to(self.root)), "--no-figures"), cwd=self.root, env=environment(),
+            python_command("extrados", "run", str(target.relative_to(self.root))), cwd=self.root, env=environment(),
             stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace",
         )  # fmt: skip
         lines: queue.Queue[str | None] = queue.Queue()
@@ -188,6 +208,7 @@ class Folder:
                 if line is None:
                     break
                 yield line, False
+            code: int | str
             try:
                 code = child.wait(WAITS)
             except subprocess.TimeoutExpired:

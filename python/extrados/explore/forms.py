@@ -4,6 +4,7 @@ from typing import Any
 
 from extrados.decks.reader import Deck
 from extrados.schema.keys import branches_of, properties_of
+from extrados.schema.table import Table
 
 #: Sections of the form, those of the building first
 SECTIONS = ("structure", "motion", "joints", "material", "supports", "initial")
@@ -11,7 +12,7 @@ SECTIONS = ("structure", "motion", "joints", "material", "supports", "initial")
 
 def forms_of(deck: Deck) -> list[dict[str, Any]]:
     """Keys of a deck with single values: section, key, value as it stands or its default, unit, choices, meaning."""
-    tables = {"structure": deck.structure, "motion": deck.motion} | {
+    tables: dict[str, Table | None] = {"structure": deck.structure, "motion": deck.motion} | {
         name: getattr(deck.building, name) for name in SECTIONS[2:]
     }
     found = []

@@ -6,16 +6,22 @@ Places are those of the building's own coordinates [m]. `values` of a place are 
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from extrados import kinds
+from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import GROUND, Assembly
+from extrados.model.geometry.polygons import inside
 from extrados.model.structure import Structure
+from extrados.model.ties import Tie
 
 #: More vertices than these are not for hands
 MOST_VERTICES = 400
+#: Ties with handles
+MOST_TIES = 8
 #: Openings of a wall whose edges have handles
 MOST_OPENINGS = 6
 Changes = dict[str, Any]
@@ -49,7 +55,7 @@ class KindHandles:
     """The handles of a kind of structure: their maker (table, blocks), and the place that stays when the sizes change
     (table, blocks) [m]; None for the origin."""
 
-    make: Callable[[Any, Assembly], Iterator[Handle]]
+    make: Callable[[Any, Any], Iterator[Handle]]
     anchor: Callable[[Any, Assembly], np.ndarray] | None = None
 
 
@@ -275,16 +281,26 @@ def _brickwork(s: Any, _: Assembly) -> Iterator[Handle]:
     yield from _openings(s.openings)
 
 
+def _width_about(middle: float, x: float, y: float) -> float:
+    """Width of what is symmetric about `middle` and ends at x."""
+    return 2.0 * (x - middle)
+
+
+def _height_above(low: float, x: float, y: float) -> float:
+    """Height of what begins at `low` and ends at y."""
+    return y - low
+
+
 def _stack(s: Any, assembly: Assembly) -> Iterator[Handle]:
     """Two blocks: of each its right side and its head."""
     for name, outline in zip(("lower", "upper"), assembly.outlines, strict=True):
         (x0, y0), (x1, y1) = outline.min(axis=0).tolist(), outline.max(axis=0).tolist()
         middle = 0.5 * (x0 + x1)
         yield _length(
-            f"{name}_width", f"Width of the {name} block", x1, 0.5 * (y0 + y1), x1 - x0, lambda x, y, m=middle: 2.0 * (x - m)
+            f"{name}_width", f"Width of the {name} block", x1, 0.5 * (y0 + y1), x1 - x0, partial(_width_about, middle)
         )  # fmt: skip
         yield _length(
-            f"{name}_height", f"Height of the {name} block", middle, y1, y1 - y0, lambda x, y, low=y0: y - low, "y"
+            f"{name}_height", f"Height of the {name} block", middle, y1, y1 - y0, partial(_height_above, y0), "y"
         )
 
 
@@ -420,13 +436,82 @@ def load_handles(loads: list[Any], name: str, surfaces: list[tuple[float, float]
                 made[f"{key}.x_end"] = value + load.x_end - load.x
             return made
 
+        def force_at(px: float, py: float, y: float = y) -> float:
+            return max((py - y) / scale, 0.0)
+
+        def force_change(value: Any, key: str = key) -> Changes:
+            return {f"{key}.force": value}
+
         yield Handle(
             f"load-{i}-x", f"Place of load{number}", "m", x, y, load.x, lambda px, py: px, place, "x", least=-math.inf
         )
         yield Handle(
             f"load-{i}-force", f"Weight of load{number}", "N", x, y + scale * load.force, load.force,
-            lambda px, py, y=y: max((py - y) / scale, 0.0), lambda value, key=key: {f"{key}.force": value}, "y",
+            force_at, force_change, "y",
         )  # fmt: skip
+
+
+def tie_handles(ties: list[Tie], assembly: Assembly) -> Iterator[Handle]:
+    """Handles of straight ties: the height of the whole tie, and each anchorage. An anchorage in a block stays in blocks; a
+    block that the deck names follows it."""
+    for i, tie in enumerate(ties[:MOST_TIES]):
+        if len(tie.start) != 2 or tie.via or tie.hoop:
+            continue
+        name, far = tie.name or f"tie {i + 1}", "end" if tie.ground is None else "ground"
+        (x0, y0), (x1, y1) = tie.start, tie.far
+
+        def moved(start: list[float], end: list[float], i: int = i, tie: Tie = tie, far: str = far) -> Changes:
+            made: Changes = {}
+            for which, place, before, stone in (
+                ("start", start, tie.start, "start_stone"),
+                (far, end, tie.far, "end_stone"),
+            ):
+                if place == before:
+                    continue
+                made[f"ties.{i}.{which}"] = place
+                if which != "ground" and (found := _anchorage(assembly, place, getattr(tie, stone))) is not None:
+                    made[f"ties.{i}.{stone}"] = found
+            return made or {f"ties.{i}.start": start}
+
+        def level(
+            value: float, a: float = y0, b: float = y1, xs: tuple[float, float] = (x0, x1), put: Any = moved
+        ) -> Changes:
+            rise = value - 0.5 * (a + b)
+            return put([xs[0], a + rise], [xs[1], b + rise])
+
+        middle = 0.5 * (y0 + y1)
+        yield Handle(
+            f"tie-{i}-level",
+            f"Height of {name}",
+            "m",
+            0.5 * (x0 + x1),
+            middle,
+            middle,
+            lambda x, y: y,
+            level,
+            "y",
+            least=-math.inf,
+        )
+        for which, place in (("start", tie.start), ("end", tie.far)):
+
+            def led(value: Any, which: str = which, tie: Tie = tie, put: Any = moved) -> Changes:
+                point = [float(v) for v in value]
+                return put(point, tie.far) if which == "start" else put(tie.start, point)
+
+            yield Handle(
+                f"tie-{i}-{which}", f"{which.capitalize()} of {name}", "m", *place, list(place), lambda x, y: [x, y], led, "both",
+                least=-math.inf,
+            )  # fmt: skip
+
+
+def _anchorage(assembly: Assembly, place: list[float], given: str | None) -> str | None:
+    """The block to be named at an anchorage, None if none has to be; BadGeometry outside of all blocks."""
+    point = np.array([place])
+    there = [k for k, outline in enumerate(assembly.outlines) if inside(outline, point)[0]]
+    if not there:
+        raise BadGeometry("the anchorage of a tie lies in a block")
+    names = [assembly.block_names[k] for k in there]
+    return None if given is None or given in names else names[0]
 
 
 def rounded(value: float, size: float) -> float:

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -105,7 +105,7 @@ def _in_two(
     if result.status != "ok":
         raise Refused(result.reason)
     r: Any = result.results
-    get = {name: array.data for name, array in result.arrays.items()}
+    get = {name: array.numbers for name, array in result.arrays.items()}
     time = get["time"]
     moving = np.flatnonzero(np.abs(get["rotation"]) > 1e-3 * np.abs(get["rotation"]).max(initial=0.0))
     end = float(time[-1]) if len(time) else 1.0
@@ -205,5 +205,5 @@ def domain_options(kind: str | None, asked: FailureDomain | None, uplift: float)
     """The map that is drawn: the deck's, else 40 by 40 cells of the motion's sort of pulse, high enough to show it fall."""
     if asked is not None:
         return asked
-    pulse = "sine" if kind == "sine-pulse" else "step"
+    pulse: Literal["sine", "step"] = "sine" if kind == "sine-pulse" else "step"
     return FailureDomain(kind="failure-domain", pulse=pulse, max_amplitude=f"{max(1.5, 6.0 * uplift):.4g} g")

@@ -103,7 +103,7 @@ def _next(work: Iterator[Reply]) -> bytes | None:
     return None if reply is None else reply.pack()
 
 
-def _end(works: list[Iterator[Reply]], session: Session) -> None:
+def _end(works: list[Generator[Reply]], session: Session) -> None:
     """Close what a page has asked for, and its session also where that fails."""
     with contextlib.ExitStack() as stack:
         for close in (session.close, *(work.close for work in works)):  # the session last
@@ -173,7 +173,7 @@ async def _read(page: WebSocket, inbox: Inbox) -> None:
         if words is None:
             await page.close(1003, "expected a JSON object with a word 'do'")
             return
-        if not (messages.take() and volume.take(len(text))) or len(inbox.waiting) > MOST_WAITING:
+        if not (messages.take() and volume.take(len(text or ""))) or len(inbox.waiting) > MOST_WAITING:
             await page.close(1008, "too many messages")
             return
         inbox.put(words)
@@ -338,13 +338,14 @@ def _http_protocol(most_idle: int) -> type[asyncio.Protocol]:
     idle: dict[Any, asyncio.TimerHandle] = {}  # the oldest first
 
     class Protocol(H11Protocol):
-        def connection_made(self, transport: asyncio.Transport) -> None:
+        def connection_made(self, transport: asyncio.BaseTransport) -> None:
             super().connection_made(transport)
             self._note_idle()
 
         def data_received(self, data: bytes) -> None:
             super().data_received(data)
-            if self.conn.their_state in (h11.IDLE, h11.SEND_BODY):
+            # an upgraded connection has another protocol by now, and h11 never sees the end of its request
+            if self.transport.get_protocol() is self and self.conn.their_state in (h11.IDLE, h11.SEND_BODY):
                 self._note_idle()
             else:
                 self._note_whole()

@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable, Iterator
 
 from extrados.decks.reader import DeckError
-from extrados.explore.answers import changes, decks, motion, needed, results, standalone, views
+from extrados.explore.answers import changes, decks, motion, needed, results, sheet, standalone, views
 from extrados.explore.desk import Desk
 from extrados.explore.frames import Reply
 from extrados.explore.messages import TOLD, BadMessage, Message
@@ -16,7 +16,7 @@ ANSWERS: dict[str, Callable[[Desk, Message], Iterator[Reply]]] = {
     "hello": decks.hello, "list": decks.list_folder, "open": decks.open_deck, "drop": decks.drop, "blocks": decks.blocks,
     "analysis": decks.analysis, "save": decks.save, "drag": changes.drag, "set": changes.set_keys, "rest": changes.rest,
     "show": views.show, "push": views.push, "fall": views.fall, "standalone": standalone.standalone, "rocking": motion.response, "impulse": motion.impulse, "domain": motion.domain,
-    "run": results.stored_run, "compute": results.compute, "needed": needed.needed,
+    "run": results.stored_run, "compute": results.compute, "figures": results.figures, "needed": needed.needed, "sheet": sheet.sheet, "draw": sheet.draw,
 }  # fmt: skip
 
 

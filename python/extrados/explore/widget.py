@@ -63,7 +63,7 @@ class Page(anywidget.AnyWidget):
     """The page; `deck` is the text of its deck, `session` what answers it."""
 
     _esm = LOADER
-    modules = traitlets.List().tag(sync=True)
+    modules: traitlets.List[Any] = traitlets.List().tag(sync=True)
     look = traitlets.Unicode().tag(sync=True)
     height = traitlets.Int(680).tag(sync=True)
 

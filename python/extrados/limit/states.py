@@ -1,6 +1,7 @@
 """What limit analysis says of an assembly: admissible states and collapse mechanisms."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -8,6 +9,8 @@ from extrados.limit.loads import Loads
 from extrados.limit.systems import Constraints
 from extrados.model.geometry.assembly import Assembly
 
+#: Side of a joint on which the blocks touch
+Side = Literal["intrados", "extrados"]
 # A joint whose motion at one end is this much smaller than at the other turns about the former.
 HINGE = 1e-4
 # Of the work of the dead loads: less of the load is none.
@@ -70,7 +73,7 @@ class Mechanism:
     """
 
     velocity: np.ndarray
-    hinges: list[tuple[int, str]]
+    hinges: list[tuple[int, Side]]
     sliding: list[int]
     opening_p: np.ndarray
     opening_q: np.ndarray
@@ -127,7 +130,7 @@ def read_mechanism(
     moves = np.maximum(speed_p, speed_q) > at_rest * fastest
     # A negative opening is crushing: the joint turns about a place inside it.
     turns = (np.minimum(speed_p, speed_q) < HINGE * np.maximum(speed_p, speed_q)) | (opening_p * opening_q < 0.0)
-    hinges = [
+    hinges: list[tuple[int, Side]] = [
         (j, "intrados" if abs(opening_p[j]) < abs(opening_q[j]) else "extrados")
         for j in np.flatnonzero(moves & turns).tolist()
     ]

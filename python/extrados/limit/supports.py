@@ -11,13 +11,14 @@ import numpy as np
 
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
 from extrados.limit.solver import MADE_UP
+from extrados.limit.states import Side
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.schema.constants import GRAVITY
 
 ROOM = 1e-9  # of a joint's length: how far outside the line may lie by rounding
 CLOSE = 1e-9  # of the size of the arch: how closely the fall is found
 
-Hinges = tuple[tuple[int, str], ...]
+Hinges = tuple[tuple[int, Side], ...]
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ class _Chain:
             raise NoEquilibrium("the blocks are wedged, and would have to be crushed")
         motion = rows.openings(np.maximum(solution.rows, 0.0), len(a.a))[self.joints]
         active = np.flatnonzero(np.abs(motion).max(axis=1) > 1e-9 * np.abs(motion).max())
-        hinges = tuple((int(k), "intrados" if motion[k, 0] < motion[k, 1] else "extrados") for k in active)
+        hinges: Hinges = tuple((int(k), "intrados" if motion[k, 0] < motion[k, 1] else "extrados") for k in active)
         if len(hinges) != 3:
             raise NoEquilibrium(f"the first movement opens {len(hinges)} hinges, not three")
         return hinges
@@ -143,7 +144,7 @@ class _Chain:
             worst = int(over.argmax())
             if over[worst] <= ROOM:
                 return state
-            side = "intrados" if state.position[worst] < 0.0 else "extrados"
+            side: Side = "intrados" if state.position[worst] < 0.0 else "extrados"
             nearest = min(
                 (i for i, h in enumerate(hinges) if h[1] == side), key=lambda i: abs(hinges[i][0] - worst), default=None
             )

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from extrados.model.geometry.assembly import GROUND, Assembly
-from extrados.model.geometry.chains import arch_of
+from extrados.model.geometry.chains import arch_of, carried_on
 
 
 @dataclass(frozen=True)
@@ -30,9 +30,13 @@ def dimensions(assembly: Assembly) -> list[Dimension]:
     vertices = np.concatenate(assembly.outlines)
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     found: list[Dimension] = []
-    spans = {name: arch for name, joints in assembly.chains.items() if (arch := arch_of(assembly, joints))}
-    for name, arch in spans.items():
-        found += _arch(assembly, "" if len(spans) == 1 else f" of {_with_article(name)}", arch)
+    spans: dict[str, tuple[Assembly, list[int]]] = {}
+    for name, joints in assembly.chains.items():
+        if arch_of(assembly, joints):
+            turned, whole = carried_on(assembly, joints)
+            spans[name] = turned, arch_of(turned, whole)
+    for name, (turned, arch) in spans.items():
+        found += _arch(turned, "" if len(spans) == 1 else f" of {_with_article(name)}", arch)
     arches = bool(found)
     for block in assembly.buttresses:
         found += [_foot(assembly, j, f"width of the {assembly.block_names[block]}") for j in assembly.joints_of(block)

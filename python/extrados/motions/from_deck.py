@@ -59,7 +59,7 @@ def _make_motion(model: Model, folder: Path) -> Motion:
     raise TypeError(f"no motion for {type(model).__name__}")
 
 
-def is_set(model: Model) -> bool:
+def is_set(model: Model | None) -> bool:
     """True where the deck's motion stands for many."""
     return isinstance(model, Sets)
 

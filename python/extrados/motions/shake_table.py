@@ -1,6 +1,7 @@
 """What a shake table can play (thesis Appendix C) and what drives it."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -100,9 +101,10 @@ class Fit:
         return max(self.stroke, self.flow, self.force) <= 1.0 + 1e-9
 
     @property
-    def governing(self) -> str:
+    def governing(self) -> Literal["stroke", "flow", "force"]:
         """The limit that is nearest or exceeded most."""
-        return max(("stroke", "flow", "force"), key=lambda name: getattr(self, name))
+        limits: tuple[Literal["stroke", "flow", "force"], ...] = ("stroke", "flow", "force")
+        return max(limits, key=lambda name: float(getattr(self, name)))
 
 
 def fit(table: Table, drive: Drive, mass: float, keep: str = "amplitude") -> Fit:

@@ -8,6 +8,8 @@ from extrados.results.verdict import Bound, Demand, KindResults, Outcome, Verdic
 
 Axis = Literal["acceleration", "pulse", "displacement", "probability", "check"]
 Overall = Literal["stands under all", "collapses under all", "cannot stand", "depends", "open"]
+#: Whether a strategy has a result
+RowStatus = Literal["ok", "refused", "failed", "left out"]
 Agreement = Literal["agree", "apart", "disagree", "open"]
 
 
@@ -31,7 +33,7 @@ class StrategyVerdict(ResultModel):
     strategy: str = fact("kind of analysis; `probability` is `fragility` with uncertain sizes or many motions")
     label: str = fact("its name in words")
     part: str | None = fact("name of the analysis of this run with its results; null without a result")
-    status: Literal["ok", "refused", "failed", "left out"] = fact("whether it has a result")
+    status: RowStatus = fact("whether it has a result")
     reason: str = fact("reason without a result; else empty")
     axis: Axis = fact("quantity that is compared")
     demand: float | None = fact("demand, in `unit`")

@@ -5,6 +5,8 @@ from typing import Any, Literal
 from extrados.results.fields import ResultModel, fact
 from extrados.schema.quantities import ENGINEERING, engineering
 
+#: Who set a property
+Origin = Literal["default", "deck", "analysis", "method"]
 #: The key that every answer which rests on it tells, whatever its value
 FRICTION = "joints.friction"
 NO_SLIDING = "no-sliding"
@@ -15,7 +17,7 @@ class Assumption(ResultModel):
 
     value: Any = fact("the value, in `unit`; null where the deck gives none and the analysis does without")
     unit: str = fact("unit of the value")
-    origin: Literal["default", "deck", "analysis", "method"] = fact(
+    origin: Origin = fact(
         "default, the deck's own table, an override in the table of the analysis, or the method, which has one value only",
         name="from",
     )

@@ -54,6 +54,17 @@ class Convergence(ResultModel):
     worst_violation_s: float = fact("when that was", "s")
 
 
+class TieRun(ResultModel):
+    """What a run asked of a tie."""
+
+    name: str = fact("its name")
+    peak_force_N: float = fact("force of the greatest magnitude, tension positive", "N")
+    end_force_N: float = fact("force at the end", "N")
+    state: Literal["slack", "elastic", "yielded"] = fact(
+        "without force all along, below its yield force, or at it once"
+    )
+
+
 class DemRun(KindResults):
     """dem: the blocks under a motion."""
 
@@ -101,6 +112,7 @@ class DemRun(KindResults):
     solver: Literal["compliant", "nonsmooth"] = fact(
         "springs at the joints, or rigid contacts; these have no stiffness"
     )
+    ties: list[TieRun] = maybe("forces of the ties over time; of bonded chains each segment")
     convergence: Convergence | None = maybe("of rigid contacts")
     joint_stiffness_min_Pa_per_m: float | None = fact("least normal stiffness of the joints", "Pa/m")
     joint_stiffness_max_Pa_per_m: float | None = fact("greatest normal stiffness of the joints", "Pa/m")
@@ -161,6 +173,7 @@ class DemTilt(KindResults):
     time_step_s: float = fact("time step", "s")
     steps: int = fact("time steps of the last run")
     solver: Literal["compliant", "nonsmooth"] = fact("springs at the joints, or rigid contacts")
+    ties: list[TieRun] = maybe("forces of the ties over time; of bonded chains each segment")
     convergence: Convergence | None = maybe("of rigid contacts, in the last runs of both senses")
     beta_s: float | None = fact("stiffness-proportional damping; null of rigid contacts", "s")
 
@@ -223,6 +236,7 @@ class SolidDemRun(KindResults):
     bounces: int = fact("times that blocks left the ground or each other")
     airborne_time_s: float = fact("longest time that a block was without contact", "s")
     solver: Literal["compliant", "nonsmooth"] = fact("springs at the contacts, or rigid ones; these have no stiffness")
+    ties: list[TieRun] = maybe("forces of the ties over time; of bonded chains each segment")
     convergence: Convergence | None = maybe("of rigid contacts")
     joint_stiffness_min_Pa_per_m: float | None = fact("least normal stiffness of the contacts", "Pa/m")
     joint_stiffness_max_Pa_per_m: float | None = fact("greatest normal stiffness of the contacts", "Pa/m")
@@ -267,6 +281,7 @@ class SolidDemTilt(KindResults):
     time_step_s: float = fact("time step", "s")
     steps: int = fact("time steps of the last run")
     solver: Literal["compliant", "nonsmooth"] = fact("springs at the contacts, or rigid ones")
+    ties: list[TieRun] = maybe("forces of the ties over time; of bonded chains each segment")
     convergence: Convergence | None = maybe("of rigid contacts, in the last runs of both senses")
     beta_s: float | None = fact("stiffness-proportional damping; null of rigid contacts", "s")
 

@@ -25,6 +25,15 @@ def maybe(about: str, unit: str = "", *, source: str = "") -> Any:
     return Field(None, description=about, json_schema_extra=_extra(unit, source))
 
 
+#: Keyword arguments of a model of results: the keys that are given
+Keys = dict[str, Any]
+
+
+def given(**keys: Any) -> Keys:
+    """The keys with a value, for the keys of a model that are given only where the question asks for them (`maybe`)."""
+    return {name: value for name, value in keys.items() if value is not None}
+
+
 def _extra(unit: str, source: str) -> dict[str, Any]:
     return {k: v for k, v in (("unit", unit), ("source", source)) if v}
 

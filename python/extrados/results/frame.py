@@ -31,6 +31,19 @@ class FrameModes(KindResults):
         return judge(text, None, None, "", "not-applicable")
 
 
+class Modes(KindResults):
+    """modes: vibration of plane blocks, all joints closed."""
+
+    modes: list[FrameMode] = fact("modes from the lowest frequency; y is vertical")
+    moving_mass_kg: float = fact("mass of blocks and fill", "kg")
+    blocks: int = fact("blocks")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """Modes are neither a demand nor a capacity."""
+        text = f"First natural frequency {self.modes[0].frequency_Hz:.3g} Hz. Modes alone decide no limit state."
+        return judge(text, None, None, "", "not-applicable")
+
+
 class PierLimits(ResultModel):
     """Control displacements at which the piers of a storey of a wall reach their strength, and their drift limit; null: never."""
 
@@ -121,6 +134,57 @@ class FramePushover(KindResults):
         if lost:
             text += f" {len(lost)} of {len(self.runs)} curves end before a drop of 20 %."
         return capacity_alone(text, self.base_shear_N, "N", "lower" if self.governing in lost else None)
+
+
+FrameLimitState = Literal["strength", "first-limit", "collapse"]
+
+
+class FrameLimitCurve(ResultModel):
+    """Fragility at a limit state: all piers of a storey of a wall at their strength (strength); the first pier beyond its drift limit
+    (first-limit); all piers of a storey of a wall beyond theirs, or no equilibrium (collapse; of pushovers also a loss of 20 % of
+    the base shear)."""
+
+    limit_state: FrameLimitState = fact("strength, first-limit or collapse")
+    exceeded: int = fact("runs that exceed it; of pushovers the motions as they are")
+    share: float = fact("of the runs that have a result")
+    share_interval: list[float] = fact("interval of that share (Wilson)")
+    median_g: float | None = fact("median of the lognormal curve; null: the runs determine none", "g")
+    dispersion: float | None = fact("its logarithmic standard deviation")
+    median_interval_g: list[float] | None = fact("interval of the median; null where unknown", "g")
+    probability: list[float | None] = maybe("share of the motions at each level")
+
+
+class FrameFragility(KindResults):
+    """frame-fragility: probability that a building exceeds its limit states, over motions and uncertain values."""
+
+    method: Literal["history", "pushover"] = fact("history, or pushover with N2")
+    intensity: str = fact("measure of the motions")
+    motions: int = fact("motions")
+    limit_states: list[FrameLimitCurve] = fact("curves, from the least severe limit state")
+    confidence: float = fact("of the intervals")
+    uncertain: list[str] = fact("names of the uncertain values")
+    histories: int = maybe("of histories: runs with a result")
+    buildings: int = maybe("of pushovers: buildings of the sample")
+    levels_g: list[float] = maybe("levels of the intensity", "g")
+    drift_16: list[float | None] = maybe(
+        "greatest drift of a pier that 16 % of the motions stay within, at each level; null: collapse"
+    )
+    drift_50: list[float | None] = maybe("the median of it")
+    drift_84: list[float | None] = maybe("that 84 % of the motions stay within")
+    confidence_factor: float = maybe("of the code, by the knowledge level")
+    design_intensity_g: float = maybe(
+        "intensity of the middle motion that the building with strengths over this factor carries at collapse", "g"
+    )
+    weaker_share: float = maybe("of the sampled buildings that carry less than that under the same motion")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """Probabilities, which decide no limit state without an accepted one."""
+        worst = self.limit_states[-1]
+        median = (
+            f"Median {self.intensity} at collapse {worst.median_g:.3g} g" if worst.median_g else "No curve of collapse"
+        )
+        text = f"{median}; {worst.exceeded} runs exceed collapse."
+        return judge(text, None, None, "", "not-applicable")
 
 
 class FrameHistory(KindResults):

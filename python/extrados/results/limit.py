@@ -8,6 +8,8 @@ from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.verdict import Bound, Demand, KindResults, Outcome, Verdict, judge, judge_acceleration
 
 Side = Literal["intrados", "extrados"]
+#: Ends of any joint, of arches by their sides
+OpenSide = Literal["intrados", "extrados", "first end", "second end"]
 
 
 class JointHinge(ResultModel):
@@ -405,7 +407,12 @@ class MovingLoad(KindResults):
     train: str = maybe("name of the train; load for axles that share a force, train for the axle loads of the deck")
     adequacy_factor: float = maybe("multiple of the factored train, or load, that causes collapse")
     live_load_factor: float = maybe("partial factor times dynamic factor by which the train is multiplied before")
-
+    permissible_factor: float = maybe(
+        "permissible limit state: multiple of the unfactored train, times its serviceability factor, up to which a thrust line "
+        "exists with stresses below the permissible one and the passive pressure of service"
+    )
+    permissible_place_m: float = maybe("x of the first axle at which that multiple is least", "m")
+    permissible_stress_Pa: float = maybe("permissible compressive stress under service loads", "Pa")
     characteristic: bool = maybe("whether all partial factors are 1.0: loads and strengths are characteristic")
     violated: list[str] = maybe("assumptions of a load on a bridge that the structure does not meet")
 
@@ -415,7 +422,14 @@ class MovingLoad(KindResults):
         bound: Bound | None = "upper" if self.dilating_joints else None
         more = f" Joints slide: {DILATANT}." if self.dilating_joints else ""
         judged = f"{more} {CHARACTERISTIC}" if self.characteristic else more
-        violated = self.violated or ()
+        violated = list(self.violated or ())
+        if self.permissible_factor is not None:
+            judged += f" Permissible limit state: {self.permissible_factor:.3g} times the train."
+            if self.permissible_factor < 1.0:
+                violated.append(
+                    f"The train exceeds the permissible limit state, {self.permissible_factor:.3g}: repeated traffic may damage the "
+                    "arch progressively. Limit the load or the traffic."
+                )
         if self.load_N is None and self.adequacy_factor is not None:
             factored = "" if self.characteristic else "factored "
             return judge(
@@ -446,7 +460,7 @@ class JointOpening(ResultModel):
     joint: int = fact("number of the joint")
     name: str = fact("its name")
     opening_mm: float = fact("how far its wider end opens", "mm")
-    side: Side | Literal["first end", "second end"] = fact("end that opens more: of arches intrados or extrados")
+    side: OpenSide = fact("end that opens more: of arches intrados or extrados")
     slip_mm: float = fact("how far it slides", "mm")
 
 

@@ -1,13 +1,13 @@
 """What an analysis returns."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from extrados.results.assumptions import Assumption
-from extrados.results.verdict import KindResults, Verdict
+from extrados.results.verdict import KindResults, Model, Verdict, as_model
 
 
 class Streamed:
@@ -53,6 +53,11 @@ class Array:
     about: str = ""
     series: str = ""
 
+    @property
+    def numbers(self) -> np.ndarray:
+        """The numbers, read whole where they lie on disk."""
+        return np.asarray(self.data)
+
     def __repr__(self) -> str:
         axes = ", ".join(f"{name} {size}" for name, size in zip(self.dims, self.data.shape, strict=False))
         return f"<Array ({axes}){f' [{self.unit}]' if self.unit else ''}>"
@@ -62,10 +67,10 @@ class Array:
 class TableData:
     """Columns of equal length with their units, written as NAME.csv."""
 
-    columns: dict[str, np.ndarray | list]
+    columns: Mapping[str, np.ndarray | list]
     units: dict[str, str] = field(default_factory=dict)
 
-    def pieces(self) -> Iterator[dict[str, np.ndarray | list]]:
+    def pieces(self) -> Iterator[Mapping[str, np.ndarray | list]]:
         """The columns, some rows after the other."""
         yield self.columns
 
@@ -113,6 +118,10 @@ class Result:
 
     def __repr__(self) -> str:
         return f"<Result of {self.kind}: {self.status}, {len(self.results.keys())} values, {len(self.arrays)} arrays>"
+
+    def of(self, model: type[Model]) -> Model:
+        """The results as a model of the kind; TypeError where the analysis gave others."""
+        return as_model(self.results, model)
 
     def __getitem__(self, name: str) -> Any:
         """A result by its name, or an array's data."""

@@ -24,7 +24,7 @@ from extrados.results import written
 from extrados.results.fields import plain
 from extrados.results.model import Array, Result, Streamed, TableData
 from extrados.results.typed import typed
-from extrados.results.verdict import KindResults
+from extrados.results.verdict import KindResults, Model, as_model
 from extrados.schema import files
 from extrados.schema.contained import Unreadable, read_contained
 from extrados.schema.text import printable
@@ -383,6 +383,10 @@ class Stored:
         if name not in self._typed:
             self._typed[name] = self._read(self.analysis(name))
         return self._typed[name]
+
+    def results_of(self, name: str, model: type[Model]) -> Model:
+        """The results of an analysis as a model of its kind; TypeError where it gave others."""
+        return as_model(self[name], model)
 
     def analysis(self, name: str) -> dict[str, Any]:
         """All that summary.json says of an analysis by its name: kind, status, reason, answer, verdict, assumptions, results.

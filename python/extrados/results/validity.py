@@ -152,6 +152,10 @@ Assess = Validity(
     "The reasons state how the models differ, not which model is right. No strategy is better than the geometry and the "
     "properties of the deck.",
 )
+Modes = Validity(
+    "Blocks are rigid; their elasticity and that of the joints lies in springs along the joints, which are all closed.",
+    "Frequencies are those of small vibration: joints that open lower them. Soil and neighbouring walls are rigid where they hold the blocks.",
+)
 FrameModes = Validity(
     "Piers and spandrels vibrate about the equilibrium under the weight. Walls have no stiffness out of their planes.",
     "Sections that are open under the weight stay open. Masses of walls out of their planes move with the corners, linearly between them.",
@@ -167,4 +171,10 @@ FrameHistory = Validity(
     "The frame of frame-pushover moves under one horizontal component. Sections unload elastically towards the origin and keep their "
     "crushing; sliding is plastic. Damping follows the stiffness of the last step.",
     "Vertical motion, failure of walls out of their planes and impacts of opened joints are not considered.",
+)
+FrameFragility = Validity(
+    "The frame of frame-history, or of frame-pushover with N2, under many motions. Uncertain values are lognormal and hold for the whole "
+    "building; limit states follow from the strengths and drift limits of piers.",
+    "The uncertainty of the model itself and the scatter from wall to wall are not included. Failure of walls out of their planes is not "
+    "considered. N2 gives the mean demand of oscillators, not that of each motion.",
 )

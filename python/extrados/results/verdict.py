@@ -1,7 +1,7 @@
 """The verdict of an analysis: one row by which strategies on one building are compared."""
 
 from collections.abc import Sequence
-from typing import ClassVar, Literal, Protocol
+from typing import ClassVar, Literal, Protocol, TypeVar
 
 from extrados.results.fields import ResultModel, fact
 
@@ -72,6 +72,23 @@ class KindResults(ResultModel):
     def judged(self, demand: Demand) -> Verdict | None:
         """Verdict of the results under the demand."""
         return None
+
+    def require_verdict(self, demand: Demand) -> Verdict:
+        """Verdict of the results under the demand; TypeError of a kind that concludes nothing."""
+        found = self.judged(demand)
+        if found is None:
+            raise TypeError(f"the results of {type(self).__name__} have no verdict")
+        return found
+
+
+Model = TypeVar("Model", bound=KindResults)
+
+
+def as_model(results: KindResults, model: type[Model]) -> Model:
+    """Results as a model of their kind; TypeError where they are of another."""
+    if not isinstance(results, model):
+        raise TypeError(f"the results are of {type(results).__name__}, not of {model.__name__}")
+    return results
 
 
 class SelfWeight(KindResults):

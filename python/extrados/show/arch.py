@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from extrados.results.rocking import Assessment, FailureDomain, Rocking
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 from extrados.show import film, style
@@ -13,7 +14,7 @@ from extrados.show.stones import Stones, moved, outlines
 
 def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """History of rotation, ground acceleration, energies and friction; shapes, of an arch with its thrust line."""
-    r = run[name]
+    r = run.results_of(name, Rocking)
     t = run.array(name, "time")
     found = [_draw_contacts(run, name, folder) if r.hand_over else _draw_history(run, name, folder)]
     if r.restraints:
@@ -25,11 +26,11 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     if moving.any() and run.array(name, "required_friction").shape[1] > 1:
         found.append(_draw_friction(run, name, folder, t, moving))
     times = run.arrays[name].get("snapshot_time")
-    if times is not None and len(times.data):
+    if times is not None and len(times.numbers):
         blocks, centroid = outlines(run, name), run.array(name, "centroid")
         poses = run.array(name, "snapshot_pose")
         lines = run.arrays[name].get("snapshot_thrust")
-        count = len(times.data)
+        count = len(times.numbers)
         columns = min(3, count)
         rows = -(-count // columns)
         wide, high = np.ptp(np.concatenate(blocks), axis=0)
@@ -40,10 +41,12 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ):
             for ax in axes[count:]:
                 ax.set_axis_off()
-            for k, (ax, when, pose) in enumerate(zip(axes, times.data, poses, strict=False)):
+            for k, (ax, when, pose) in enumerate(zip(axes, times.numbers, poses, strict=False)):
                 style.draw_blocks(ax, [moved(o, c, p) for o, c, p in zip(blocks, centroid, pose, strict=True)])
                 if lines is not None:
-                    ax.plot(*lines.data[k].T, color=style.THRUST, marker=".", markersize=3, scalex=False, scaley=False)
+                    ax.plot(
+                        *lines.numbers[k].T, color=style.THRUST, marker=".", markersize=3, scalex=False, scaley=False
+                    )
                 ax.set_title(f"{when:.3f} s")
                 style.section_axes(ax)
                 ax.label_outer()
@@ -62,7 +65,7 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
 
 def _draw_history(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     """Rotation, ground acceleration, energies and friction over time."""
-    r = run[name]
+    r = run.results_of(name, Rocking)
     t = run.array(name, "time")
     with style.figure(8.0, 7.0, rows=4, sharex=True, height_ratios=[1, 1.6, 1, 1]) as (fig, axes):
         ground, rotation, energy, friction = axes
@@ -129,7 +132,7 @@ def _turned_most(run: Stored, name: str) -> list[tuple[str, np.ndarray]]:
 
 def _draw_contacts(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     """Ground, rotations, energies and slip over time, of the mechanism and then of its blocks on rigid contacts."""
-    r, over = run[name], run[name].hand_over
+    r, over = run.results_of(name, Rocking), run.results_of(name, Rocking).hand_over
     t, time = run.array(name, "time"), run.array(name, "contacts_time")
     place = run.array(name, "contacts_place")
     with style.figure(8.0, 7.0, rows=4, sharex=True, height_ratios=[1, 1.6, 1, 1]) as (fig, axes):
@@ -191,7 +194,7 @@ def film_rocking(run: Stored, name: str, folder: Path) -> None:
             linewidth=1.0,
             label="lower block" if upper else None,
         )
-        if run[name].hand_over:
+        if run.results_of(name, Rocking).hand_over:
             after = run.array(name, "contacts_time")
             ground.plot(after, run.array(name, "contacts_ground") / GRAVITY, color=style.GROUND, linewidth=0.8)
             for _, turned in _turned_most(run, name):
@@ -214,21 +217,21 @@ def film_rocking(run: Stored, name: str, folder: Path) -> None:
         def show(k: int) -> None:
             stones.place(pose[k])
             if line is not None:
-                thrust.set_data(*line.data[k].T)
+                thrust.set_data(*line.numbers[k].T)
 
         film.history(ax, folder / "figures" / f"{name}.{kind}", time, speed, show, cursors, [stones.drawn, thrust])
 
 
 def _draw_restraints(run: Stored, name: str, folder: Path, t: np.ndarray) -> tuple[str, str]:
     """Forces of ties and dampers, moments of added hinges, over time."""
-    arrays = [run.arrays[name][f"restraint_{k}"] for k in range(1, len(run[name].restraints) + 1)]
+    arrays = [run.arrays[name][f"restraint_{k}"] for k in range(1, len(run.results_of(name, Rocking).restraints) + 1)]
     units = list(dict.fromkeys(a.unit for a in arrays))
     moving = np.flatnonzero(np.abs(run.array(name, "rotation")) > 0.0)
     with style.figure(8.0, 0.6 + 2.2 * len(units), rows=len(units), sharex=True) as (fig, axes):
         for ax, unit in zip(axes, units, strict=True):
             here = [a for a in arrays if a.unit == unit]
             for a in here[:12]:
-                ax.plot(t, a.data / 1e3, linewidth=0.9, label=a.about)
+                ax.plot(t, a.numbers / 1e3, linewidth=0.9, label=a.about)
             ax.set_ylabel("force [kN]\n+ tension" if unit == "N" else "moment [kN m]")
             if len({a.about for a in here}) <= 6:
                 style.legend_above(ax, *_once(ax))
@@ -248,7 +251,12 @@ def _draw_base(run: Stored, name: str, folder: Path, t: np.ndarray) -> tuple[str
         base.set_ylim(edges.min(), edges.max())
         base.set_ylabel("base that pushes\nx [m]")
         sinking.plot(t, 1e3 * run.array(name, "sinking"), color=style.THRUST, linewidth=0.9)
-        sinking.axhline(1e3 * run[name].soft_base.sinking_at_rest_m, color=style.EDGE, linestyle=":", linewidth=0.8)
+        sinking.axhline(
+            1e3 * run.results_of(name, Rocking).soft_base.sinking_at_rest_m,
+            color=style.EDGE,
+            linestyle=":",
+            linewidth=0.8,
+        )
         sinking.set_ylabel("settlement of its\nmiddle [mm]")
         sinking.invert_yaxis()
         sinking.set_xlabel("time [s]")
@@ -272,8 +280,8 @@ def _rocks(run: Stored, name: str) -> np.ndarray:
     """Whether it is off rest, of each time; of stacked blocks whether either is."""
     size = np.abs(run.array(name, "rotation"))
     # a base that gives way lets it tremble long after
-    rocks = size > (0.02 * size.max(initial=0.0) if run[name].soft_base else 0.0)
-    return rocks | (np.abs(run.array(name, "rotation_upper")) > 0.0) if run[name].stack else rocks
+    rocks = size > (0.02 * size.max(initial=0.0) if run.results_of(name, Rocking).soft_base else 0.0)
+    return rocks | (np.abs(run.array(name, "rotation_upper")) > 0.0) if run.results_of(name, Rocking).stack else rocks
 
 
 def _draw_friction(run: Stored, name: str, folder: Path, t: np.ndarray, moving: np.ndarray) -> tuple[str, str]:
@@ -305,7 +313,7 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
     """Map of outcomes with the Mode I and Mode II curves (Figs 5-3 and 5-7)."""
     from matplotlib.colors import ListedColormap
 
-    r = run[name]
+    r = run.results_of(name, FailureDomain)
     order = np.argsort(run.array(name, "duration"))  # a deck may list them in any order
     d, a, codes = run.array(name, "duration")[order], run.array(name, "amplitude"), run.array(name, "outcome")[order]
     with style.figure(7.0, 4.6) as (fig, (ax,)):
@@ -354,7 +362,7 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
 
 def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Impulses against the failure curve (Fig. 5-15) and the fitted impulses on the record (Fig. 5-10)."""
-    r = run[name]
+    r = run.results_of(name, Assessment)
     gamma = r.uplift_acceleration_g
     with style.figure(8.5, 4.0, columns=2, width_ratios=[1.1, 1]) as (fig, (curve, record)):
         period = run.array(name, "period")

@@ -5,14 +5,14 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 
-from extrados.results.assess import Assess, StrategyVerdict
+from extrados.results.assess import Agreement, Assess, StrategyVerdict
 from extrados.results.store import Stored
 from extrados.show import style
 
 OUTCOMES = {
     "stands": style.SAFE, "collapses": style.THRUST, "cannot-stand": style.THRUST, "open": "#d98200", "not-applicable": "#9a9a9a",
 }  # fmt: skip
-RELATIONS = {
+RELATIONS: dict[Agreement, tuple[str, str]] = {
     "agree": ("#cfe3d6", "same verdict"), "apart": ("#f7e7a8", "same verdict, margins far apart"),
     "open": ("#e4e4e4", "one of them open"), "disagree": ("#e9a79d", "stands against collapses"),
 }  # fmt: skip
@@ -22,7 +22,7 @@ REACH = 1.35
 
 def draw_assess(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Margins of all strategies, their agreement, and the motion with what statics bears."""
-    r = run[name]
+    r = run.results_of(name, Assess)
     found = [
         _margins(r, folder, name),
         _agreement(r, folder, name),
@@ -46,7 +46,7 @@ def _margins(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
             if left is not None and right is not None and right > 1.02 * left:
                 ax.plot([left, right], [k, k], color=colour, linewidth=7.0, solid_capstyle="butt")
             elif left is not None or right is not None:
-                at = left if left is not None else right
+                at = (left if left is not None else right) or 0.0
                 ax.plot(at, k, "o", color=colour, markersize=8)
                 if right is None:
                     ax.annotate("", (at * 1.22, k), (at, k), arrowprops={"arrowstyle": "->", "color": colour})
@@ -152,7 +152,7 @@ def _hazard(run: Stored, r: Assess, name: str, folder: Path) -> tuple[str, str]:
         ax.plot(time, ground, color=style.EDGE, linewidth=0.7, label="ground acceleration")
         for row, line in zip(rows, ("--", ":", "-."), strict=False):
             for k, side in enumerate((1.0, -1.0)):
-                ax.axhline(side * row.capacity, color=style.THRUST, linewidth=1.0, linestyle=line,
+                ax.axhline(side * (row.capacity or 0.0), color=style.THRUST, linewidth=1.0, linestyle=line,
                            label=f"capacity by {row.label}" if k == 0 else None)  # fmt: skip
         told = ""
         if r.hazard.pulse_amplitude_g is not None and r.hazard.pulse_period_s is not None:

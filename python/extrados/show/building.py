@@ -94,7 +94,7 @@ class Sheet:
         shift = np.array([aside, 0.0]) if upright else np.array([0.0, aside])
         start, end = a + shift, b + shift
         tick = 1.0 * (along + np.array([-along[1], along[0]]))
-        ink = {"color": INK, "linewidth": 0.5, "zorder": 6, "solid_capstyle": "butt"}
+        ink: dict[str, Any] = {"color": INK, "linewidth": 0.5, "zorder": 6, "solid_capstyle": "butt"}
         self.ax.plot(*np.array([start, end]).T, **ink)
         for here, there in ((a, start), (b, end)):
             self.ax.plot(*np.array([there - tick, there + tick]).T, **ink)
@@ -102,13 +102,13 @@ class Sheet:
                 self.ax.plot(*np.array([here, there]).T, **(ink | {"linewidth": 0.25}))
         middle = start + at * (end - start) + ((-1.6, 0.0) if upright else (0.0, 1.6 if aside else -1.8))
         self.ax.text(
-            *middle, text, fontsize=7, color=INK, ha="center", va="center", rotation=90 if upright else 0, zorder=7,
+            *style.pair(middle), text, fontsize=7, color=INK, ha="center", va="center", rotation=90 if upright else 0, zorder=7,
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4, "alpha": 0.75},
         )  # fmt: skip
 
     def finish(self, words: Language, title: str, cells: Sequence[str]) -> None:
         """Frame, title strip and scale bar."""
-        frame = {"color": "black", "linewidth": 0.8, "zorder": 1}
+        frame: dict[str, Any] = {"color": "black", "linewidth": 0.8, "zorder": 1}
         box = np.array(
             [[1.0, 1.0], [WIDTH - 1.0, 1.0], [WIDTH - 1.0, self.height - 1.0], [1.0, self.height - 1.0], [1.0, 1.0]]
         )
@@ -126,9 +126,9 @@ class Sheet:
             self.ax.add_patch(
                 Polygon(ends, facecolor="black" if k % 2 == 0 else "white", edgecolor="black", linewidth=0.5)
             )
-        for k, value in ((0.0, 0.0), (0.5, 0.5 * step), (1.0, step)):
-            unit = " m" if k == 1.0 else ""
-            self.ax.text(x + k * long, y + 2.0, f"{words.given(value)}{unit}", fontsize=7, ha="center", va="bottom")
+        for part, value in ((0.0, 0.0), (0.5, 0.5 * step), (1.0, step)):
+            unit = " m" if part == 1.0 else ""
+            self.ax.text(x + part * long, y + 2.0, f"{words.given(value)}{unit}", fontsize=7, ha="center", va="bottom")
 
 
 def _aside(view: View, scale: int) -> float:
@@ -314,7 +314,7 @@ def _dimensions(sheet: Sheet, view: View, rows: list[dict[str, Any]], levels: li
             middle = np.array([max(a[0], b[0]) + 5.0, max(a[1], b[1]) + 2.5])
             sheet.ax.plot(*np.array([a, b]).T, color=INK, linewidth=1.0, zorder=6)
             sheet.ax.annotate(
-                text, 0.5 * (a + b), xytext=middle, textcoords="data", fontsize=7, color=INK, zorder=7, va="center",
+                text, style.pair(0.5 * (a + b)), xytext=style.pair(middle), textcoords="data", fontsize=7, color=INK, zorder=7, va="center",
                 arrowprops={"arrowstyle": "-", "color": INK, "linewidth": 0.4},
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4, "alpha": 0.75},
             )  # fmt: skip
@@ -344,7 +344,7 @@ def _plan(deck: dict[str, Any], structure: dict[str, Any], folder: Path, words: 
             turn = np.degrees(np.arctan2(along[1], along[0]))
             told = f"{wall['name']}: {words.number(float(np.linalg.norm(end - start)))} m, {words.quantity(thick, 'm')}"
             sheet.ax.text(
-                *place, told, color=INK, ha="center", va="center", rotation=90.0 - (90.0 - turn) % 180.0, fontsize=7, zorder=7,
+                *style.pair(place), told, color=INK, ha="center", va="center", rotation=90.0 - (90.0 - turn) % 180.0, fontsize=7, zorder=7,
                 bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4, "alpha": 0.75},
             )  # fmt: skip
         for a, b in itertools.pairwise(storeys):

@@ -51,7 +51,7 @@ def shown(run: Stored, name: str | None) -> tuple[dict[str, Any], Arrays]:
     if name not in run.arrays:
         raise StoreError(f"the run has no analysis {name[:60]!r} with arrays")
     kind = run.analysis(name)["kind"]
-    arrays = {key: array.data for key, array in run.arrays[name].items()}
+    arrays = {key: array.numbers for key, array in run.arrays[name].items()}
     made = Shown(run, name, arrays)
     draw = Shown.self_weight if isinstance(run[name], SelfWeight) else load(ANALYSES[kind].page)
     try:
@@ -91,6 +91,7 @@ class Shown:
 
     def __init__(self, run: Stored, name: str, arrays: Arrays):
         self.run, self.name, self.arrays = run, name, arrays
+        self._results: Any = run[name]  # of the kind whose charts are made
         self.out: Arrays = {}
         self.charts: list[Chart] = []
         self.tables: list[dict[str, Any]] = []
@@ -164,7 +165,7 @@ class Shown:
             "unit": "",
             "label": "mechanism",
             "swings": True,
-            "push": self.run[self.name].load_direction_deg,
+            "push": self._results.load_direction_deg,
         }
         if len(self.arrays["rose_direction"]) > 2:
             self.send("rose_direction", "rose_capacity")
@@ -172,7 +173,7 @@ class Shown:
 
     def pushover(self) -> None:
         """Base shear over displacement of every sense or stage, and the building as it cracks under the first of them."""
-        r: Any = self.run[self.name]
+        r = self._results
         if r.stages:
             curves = [(stage.prefix, stage.name) for stage in r.stages]
         else:
@@ -189,8 +190,8 @@ class Shown:
             return
         events = self.arrays["state_event"]
         pick = np.unique(np.linspace(0, len(events) - 1, min(len(events), MOST_STATES)).round().astype(int))
-        parts = [a.data for a in self.run.series(self.name, "elements")]
-        bends = [bool(a.data[0]) for a in self.run.series(self.name, "bends")]
+        parts = [a.numbers for a in self.run.series(self.name, "elements")]
+        bends = [bool(a.numbers[0]) for a in self.run.series(self.name, "bends")]
         faces = [row for part in parts for row in part]
         self.out |= {
             "vertex": self.arrays["node"], "face": np.concatenate(faces), "face_start": np.cumsum([0, *map(len, faces)]),
@@ -293,7 +294,7 @@ class Shown:
         if "rotation" in self.arrays:
             tracked = self.arrays["tracked"][:6]
             rows = []
-            for i, label in zip(tracked.tolist(), list(self.run[self.name].peak_rotation_rad), strict=False):
+            for i, label in zip(tracked.tolist(), self._results.peak_rotation_rad, strict=False):
                 self.out[f"rotation_{i}"] = self.arrays["rotation"][fine, i]
                 rows.append(_series(f"rotation_{i}", label, factor=1e3))
             self._draw("Rotation", axis, _axis("", "rotation", "mrad"), rows, cursor=True)
@@ -356,7 +357,7 @@ class Shown:
             return
         events = self.arrays["state_event"]
         pick = np.unique(np.linspace(0, len(events) - 1, min(len(events), MOST_STATES)).round().astype(int))
-        polygons = [a.data[:, : CORNERS[a.data.shape[1]]] for a in self.run.series(self.name, "elements")]
+        polygons = [a.numbers[:, : CORNERS[a.numbers.shape[1]]] for a in self.run.series(self.name, "elements")]
         self.out["node"] = self.arrays["node"]
         self.out["element"] = np.concatenate([p.ravel() for p in polygons])
         self.out["element_start"] = np.cumsum([0, *(n for p in polygons for n in [p.shape[1]] * len(p))])
@@ -506,7 +507,7 @@ class Shown:
             self.out |= {f"size_{k}": size, f"value_{k}": value}
             unit = rows[name]["unit"]
             factor, shown = {"N": (1e-3, "kN"), "Pa": (1e-6, "MPa")}.get(unit, (1.0, unit))
-            self._draw(name, _axis(f"size_{k}", "size", shown, factor), _axis("", "value", self.run[self.name].unit), [_series(f"value_{k}", name)])  # fmt: skip
+            self._draw(name, _axis(f"size_{k}", "size", shown, factor), _axis("", "value", self._results.unit), [_series(f"value_{k}", name)])  # fmt: skip
         self.charts = self.charts[:12]
 
     def moving_load(self) -> None:
@@ -541,7 +542,7 @@ class Shown:
 
     def failure_curves(self) -> None:
         """The lowest failing amplitude of each structure, and the primary impulses of the motions."""
-        r: Any = self.run[self.name]
+        r = self._results
         rows = []
         for k, curve in enumerate(r.curves):
             self.out[f"duration_{k}"], self.out[f"amplitude_{k}"] = (
@@ -579,15 +580,15 @@ class Shown:
         axes = {
             n: a
             for n, a in found.items()
-            if a.dims == (n,) and np.size(a.data) > 1 and np.asarray(a.data).dtype.kind in "fiu"
+            if a.dims == (n,) and np.size(a.numbers) > 1 and np.asarray(a.numbers).dtype.kind in "fiu"
         }
         for axis, about in axes.items():
             rows = [
                 n
                 for n, a in found.items()
-                if a.dims == (axis,) and n != axis and np.asarray(a.data).dtype.kind in "fiu"
+                if a.dims == (axis,) and n != axis and np.asarray(a.numbers).dtype.kind in "fiu"
             ]
-            keep = self._over_time(np.size(about.data))
+            keep = self._over_time(np.size(about.numbers))
             for unit in dict.fromkeys(found[n].unit for n in rows):
                 some = [n for n in rows if found[n].unit == unit][:6]
                 self.send(axis, *some, keep=keep)

@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from extrados.results.codes import LocalMechanism
 from extrados.results.store import Stored
 from extrados.show import style
 from extrados.show.statistics import draw_code_checks
@@ -9,7 +10,7 @@ from extrados.show.statistics import draw_code_checks
 
 def draw_local_mechanism(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """a* over d* with what the checks ask, and demand over capacity of each."""
-    r = run[name]
+    r = run.results_of(name, LocalMechanism)
     with style.figure(6.2, 3.6) as (fig, (ax,)):
         ax.plot(
             run.array(name, "displacement"),

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from extrados.results.rocking import FailureCurves
 from extrados.results.store import Stored
 from extrados.show import style
 
@@ -18,7 +19,7 @@ def draw_failure_curves(run: Stored, name: str, folder: Path) -> list[tuple[str,
     """The curves with the primary impulses of the motions, and the same over natural time and uplift."""
     import matplotlib
 
-    r = run[name]
+    r = run.results_of(name, FailureCurves)
     duration, amplitude = run.array(name, "duration"), run.array(name, "amplitude")
     natural, slender = run.array(name, "natural_time"), bool(run.array(name, "slender").all())
     first = {"step": "duration t_p of the first part [s]", "rectangular": "duration t_p [s]"}.get(

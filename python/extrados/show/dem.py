@@ -5,10 +5,19 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
-from extrados.results.dem import HINGED_FIRST, HINGED_SECOND, SolidDemRun, SolidDemTilt
+from extrados.results.dem import (
+    HINGED_FIRST,
+    HINGED_SECOND,
+    DemDomain,
+    DemParameters,
+    DemRun,
+    DemTilt,
+    SolidDemRun,
+    SolidDemTilt,
+)
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 from extrados.show import film, solid_dem, style
@@ -16,6 +25,13 @@ from extrados.show.stones import Stones, moved, outlines
 
 SHOWN = 6
 MOST_HINGES = 40
+
+
+def _stored(run: Stored, name: str) -> DemRun | DemTilt:
+    """Results of a run or a tilt test in a plane."""
+    found = run[name]
+    assert isinstance(found, DemRun | DemTilt)
+    return found
 
 
 def _at(run: Stored, name: str, time: float) -> int:
@@ -47,9 +63,13 @@ class Scene:
     def __init__(self, run: Stored, name: str, picks: list[int]):
         get = run.arrays[name]
         self.blocks, self.supports = outlines(run, name), _supports(run, name)
-        self.centroid, self.place, self.rate = (get[k].data for k in ("centroid", "place", "rate"))
-        self.p, self.q, self.hinge = (get[k].data for k in ("joint_p", "joint_q", "hinge"))
+        self.centroid, self.place, self.rate = (get[k].numbers for k in ("centroid", "place", "rate"))
+        self.p, self.q, self.hinge = (get[k].numbers for k in ("joint_p", "joint_q", "hinge"))
         self.owner = _block_of_joint(run, name)
+        ties = ("tie_block", "tie_point") if "tie_block" in get else ()
+        self.tie_block, self.tie_point = (
+            (get[k].numbers for k in ties) if ties else (np.empty((0, 2), int), np.empty((0, 2, 2)))
+        )
         self.window = _window(run, name, picks)
 
     @property
@@ -67,6 +87,14 @@ class Scene:
                 points.append(moved(point[None], self.centroid[self.owner[j]], self.place[k, self.owner[j]])[0])
         return np.array(points) if 0 < len(points) <= MOST_HINGES else np.empty((0, 2))
 
+    def ties(self, k: int) -> np.ndarray:
+        """Both ends of the ties at output k (ties, 2, 2); those in the ground stay."""
+        ends = self.tie_point.copy()
+        for i, end in np.argwhere(self.tie_block >= 0):
+            block = self.tie_block[i, end]
+            ends[i, end] = moved(ends[i, end][None], self.centroid[block], self.place[k, block])[0]
+        return ends
+
     def draw(self, ax: Axes, k: int, arrows: float) -> None:
         """Blocks at output k, hinges, and velocities as arrows (`arrows`: metres per m/s)."""
         place, rate = self.place[k], self.rate[k]
@@ -75,6 +103,7 @@ class Scene:
             ax.fill(*support.T, facecolor="#d7d3cb", edgecolor="none", zorder=0)
         shapes = [moved(o, c, p) for o, c, p in zip(self.blocks, self.centroid, place, strict=True)]
         ax.add_collection(PolyCollection(shapes, facecolor=style.STONE, edgecolor=style.EDGE, linewidth=0.7))
+        ax.add_collection(LineCollection(list(self.ties(k)), color=style.THRUST, linewidth=1.6, zorder=5))
         points = self.hinges(k)
         if len(points):
             style.draw_hinges(ax, points)
@@ -113,13 +142,16 @@ def draw_dem(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Everything that a run or a tilt test has to show."""
     if isinstance(run[name], SolidDemRun | SolidDemTilt):
         figures = solid_dem.draw(run, name, folder)
-        return [*figures, _energies(run, name, folder)] if "kinetic_energy" in run.arrays[name] else figures
+        if "kinetic_energy" in run.arrays[name]:
+            figures.append(_energies(run, name, folder))
+        return [*figures, *_ties(run, name, folder)]
     figures = [_snapshots(run, name, folder)]
     if "rotation" in run.arrays[name]:
         figures += [_histories(run, name, folder), _energies(run, name, folder)]
         if run.array(name, "hinge").shape[1] > 1:
             figures.append(_hinge_map(run, name, folder))
-        if run[name].sensitivity:
+        figures += _ties(run, name, folder)
+        if run[name].get("sensitivity"):
             figures.append(_sensitivity(run, name, folder))
     film_dem(run, name, folder)
     return figures
@@ -153,10 +185,10 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     time, rotation = run.array(name, "time"), run.array(name, "rotation")
     tracked = run.array(name, "tracked")
     most = tracked[np.argsort(-np.abs(rotation[:, tracked]).max(axis=0), kind="stable")[:SHOWN]]
-    names = list(run[name].peak_rotation_rad)
+    names = list(_stored(run, name).peak_rotation_rad)
     label = dict(zip(tracked.tolist(), names, strict=True))
     rigid = next((a for a in run.analyses if a["kind"] == "rocking" and "rotation" in run.arrays[a["name"]]), None)
-    slid = run[name].slipped_joint
+    slid = run[name].get("slipped_joint")
     rows = [3, 1] if slid is None else [3, 2, 1]
     with style.figure(8.0, 1.35 * sum(rows), rows=len(rows), sharex=True, height_ratios=rows) as (fig, axes):
         top, low = axes[0], axes[-1]
@@ -167,8 +199,8 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         if rigid is not None and len(tracked) == 1:
             other = run.arrays[rigid["name"]]
             top.plot(
-                other["time"].data,
-                1e3 * other["rotation"].data,
+                other["time"].numbers,
+                1e3 * other["rotation"].numbers,
                 color="#999999",
                 linewidth=2.4,
                 label="rocking by one mechanism",
@@ -205,8 +237,26 @@ def _energies(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         style.legend_above(low)
         saved = style.save(fig, folder, f"{name}-energy")
     return saved, (
-        f"Kinetic energy, and the whole ledger; it closes to {100 * run[name].energy_residual_ratio:.2g} % of the energy that went round."
+        f"Kinetic energy, and the whole ledger; it closes to {100 * _stored(run, name).energy_residual_ratio:.2g} % of the energy that went round."
     )
+
+
+def _ties(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Forces of the ties over time, of those with the greatest; nothing without any."""
+    if "tie_force" not in run.arrays[name]:
+        return []
+    time, force, rows = run.array(name, "time"), run.array(name, "tie_force"), run[name].get("ties") or []
+    greatest = np.argsort([-abs(row.peak_force_N) for row in rows], kind="stable")[:SHOWN]
+    with style.figure(8.0, 3.2) as (fig, (ax,)):
+        for k in greatest:
+            state = "" if rows[k].state == "elastic" else f" ({rows[k].state})"
+            ax.plot(time, 1e-3 * force[:, k], linewidth=1.0, label=f"{rows[k].name}{state}")
+        ax.set_ylabel("force [kN], tension positive")
+        ax.set_xlabel("time [s]")
+        ax.set_xlim(0.0, time[-1] or 1.0)
+        style.legend_above(ax)
+        saved = style.save(fig, folder, f"{name}-ties")
+    return [(saved, "Forces of the ties" + (f", the {SHOWN} greatest." if len(rows) > SHOWN else "."))]
 
 
 def _hinge_map(run: Stored, name: str, folder: Path) -> tuple[str, str]:
@@ -230,7 +280,7 @@ def _hinge_map(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 
 def _sensitivity(run: Stored, name: str, folder: Path) -> tuple[str, str]:
-    rows = run[name].sensitivity
+    rows = run.results_of(name, DemRun).sensitivity
     kinds = list(dict.fromkeys(row.varied for row in rows))
     times, turns = (run.series(name, what) for what in ("varied_time", "varied_rotation"))
     time, rotation = run.array(name, "time"), run.array(name, "rotation")
@@ -241,7 +291,7 @@ def _sensitivity(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             for k, row in enumerate(rows):
                 if row.varied == kind:
                     ax.plot(
-                        times[k].data, 1e3 * turns[k].data,
+                        times[k].numbers, 1e3 * turns[k].numbers,
                         label=f"{'' if kind == 'friction' else 'x '}{row.value:g} ({row.outcome})", linewidth=0.9,
                     )  # fmt: skip
             ax.set_title(kind, loc="left")
@@ -259,10 +309,10 @@ def draw_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     with style.figure(6.5, 4.6) as (fig, (ax,)):
         for k, (label, row) in enumerate(zip(labels, shortest, strict=True)):
             shown = "discrete elements" if k == 0 else label
-            if k == 0 and run[name].cross_check is not None:
-                shown += f" ({run[name].curves[0].solver})"
+            if k == 0 and run.results_of(name, DemDomain).cross_check is not None:
+                shown += f" ({run.results_of(name, DemDomain).curves[0].solver})"
             ax.plot(row, amplitude, "o-" if k == 0 else ".-", linewidth=1.8 if k == 0 else 0.9, label=shown)
-        if run[name].mode_II_durations_s is not None:
+        if run.results_of(name, DemDomain).mode_II_durations_s is not None:
             ax.plot(run.array(name, "elements_mode_II"), amplitude, "s-", label="discrete elements, mode II")
         for mode, mark in (("mode_I", "--"), ("mode_II", ":")):
             if mode in run.arrays[name]:
@@ -273,21 +323,25 @@ def draw_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                     color="black",
                     label=f"four hinges, {mode.replace('_', ' ')}",
                 )
-        ax.set_xlabel("t_p [s]" if run[name].pulse == "step" else "T_p [s]")
+        ax.set_xlabel("t_p [s]" if run.results_of(name, DemDomain).pulse == "step" else "T_p [s]")
         ax.set_ylabel("amplitude [g]")
         ax.set_xlim(left=0.0)
         ax.legend()
         saved = style.save(fig, folder, f"{name}-curves")
     drawn = [(saved, "Shortest failing pulses; to the right of a curve it collapses.")]
-    return [*drawn, _both_solvers(run, name, folder)] if run[name].cross_check is not None else drawn
+    return (
+        [*drawn, _both_solvers(run, name, folder)] if run.results_of(name, DemDomain).cross_check is not None else drawn
+    )
 
 
 def _both_solvers(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     """Outcomes of all cells by both solvers."""
-    check, fails = run[name].cross_check, run.array(name, "fails")
+    check, fails = run.results_of(name, DemDomain).cross_check, run.array(name, "fails")
     amplitude, duration = np.meshgrid(run.array(name, "amplitude"), run.array(name, "duration"), indexing="ij")
     first, second = (
-        ("nonsmooth", "compliant") if run[name].curves[0].solver == "nonsmooth" else ("compliant", "nonsmooth")
+        ("nonsmooth", "compliant")
+        if run.results_of(name, DemDomain).curves[0].solver == "nonsmooth"
+        else ("compliant", "nonsmooth")
     )
     kinds = (
         (fails[0] & fails[1], "collapses by both", {"marker": "s", "color": style.HINGE}),
@@ -300,11 +354,12 @@ def _both_solvers(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             at = cells.astype(bool)
             if at.any():
                 ax.scatter(duration[at], amplitude[at], s=36, label=label, zorder=3, **look)
-        ax.set_xlabel("t_p [s]" if run[name].pulse == "step" else "T_p [s]")
+        ax.set_xlabel("t_p [s]" if run.results_of(name, DemDomain).pulse == "step" else "T_p [s]")
         ax.set_ylabel("amplitude [g]")
         ax.set_xlim(left=0.0)
         ax.set_ylim(bottom=0.0)
-        ax.set_title(f"both solvers agree in {100 * check.agreement_ratio:.0f} % of {check.cells} cells")
+        if check is not None:
+            ax.set_title(f"both solvers agree in {100 * check.agreement_ratio:.0f} % of {check.cells} cells")
         ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
         saved = style.save(fig, folder, f"{name}-solvers")
     return saved, "Outcome of every cell by springs (compliant) and by rigid contacts (nonsmooth)."
@@ -312,7 +367,7 @@ def _both_solvers(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 def draw_parameters(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Damping over frequency, with the impact frequencies of the joints (thesis Figs 7-2, 7-4, 7-12)."""
-    beta, alpha = run[name].beta_s, run[name].mass_damping_per_s
+    beta, alpha = run.results_of(name, DemParameters).beta_s, run.results_of(name, DemParameters).mass_damping_per_s
 
     def percent(frequency: np.ndarray) -> np.ndarray:
         return 50.0 * (beta * frequency + alpha / frequency)
@@ -348,7 +403,7 @@ def film_dem(run: Stored, name: str, folder: Path) -> None:
     scene = Scene(run, name, frames.tolist())
     tracked = run.array(name, "tracked")
     most = tracked[np.argsort(-np.abs(rotation[:, tracked]).max(axis=0), kind="stable")[:SHOWN]]
-    label = dict(zip(tracked.tolist(), run[name].peak_rotation_rad, strict=True))
+    label = dict(zip(tracked.tolist(), _stored(run, name).peak_rotation_rad, strict=True))
     with style.canvas(film.PIXELS[0] / film.DPI, film.PIXELS[1] / film.DPI) as fig:
         ax, (ground, turn) = film.axes(fig, 2)
         ground.plot(time, run.array(name, "ground") / GRAVITY, color=style.GROUND, linewidth=0.8)

@@ -1,5 +1,6 @@
 """A document without a form: headings, words, tables, figures. From one such source come the HTML and the printed report."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from extrados.show.language import Language
@@ -29,7 +30,7 @@ class Table:
     """Rows of text under a head; shares: relative widths of the columns, of a printed page; look: a word for each row."""
 
     head: tuple[str, ...]
-    rows: list[tuple[str, ...]]
+    rows: Sequence[tuple[str, ...]]
     shares: tuple[float, ...] = ()
     look: list[str] = field(default_factory=list)
 

@@ -16,6 +16,7 @@ from PIL import Image
 
 from extrados.results.store import Stored
 from extrados.schema.programs import ffmpeg
+from extrados.show import style
 from extrados.show.stones import Stones, window
 
 #: Pictures a second and the most of a film
@@ -57,8 +58,7 @@ def write(
 ) -> None:
     """Draw pictures in turn and write them as a film: what moves anew in each, all else once."""
     fig.set_dpi(DPI)
-    fig.get_layout_engine().execute(fig)
-    fig.set_layout_engine("none")  # pictures must not wobble
+    style.lay_out(fig)  # pictures must not wobble
     for artist in moving:
         artist.set_animated(True)
     canvas: Any = fig.canvas
@@ -88,8 +88,9 @@ def gif(images: list[Image.Image], rate: int) -> bytes:
     for k, image in enumerate(some):
         strip.paste(image.reduce(2), (0, k * height))
     # half for what covers most, exactly; half for all colours that there are, or thin lines would lose theirs
-    counted = sorted(strip.getcolors(strip.width * strip.height), reverse=True)[:64]
-    spread = strip.quantize(64, method=Image.Quantize.MAXCOVERAGE).getpalette()[: 3 * 64]
+    colours: Any = strip.getcolors(strip.width * strip.height)  # of three channels each
+    counted = sorted(colours, reverse=True)[:64]
+    spread = (strip.quantize(64, method=Image.Quantize.MAXCOVERAGE).getpalette() or [])[: 3 * 64]
     palette = Image.new("P", (1, 1))
     palette.putpalette([value for _, colour in counted for value in colour] + spread)
     first, *rest = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
@@ -162,4 +163,4 @@ def history(
             cursor.set_xdata([time[k], time[k]])
         title.set_text(clock(time[k], speed))
 
-    write(ax.get_figure(), target, kind, rate, frames, draw, [*moving, *cursors, title])
+    write(style.whole_figure(ax), target, kind, rate, frames, draw, [*moving, *cursors, title])

@@ -37,8 +37,9 @@ def side_by_side(tasks: list[Callable[[], Given]], workers: int, longest: float 
                 i, task = todo.pop(0)
                 pipe, process = _begun(task)
                 running[pipe] = i, process, time.monotonic()
-            for pipe in wait(list(running), _LOOK):
-                assert isinstance(pipe, Connection)
+            for ended in wait(list(running), _LOOK):
+                assert isinstance(ended, Connection)
+                pipe = ended
                 i, process, _ = running[pipe]
                 try:
                     value, error = pipe.recv()

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.patches import Patch, Rectangle
 
+from extrados.results.frame import FrameModes, FramePushover
 from extrados.results.store import Stored
 from extrados.show import style
 from extrados.show.verification import draw_verification
@@ -12,13 +13,15 @@ from extrados.show.verification import draw_verification
 #: Colours of the states of elements, by their numbers
 COLOURS = ("#e8e2d4", "#cfe3d6", "#f2c28b", "#e08b5a", "#e0342b", "#5b1136")
 WORDS = ("elastic", "cracked", "flexural strength", "shear strength", "drift limit in flexure", "drift limit in shear")
+#: Drifts beyond it are those of a collapsed frame, without meaning [%]
+LARGEST_DRIFT = 5.0
 #: Colours of the patterns
 PATTERNS = {"uniform": style.THRUST, "static": style.HINGE, "modal": style.SAFE}
 
 
 def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Base shear over control displacement of all runs; for each direction the walls of its weakest run, at the last state."""
-    r = run[name]
+    r = run.results_of(name, FramePushover)
     angles = sorted({row.direction_deg for row in r.runs})
     made = draw_verification(run, name, folder)
     with style.figure(7.2, 3.4, 1, len(angles), sharey=True) as (fig, axes):
@@ -102,7 +105,7 @@ def _walls(run: Stored, name: str, folder: Path, state: np.ndarray, word: str, t
                     (first[int(w)] + a, low), b - a, high - low, facecolor="white", edgecolor=style.EDGE, linewidth=0.6
                 )
             )
-        for w, label in enumerate(run[name].walls):
+        for w, label in enumerate(run.results_of(name, FramePushover).walls):
             ax.text(first[w] + 0.5 * length[w], 1.01 * height[w], label, ha="center", va="bottom", fontsize=8)
         ax.set_xlim(-0.3, total + 0.3)
         ax.set_ylim(0.0, float(height.max()) * 1.1)
@@ -119,8 +122,8 @@ def _walls(run: Stored, name: str, folder: Path, state: np.ndarray, word: str, t
 
 
 def draw_modes(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """Displacements of the masses on the plan in the first modes."""
-    r = run[name]
+    """Displacements of the masses on the plan, or of blocks in their section, in the first modes."""
+    r = run.results_of(name, FrameModes)
     place, shape = run.array(name, "place"), run.array(name, "shape")
     count = min(3, len(r.modes))
     scale = 0.15 * float(np.ptp(place[:, :2], axis=0).max())
@@ -128,14 +131,18 @@ def draw_modes(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         for k, ax in enumerate(axes):
             ax.plot(place[:, 0], place[:, 1], ".", color=style.STONE, markersize=3)
             ax.quiver(
-                place[:, 0], place[:, 1], scale * shape[k, :, 0], scale * shape[k, :, 1], place[:, 2], angles="xy", scale_units="xy",
+                place[:, 0], place[:, 1], scale * shape[k, :, 0], scale * shape[k, :, 1], place[:, -1], angles="xy", scale_units="xy",
                 scale=1.0, width=0.006, cmap="viridis",
             )  # fmt: skip
             ax.set_aspect("equal")
-            ax.margins(0.15)
+            for set_limit, axis in ((ax.set_xlim, 0), (ax.set_ylim, 1)):
+                ends = np.concatenate([place[:, axis], place[:, axis] + scale * shape[k, :, axis]])
+                set_limit(ends.min() - 0.3 * scale, ends.max() + 0.3 * scale)
+            ax.set_xlabel("x [m]")
             ax.set_title(f"mode {k + 1}: {r.modes[k].period_s:.3g} s")
         saved = style.save(fig, folder, f"{name}-modes")
-    return [(saved, "Displacements of the masses in the first modes, on the plan; the colour is their height.")]
+    where = "on the plan" if place.shape[1] == 3 else "of the blocks in their section"
+    return [(saved, f"Displacements in the first modes, {where}; the colour is their height.")]
 
 
 def draw_history(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -150,3 +157,48 @@ def draw_history(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         right.set_ylabel("base shear [kN]")
         saved = style.save(fig, folder, f"{name}-history")
     return [(saved, "Displacement of the control level relative to the ground, and base shear over it.")]
+
+
+def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Curves of the limit states over the intensity; of histories the runs: drift over intensity."""
+    r, grid = run[name], run.array(name, "grid")
+    history = r.method == "history"
+    made = 1 + int(history)
+    with style.figure(3.6 * made, 3.0, 1, made) as (fig, axes):
+        for state, colour in zip(r.limit_states, (style.SAFE, style.HINGE, style.EDGE), strict=True):
+            if state.median_g is None or not state.dispersion:
+                continue
+            key = state.limit_state.replace("-", "_")
+            axes[0].plot(grid, run.array(name, f"curve_{key}"), color=colour, label=state.limit_state.replace("-", " "))
+            if state.probability is not None:
+                shown = [(x, p) for x, p in zip(r.levels_g, state.probability, strict=True) if p is not None]
+                axes[0].plot(*zip(*shown, strict=True), "o", color=colour, markersize=3)
+            elif not history:
+                k = [s.limit_state for s in r.limit_states].index(state.limit_state)
+                carried = np.sort(run.array(name, "carried")[:, k])
+                axes[0].step(carried, np.arange(1, len(carried) + 1) / len(carried), color=colour, linewidth=0.6)
+        axes[0].set_ylim(0.0, 1.0)
+        axes[0].set_xlabel(f"{r.intensity} [g]")
+        axes[0].set_ylabel("probability of exceeding")
+        style.legend_below(fig, axes[0])
+        if history:
+            drift, fell = 100.0 * run.array(name, "drift"), run.array(name, "exceeded")[:, -1] == 1
+            for which, word, mark in ((~fell, "no collapse", "."), (fell, "collapse", "x")):
+                shown = np.minimum(drift[which], LARGEST_DRIFT)
+                axes[1].plot(
+                    run.array(name, "intensity")[which], shown, mark, color=style.THRUST, markersize=4, label=word
+                )
+            axes[1].set_yscale("log")
+            axes[1].legend()
+            axes[1].set_xlabel(f"{r.intensity} [g]")
+            axes[1].set_ylabel("greatest drift of a pier [%]")
+        saved = style.save(fig, folder, f"{name}-fragility")
+    caption = f"Fragility over {r.motions} motions: fitted curves" + (
+        ", and shares at the levels" if r.levels_g else ""
+    )
+    caption += (
+        f"; right: greatest drift of every run, at most {LARGEST_DRIFT:g} %."
+        if history
+        else "; steps: shares of the motions."
+    )
+    return [(saved, caption)]

@@ -86,8 +86,8 @@ def _stones(ax: Axes, outlines: list[np.ndarray], joints: np.ndarray, ground: np
     # Seen through, so that an overlap is darker and both outlines show.
     ax.add_collection(PolyCollection(outlines, facecolors=style.STONE, edgecolors="none", alpha=0.6))
     ax.add_collection(PolyCollection(outlines, facecolors="none", edgecolors=style.EDGE, linewidths=0.5))
-    ax.add_collection(LineCollection(joints.reshape(-1, 2, 2), colors=style.HINGE, linewidths=1.0, zorder=2))
-    ax.add_collection(LineCollection(ground.reshape(-1, 2, 2), colors=style.EDGE, linewidths=2.2, zorder=1))
+    ax.add_collection(LineCollection(list(joints.reshape(-1, 2, 2)), colors=style.HINGE, linewidths=1.0, zorder=2))
+    ax.add_collection(LineCollection(list(ground.reshape(-1, 2, 2)), colors=style.EDGE, linewidths=2.2, zorder=1))
     points = np.concatenate(outlines)
     ax.update_datalim(points)
 

@@ -3,8 +3,9 @@
 from pathlib import Path
 
 import numpy as np
+from matplotlib.axes import Axes
 
-from extrados.results.motion import MotionSet
+from extrados.results.motion import MotionSet, OneMotion, ShakeTable
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 from extrados.show import style
@@ -16,7 +17,7 @@ def draw_motion(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
 
 
 def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    r = run[name]
+    r = run.results_of(name, OneMotion)
     t = run.array(name, "time")
     found = []
     with style.figure(8.0, 7.0, rows=4, sharex=True, height_ratios=[1.5, 1, 1, 0.8]) as (fig, (acc, vel, dis, husid)):
@@ -87,7 +88,7 @@ def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     return found
 
 
-def _fourier_axes(ax, frequency: np.ndarray, amplitude: np.ndarray, faint: bool = False) -> None:
+def _fourier_axes(ax: Axes, frequency: np.ndarray, amplitude: np.ndarray, faint: bool = False) -> None:
     """A raw Fourier spectrum; faint where a smoothed one is drawn over it."""
     inside = (frequency >= 0.05) & (frequency <= 50.0)
     ax.loglog(
@@ -101,13 +102,13 @@ def _fourier_axes(ax, frequency: np.ndarray, amplitude: np.ndarray, faint: bool 
 
 
 def _draw_set(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    r, arrays = run[name], run.arrays[name]
+    r, arrays = run.results_of(name, MotionSet), run.arrays[name]
     found = []
     shown = run.series(name, "shown")
     steps = run.array(name, "shown_step")
     with style.figure(8.0, 1.4 * len(shown) + 0.6, rows=len(shown), sharex=True, sharey=True) as (fig, axes):
         for ax, a, step in zip(axes, shown, steps, strict=True):
-            ax.plot(step * np.arange(len(a.data)), a.data / GRAVITY, color=style.GROUND, linewidth=0.7)
+            ax.plot(step * np.arange(len(a.numbers)), a.numbers / GRAVITY, color=style.GROUND, linewidth=0.7)
             ax.set_ylabel("[g]")
             ax.set_title(a.about, loc="left", fontsize=8)
         axes[-1].set_xlabel("time [s]")
@@ -204,7 +205,7 @@ def draw_shake_table(run: Stored, name: str, folder: Path) -> list[tuple[str, st
             )
             ax.set_xlabel("frequency [Hz]")
             ax.set_xlim(f[0], f[-1])
-        top = 300 * arrays["stroke_limit"].data[0]
+        top = 300 * arrays["stroke_limit"].numbers[0]
         dis.set_ylim(1e-3 * top, top)
         acc.set_ylim(1e-4, 5.0)
         dis.set_ylabel("displacement amplitude [cm]")
@@ -217,13 +218,13 @@ def draw_shake_table(run: Stored, name: str, folder: Path) -> list[tuple[str, st
             )
         )
     if "drive_time" in arrays:
-        r = run[name]
+        r = run.results_of(name, ShakeTable)
         t = run.array(name, "drive_time")
         with style.figure(8.0, 5.0, rows=3, sharex=True) as (fig, (dis, vel, acc)):
             dis.plot(t, 100 * run.array(name, "drive_displacement"), color=style.HINGE)
             for sign in (1, -1):
                 dis.axhline(
-                    100 * sign * arrays["stroke_limit"].data[0], color=style.EDGE, linestyle="--", linewidth=0.8
+                    100 * sign * arrays["stroke_limit"].numbers[0], color=style.EDGE, linestyle="--", linewidth=0.8
                 )
                 vel.axhline(100 * sign * r.max_velocity_m_s, color=style.EDGE, linestyle="--", linewidth=0.8)
             vel.plot(t, 100 * run.array(name, "drive_velocity"), color=style.HINGE)

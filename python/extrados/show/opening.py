@@ -28,6 +28,7 @@ TITLES = {
     "dem-domain": "Failure domain of discrete elements", "assess": "Comparison of the strategies", "strengthen": "Strengthening",
     "dem-parameters": "Parameters of discrete elements", "frame-modes": "Modes of the frame",
     "frame-pushover": "Pushover of the frame", "frame-history": "Response of the frame to the motion",
+    "frame-fragility": "Fragility of the frame", "modes": "Natural frequencies",
 }  # fmt: skip
 #: A safety factor below this is thin
 THIN = 1.5

@@ -47,7 +47,7 @@ def draw_plan(folder: Path, name: str, walls: list[Elevation], levels: np.ndarra
                 arrowprops={"arrowstyle": "->", "color": style.HINGE, "linewidth": 0.8},
             )  # fmt: skip
             plan.annotate(
-                wall.name, 0.5 * (wall.start + wall.end), xytext=8 * np.array([-along[1], along[0]]),
+                wall.name, 0.5 * (wall.start + wall.end), xytext=(-8 * along[1], 8 * along[0]),
                 textcoords="offset points", ha="center", va="center", fontsize=8, color=style.HINGE,
             )  # fmt: skip
         plan.autoscale_view()
@@ -59,7 +59,7 @@ def draw_plan(folder: Path, name: str, walls: list[Elevation], levels: np.ndarra
         for k, wall in enumerate(walls):
             ax = fig.add_subplot(grid[k // columns, 1 + k % columns])
             shade = [LINTEL if elastic else style.STONE for elastic in wall.linear]
-            ax.add_collection(PolyCollection(wall.corner, facecolors=shade, edgecolors="#b3a98f", linewidths=0.3))
+            ax.add_collection(PolyCollection(list(wall.corner), facecolors=shade, edgecolors="#b3a98f", linewidths=0.3))
             for joint, ends in wall.joints:
                 ax.add_collection(LineCollection(list(ends), colors=style.THRUST, linewidths=1.6, zorder=3))
                 ax.annotate(

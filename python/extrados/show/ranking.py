@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from extrados.results.assess import Assess
 from extrados.results.store import Stored
 from extrados.show.document import Block, Document, Figure, Heading, Table, Words
 from extrados.show.telling import cell, heading, kind_of
@@ -47,7 +48,7 @@ def _page(name: str, run: Stored, out: Path, figures: bool) -> list[Block]:
         told = "; ".join(f"{d['name']} {d['length_m']:.4g} m" for d in run.summary["deck"].get("dimensions", []))
         found.append(Figure(f"{name}/figures/building", f"{told[:1].upper()}{told[1:]}.", 0.35))
     for a in there:
-        r = run[a["name"]]
+        r = run.results_of(a["name"], Assess)
         rows = [
             (
                 v.label,

@@ -147,20 +147,27 @@ def compass(ax: Axes, points: np.ndarray, view: View, push: float | None = None)
         tip = origin + size * arrow
         ax.annotate(
             "",
-            tip,
-            origin,
+            style.pair(tip),
+            style.pair(origin),
             arrowprops={"arrowstyle": "-|>", "color": style.EDGE, "shrinkA": 0, "shrinkB": 0, "linewidth": 0.9},
         )
-        ax.text(*(origin + 1.3 * size * arrow), name, ha="center", va="center", fontsize=8, color=style.EDGE)
+        ax.text(*style.pair(origin + 1.3 * size * arrow), name, ha="center", va="center", fontsize=8, color=style.EDGE)
     if push is not None:
         turn = np.radians(push)
         arrow = view.axes[:2] @ np.array([np.cos(turn), np.sin(turn), 0.0])
         start = np.array([0.5 * (left + right), below])
         ax.annotate(
-            "", start + 2.2 * size * arrow, start, zorder=4,
+            "", style.pair(start + 2.2 * size * arrow), style.pair(start), zorder=4,
             arrowprops={"arrowstyle": "-|>", "color": style.THRUST, "shrinkA": 0, "shrinkB": 0, "linewidth": 2.0, "mutation_scale": 14},
         )  # fmt: skip
-        ax.text(*(start - np.array([0.3 * size, 0.0])), "push", ha="right", va="center", fontsize=8, color=style.THRUST)
+        ax.text(
+            *style.pair(start - np.array([0.3 * size, 0.0])),
+            "push",
+            ha="right",
+            va="center",
+            fontsize=8,
+            color=style.THRUST,
+        )
     length = _round(0.22 * (right - left))
     end = np.array([right - 0.5 * size, below - 0.2 * size])
     ax.plot([end[0] - length, end[0]], [end[1]] * 2, color="black", linewidth=1.6, solid_capstyle="butt")

@@ -1,6 +1,7 @@
 """Figures of pushed buildings and vaults: capacity curves, cracks on the unfolded walls, from above and in space, drifts and
 damage by storey."""
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -8,8 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
 
-from extrados.results.shell import PushCurve
+from extrados.results.shell import PushCurve, Pushover
 from extrados.results.sla import PREFIXES
 from extrados.results.store import Stored
 from extrados.show import scene, style
@@ -24,13 +26,17 @@ VIEW = scene.View(-60.0, 28.0)
 OUTSIDE, INSIDE = "#b3261e", "#1f4e9b"
 #: Gap between unfolded walls, in parts of the height
 GAP = 0.12
+#: Kept states from which on the shear of the walls is drawn as a curve
+LEAST_STATES = 5
 #: Part of the greatest width from which a crack is drawn
 LEAST_WIDTH = 0.02
 
 
 def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """All figures of one analysis."""
-    figures = [_stage_curves(run, name, folder) if run[name].stages else _curves(run, name, folder)]
+    figures = [
+        _stage_curves(run, name, folder) if run.results_of(name, Pushover).stages else _curves(run, name, folder)
+    ]
     figures = [*draw_verification(run, name, folder), *figures]
     for prefix in _prefixes(run, name):
         if f"{prefix}state_event" not in run.arrays[name]:
@@ -45,13 +51,13 @@ def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
 
 def _prefixes(run: Stored, name: str) -> list[str]:
     """How the names of the arrays of each curve begin: of the senses, or of the stages in their order."""
-    stages = run[name].stages
+    stages = run.results_of(name, Pushover).stages
     return [stage.prefix for stage in stages] if stages else list(PREFIXES)
 
 
 def _numbers(run: Stored, name: str, prefix: str) -> PushCurve:
     """The numbers of a curve."""
-    r = run[name]
+    r = run.results_of(name, Pushover)
     if r.stages:
         return next(stage for stage in r.stages if stage.prefix == prefix)
     return r.minus if prefix else r
@@ -64,7 +70,7 @@ def _suffix(prefix: str) -> str:
 
 def _stage_curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     """The base shear over the control displacement through all pushes, and the force that moves the ground in settlements."""
-    stages = run[name].stages
+    stages = run.results_of(name, Pushover).stages
     kinds = [of for of in ("push", "settlement") if any(stage.of == of for stage in stages)]
     colors = [style.THRUST, style.SAFE, style.HINGE, LOST, "#7b93ab", "#8a6d3b"]
     with style.figure(5.4 * len(kinds) + 1.0, 4.2, columns=len(kinds)) as (fig, axes):
@@ -94,21 +100,41 @@ def _stage_curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         )
 
 
+def _wall_curves(ax: Axes, run: Stored, name: str, prefix: str) -> None:
+    """The shear of each wall along the push at its foot, through the kept states in equilibrium under a displacement not reached before."""
+    if f"{prefix}state_wall_shear" not in run.arrays[name]:
+        return
+    event = run.array(name, f"{prefix}state_event") - 1
+    d = 1e3 * run.array(name, f"{prefix}event_displacement")[event]
+    held = (run.array(name, f"{prefix}event_equilibrium")[event] > 0) & (d >= np.maximum.accumulate(d))
+    if held.sum() < LEAST_STATES:
+        return
+    d = d[held]
+    for k, wall in enumerate(_numbers(run, name, prefix).walls):
+        shear = run.array(name, f"{prefix}state_wall_shear")[held, k] / 1e3
+        if np.abs(shear).max() > 0.01 * np.abs(run.array(name, f"{prefix}event_load")).max() / 1e3:
+            ax.plot(
+                d, shear, marker=".", markersize=3, linewidth=0.9, linestyle=("--", ":", "-.")[k % 3], color="#8a6d3b"
+            )
+            ax.annotate(f"wall {wall.wall}", (d[0], shear[0]), fontsize=7, color="#8a6d3b", ha="right")
+
+
 def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     """Capacity curves of both senses with their bilinear idealisation, the variants behind; others of the run in grey."""
-    get, r = lambda n: run.array(name, n), run[name]
+    get, r = partial(run.array, name), run.results_of(name, Pushover)
     with style.figure(7.0, 4.4) as (fig, (ax,)):
         others = [n for n in run.arrays if n != name and "place_wall" in run.arrays[n]]
         for k, other in enumerate(others):
             d, p = run.array(other, "envelope_displacement"), run.array(other, "envelope_load")
             ax.plot(1e3 * d, p / 1e3, color="#8a8a8a", linestyle=("--", ":", "-.")[k % 3], label=f"analysis {other}")
         pairs = list(zip(run.series(name, "variant_displacement"), run.series(name, "variant_load"), strict=True))
-        for k, (d, p) in enumerate(pairs):
+        for k, (moved, carried) in enumerate(pairs):
+            d, p = moved.numbers, carried.numbers
             label = r.variants[k].name if r.variants and len(pairs) <= 8 else None
-            ax.plot(1e3 * d.data, p.data / 1e3, color="#7b93ab", linewidth=0.8, alpha=0.9, zorder=1)
+            ax.plot(1e3 * d, p / 1e3, color="#7b93ab", linewidth=0.8, alpha=0.9, zorder=1)
             if label:
-                at = int(p.data.argmax())
-                ax.annotate(label, (1e3 * d.data[at], p.data[at] / 1e3), fontsize=6, color="#5d7288")
+                at = int(p.argmax())
+                ax.annotate(label, (1e3 * d[at], p[at] / 1e3), fontsize=6, color="#5d7288")
         for prefix, numbers in zip(PREFIXES, (r, r.minus), strict=True):
             if numbers is None:
                 continue
@@ -116,6 +142,7 @@ def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             d, p = 1e3 * get(f"{prefix}event_displacement"), get(f"{prefix}event_load") / 1e3
             fine = get(f"{prefix}event_state") > 0
             ax.plot(d[fine], p[fine], color=color, linewidth=0.25, alpha=0.4)
+            _wall_curves(ax, run, name, prefix)
             none = get(f"{prefix}event_state") == 0
             if none.any():
                 far = 1.1 * np.abs(get(f"{prefix}envelope_displacement")).max() * 1e3
@@ -183,7 +210,7 @@ def _shown(run: Stored, name: str, prefix: str) -> list[int]:
 def _walls(run: Stored, name: str) -> list[tuple[int, np.ndarray]]:
     """All parts: the wall that each is of, -1 none, and its elements."""
     pairs = zip(run.series(name, "elements"), run.series(name, "wall_of"), strict=True)
-    return [(int(wall.data[0]), elements.data) for elements, wall in pairs]
+    return [(int(wall.numbers[0]), elements.numbers) for elements, wall in pairs]
 
 
 def _unfolded(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
@@ -214,7 +241,7 @@ def _unfolded(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
                 along = (place[..., :2] - walls[wall, :2]) @ walls[wall, 2:4] + start[wall]
                 ax.add_collection(
                     PolyCollection(
-                        np.stack([along, place[..., 2]], axis=-1), facecolors="white", edgecolors="#ece9e2", linewidths=0.3
+                        list(np.stack([along, place[..., 2]], axis=-1)), facecolors="white", edgecolors="#ece9e2", linewidths=0.3
                     )
                 )  # fmt: skip
             seen = np.flatnonzero((width[k] > LEAST_WIDTH * most) & (of >= 0))
@@ -223,7 +250,7 @@ def _unfolded(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
             way = 0.5 * length * np.column_stack([-np.sin(angle[k][seen]), np.cos(angle[k][seen])])
             middle = np.column_stack([x, y])
             drawn = LineCollection(
-                np.stack([middle - way, middle + way], axis=1), cmap=CRACKS, norm=Normalize(0.0, 1e3 * most),
+                list(np.stack([middle - way, middle + way], axis=1)), cmap=CRACKS, norm=Normalize(0.0, 1e3 * most),
                 linewidths=0.6 + 1.8 * width[k][seen] / most, array=1e3 * width[k][seen],
             )  # fmt: skip
             ax.add_collection(drawn)
@@ -251,9 +278,7 @@ def _unfolded(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
         )
 
 
-def _frame(x: float, length: float, height: float):
-    from matplotlib.patches import Rectangle
-
+def _frame(x: float, length: float, height: float) -> Rectangle:
     return Rectangle((x, 0.0), length, height, fill=False, edgecolor=style.EDGE, linewidth=0.7)
 
 
@@ -346,7 +371,7 @@ def _space(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]
 def _paint(ax: Axes, run: Stored, name: str, place: np.ndarray, values: np.ndarray, most: float) -> PolyCollection:
     """Elements from the farthest to the nearest; place: (nodes, 3) to the right, up, towards the eye."""
     polygons, depth, value, walls = [], [], [], 0
-    bends = [bool(part.data[0]) for part in run.series(name, "bends")]
+    bends = [bool(part.numbers[0]) for part in run.series(name, "bends")]
     for bent, (_, connect) in zip(bends, _walls(run, name), strict=True):
         corner = place[connect]
         polygons += list(corner[..., :2])

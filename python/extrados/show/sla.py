@@ -1,11 +1,15 @@
 """Figures of sequentially linear analysis: curve, cracks, stresses, ranges of the load, energies."""
 
+from contextlib import AbstractContextManager
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
 
 from extrados.results.model import Array
 from extrados.results.sla import DROP, PREFIXES, Sla
@@ -30,7 +34,7 @@ MOST_PLATEAU = 20.0
 APART = 0.05
 
 
-def _wall(ax: Axes, polygons: list[np.ndarray], **options) -> PolyCollection:
+def _wall(ax: Axes, polygons: list[np.ndarray], **options: Any) -> PolyCollection:
     style_of = {"facecolors": style.STONE, "edgecolors": "#cfc6b4", "linewidths": 0.25, **options}
     drawn = PolyCollection(polygons, **style_of)
     ax.add_collection(drawn)
@@ -42,7 +46,7 @@ def _outline(run: Stored, name: str) -> np.ndarray:
     """Edges (edges, 2) of the outline and of openings, by nodes: those of one element alone."""
     sides = []
     for array in run.series(name, "elements"):
-        corners = array.data[:, : CORNERS[array.data.shape[1]]]
+        corners = array.numbers[:, : CORNERS[array.numbers.shape[1]]]
         sides += [
             np.stack([corners[:, k], np.roll(corners, -1, axis=1)[:, k]], axis=1) for k in range(corners.shape[1])
         ]
@@ -59,17 +63,17 @@ def draw_sla(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             figures += [_cracks(run, name, folder, prefix), _stresses(run, name, folder, prefix)]
     sections = zip(*(run.series(name, f"section_{what}") for what in ("y", "lo", "hi")), strict=True)
     figures += [_section(run, name, folder, i, *arrays) for i, arrays in enumerate(sections)]
-    if run[name].bars:
+    if run.results_of(name, Sla).bars:
         figures += [_bars(run, name, folder, prefix) for prefix in PREFIXES if _has_bars(run, name, prefix)]
     figures.append(_energy(run, name, folder))
-    if run[name].stages:
+    if run.results_of(name, Sla).stages:
         figures += [_all_stages(run, name, folder), *_cracks_by_stage(run, name, folder)]
     return figures
 
 
 def _all_stages(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     """Loads against displacements of all stages; those in one direction, or its opposite, share a panel."""
-    stages = run[name].stages
+    stages = run.results_of(name, Sla).stages
     panels = _panels_of_stages(run, name)
     columns = min(len(panels), 2)
     rows = -(-len(panels) // columns)
@@ -79,7 +83,7 @@ def _all_stages(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         for ax, panel in zip(axes, panels, strict=False):
             for k, sense in panel:
                 stage = stages[k]
-                get = lambda n, prefix=stage.prefix: run.array(name, f"{prefix}{n}")  # noqa: E731
+                get = partial(_array_of, run, name, stage.prefix)
                 fine = get("event_state") > 0
                 d = sense * 1e3 * np.append(stage.displacement_of_constant_loads_m, get("event_displacement")[fine])
                 p = sense * 1e-3 * np.append(stage.start_load_N, get("event_load")[fine])
@@ -104,7 +108,7 @@ def _panels_of_stages(run: Stored, name: str) -> list[list[tuple[int, int]]]:
     """The stages (from 0) of each panel with their sense: one that begins with the displacement and the load at which
     an earlier one ended, or with their opposites, goes on in its panel."""
     panels: list[list[tuple[int, int]]] = []
-    stages = run[name].stages
+    stages = run.results_of(name, Sla).stages
     for k, stage in enumerate(stages):
         begin = np.array([stage.displacement_of_constant_loads_m, stage.start_load_N])
         for panel in panels:
@@ -123,7 +127,7 @@ def _panels_of_stages(run: Stored, name: str) -> list[list[tuple[int, int]]]:
 def _cracks_by_stage(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Cracks at the end of each stage, one magnification and one scale of widths for all; none where no state was kept."""
     shown = []
-    for stage in run[name].stages:
+    for stage in run.results_of(name, Sla).stages:
         if f"{stage.prefix}state_event" in run.arrays[name]:
             held = run.array(name, f"{stage.prefix}event_state")[run.array(name, f"{stage.prefix}state_event") - 1]
             shown += [(stage.prefix, int(s), f"end of stage {stage.name}") for s in np.flatnonzero(held > 0)[-1:]]
@@ -134,7 +138,7 @@ def _cracks_by_stage(run: Stored, name: str, folder: Path) -> list[tuple[str, st
 
 
 def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
-    get, r = lambda n: run.array(name, n), run[name]
+    get, r = partial(run.array, name), run.results_of(name, Sla)
     with style.figure(7.0, 4.2) as (fig, (ax,)):
         if "scatter_load" in run.arrays[name]:
             grid, rows = get("scatter_displacement") * 1e3, get("scatter_load") / 1e3
@@ -143,7 +147,7 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         for other in _incremental(run, name):
             at, load = (run.array(other, f"event_{n}") for n in ("displacement", "load"))
             ax.plot(at * 1e3, load / 1e3, "o-", color="#8a8a8a", markersize=3, linewidth=0.8,
-                    label=f"incremental, {run[other].stop}")  # fmt: skip
+                    label=f"incremental, {run.results_of(other, Sla).stop}")  # fmt: skip
         _measured(run, name, ax, True)
         lost = False
         for prefix, numbers in zip(PREFIXES, (r, r.minus), strict=True):
@@ -166,10 +170,10 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 ax.plot(d[step], p[step], ".", color=style.STEPS, markersize=4, zorder=3,
                         label="equilibrium iterations" if not prefix else None)  # fmt: skip
             if numbers.get("drop_displacement_m") is not None:
-                ax.axvline(1e3 * numbers.drop_displacement_m, color="#777", linestyle=":", linewidth=0.9,
+                ax.axvline(1e3 * numbers["drop_displacement_m"], color="#777", linestyle=":", linewidth=0.9,
                            label="drop to 80 % of the peak" if not prefix else None)  # fmt: skip
             if numbers.get("axial_loss_displacement_m") is not None:
-                ax.axvline(1e3 * numbers.axial_loss_displacement_m, color=style.THRUST, linestyle="--", linewidth=0.9,
+                ax.axvline(1e3 * numbers["axial_loss_displacement_m"], color=style.THRUST, linestyle="--", linewidth=0.9,
                            label="axial capacity lost" if not prefix else None)  # fmt: skip
             idea = numbers.bilinear
             if idea:
@@ -257,7 +261,7 @@ def _peak_state(run: Stored, name: str, prefix: str) -> list[int]:
 
 def _peak(run: Stored, name: str, prefix: str) -> int:
     """The state at the peak, or of the greatest load where that was not kept."""
-    numbers = run[name].get("minus", {}) if prefix else run[name]
+    numbers = run.results_of(name, Sla).get("minus", {}) if prefix else run.results_of(name, Sla)
     there = np.flatnonzero(run.array(name, f"{prefix}state_event") == numbers.get("greatest_load_event"))
     return int(there[0]) if len(there) else int(run.array(name, f"{prefix}state_load").argmax())
 
@@ -274,8 +278,8 @@ def _cracks(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str
 def _draw_cracks(run: Stored, name: str, folder: Path, shown: list[tuple[str, int, str]], file: str) -> str:
     """Cracks of some states: how the names of their arrays begin, number, words. One magnification and one scale of
     widths for the series; what came apart has a magnification of its own, and cracks beyond the scale."""
-    reach = "point_reach" if "point_reach" in run.arrays[name] else "point_band"
-    xy, at, reach = (run.array(name, n) for n in ("node", "point_xy", reach))
+    by = "point_reach" if "point_reach" in run.arrays[name] else "point_band"
+    xy, at, reach = (run.array(name, n) for n in ("node", "point_xy", by))
     span = np.ptp(xy, axis=0)
 
     def get(prefix: str, what: str, s: int) -> np.ndarray:
@@ -309,7 +313,7 @@ def _draw_cracks(run: Stored, name: str, folder: Path, shown: list[tuple[str, in
                 along = angle[wide] + turn
                 half = 0.42 * reach[wide][:, None] * np.column_stack([np.cos(along), np.sin(along)])
                 lines = LineCollection(
-                    np.stack([place[wide] - half, place[wide] + half], axis=1), cmap=CRACKS,
+                    list(np.stack([place[wide] - half, place[wide] + half], axis=1)), cmap=CRACKS,
                     norm=Normalize(0.0, 1e3 * most), linewidths=0.5 + 2.0 * np.minimum(width[wide] / most, 1.0),
                 )  # fmt: skip
                 lines.set_array(1e3 * width[wide])
@@ -323,7 +327,7 @@ def _draw_cracks(run: Stored, name: str, folder: Path, shown: list[tuple[str, in
         return style.save(fig, folder, file)
 
 
-def _panels(span: np.ndarray, count: int):
+def _panels(span: np.ndarray, count: int) -> AbstractContextManager[tuple[Figure, np.ndarray]]:
     """Panels side by side for upright walls, one below the other for long ones."""
     if span[0] > 2.2 * span[1]:
         return style.figure(8.0, count * min(8.0 * span[1] / span[0] + 1.1, 5.0), rows=count)
@@ -360,7 +364,7 @@ def _stresses(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
 def _section(
     run: Stored, name: str, folder: Path, i: int, height: Array, least: Array, greatest: Array
 ) -> tuple[str, str]:
-    y, about, lo, hi = height.data, height.about, least.data / 1e3, greatest.data / 1e3
+    y, about, lo, hi = height.numbers, height.about, least.numbers / 1e3, greatest.numbers / 1e3
     events = run.array(name, "state_event")
     # A section that is cracked through admits everything: nothing to show
     shown = np.flatnonzero((np.isfinite(lo) | np.isfinite(hi)).any(axis=1))[:6]
@@ -390,6 +394,16 @@ def _section(
     )
 
 
+def _array_of(run: Stored, name: str, prefix: str, which: str) -> np.ndarray:
+    """An array whose name begins with a prefix."""
+    return run.array(name, f"{prefix}{which}")
+
+
+def _called(array: Array) -> str:
+    """The bar of an array of forces."""
+    return array.about.removeprefix("force in ").removeprefix("force along ").split(",")[0]
+
+
 def _has_bars(run: Stored, name: str, prefix: str) -> bool:
     return any(key.startswith((f"{prefix}bar_force_", f"{prefix}bar_along_")) for key in run.arrays[name])
 
@@ -398,19 +412,18 @@ def _bars(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
     """Forces of bars and ties: from event to event, and along those that are embedded."""
     follow = run.series(name, f"{prefix}bar_force")
     places, forces = (run.series(name, f"{prefix}bar_{what}") for what in ("place", "along"))
-    called = lambda array: array.about.removeprefix("force in ").removeprefix("force along ").split(",")[0]  # noqa: E731
     count = bool(follow) + bool(forces)
     with style.figure(7.0, 3.4 * count, rows=count) as (fig, axes):
         if follow:
             ax = axes[0]
             fine = run.array(name, f"{prefix}event_state") > 0
             # The displacements of stones run away as they become a mechanism
-            axis, scale, words = ("load", 1e-3, "load [kN]") if run[name].hinges is not None else (
+            axis, scale, words = ("load", 1e-3, "load [kN]") if run.results_of(name, Sla).hinges is not None else (
                 "displacement", 1e3, "control displacement [mm]")  # fmt: skip
             way = scale * run.array(name, f"{prefix}event_{axis}")[fine]
             for k, array in enumerate(follow):
                 ax.plot(
-                    way, 1e-3 * array.data[fine], color=STAGES[k % len(STAGES)], label=called(array),
+                    way, 1e-3 * array.numbers[fine], color=STAGES[k % len(STAGES)], label=_called(array),
                     linestyle=("-", "--", ":")[k // len(STAGES) % 3],
                 )  # fmt: skip
             ax.axhline(0.0, color="#999", linewidth=0.5)
@@ -424,8 +437,8 @@ def _bars(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
             for k, (place, force) in enumerate(zip(places, forces, strict=True)):
                 for s, line in zip(shown, ("-", "--"), strict=False):
                     ax.step(
-                        place.data, 1e-3 * force.data[s], line, where="mid", color=STAGES[k % len(STAGES)],
-                        label=f"{called(force)}, event {events[s]}",
+                        place.numbers, 1e-3 * force.numbers[s], line, where="mid", color=STAGES[k % len(STAGES)],
+                        label=f"{_called(force)}, event {events[s]}",
                     )  # fmt: skip
             ax.axhline(0.0, color="#999", linewidth=0.5)
             ax.set_xlabel("distance from the start of the bar [m]")
@@ -440,7 +453,7 @@ def _bars(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
 
 
 def _energy(run: Stored, name: str, folder: Path) -> tuple[str, str]:
-    get = lambda n: run.array(name, f"event_{n}")  # noqa: E731
+    get = partial(_array_of, run, name, "event_")
     with style.figure(7.0, 3.4) as (fig, (ax,)):
         state = get("state") > 0
         number = np.arange(1, len(state) + 1)[state]
@@ -459,5 +472,5 @@ def _energy(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         title = style.save(fig, folder, f"{name}-energy")
     return title, (
         f"Energies in the states: the work of the loads is stored, dissipated, or lost where the structure goes from one state "
-        f"to the next; the ledger of all three closes to {run[name].energy_residual_ratio:.1e}."
+        f"to the next; the ledger of all three closes to {run.results_of(name, Sla).energy_residual_ratio:.1e}."
     )

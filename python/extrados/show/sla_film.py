@@ -71,9 +71,9 @@ def film_sla(run: Stored, name: str, folder: Path) -> None:
                 open_ = width > max(1e-3 * most, 1e-9)
                 along = angle[k][open_] + turn
                 half = 0.42 * reach[open_][:, None] * np.column_stack([np.cos(along), np.sin(along)])
-                lines.set_segments(np.stack([place[open_] - half, place[open_] + half], axis=1))
+                lines.set_segments(list(np.stack([place[open_] - half, place[open_] + half], axis=1)))
                 lines.set_array(1e3 * width[open_])
-                lines.set_linewidths(0.5 + 2.5 * width[open_] / most)
+                lines.set_linewidth(0.5 + 2.5 * width[open_] / most)
             event = int(events[k])
             now.set_data([1e3 * d[event - 1]], [load[k] / 1e3])
             title.set_text(f"event {event}, {load[k] / 1e3:.4g} kN, displacements x {factor:g}")

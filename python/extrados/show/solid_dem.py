@@ -18,6 +18,13 @@ SHOWN = 6
 MOVED = LinearSegmentedColormap.from_list("moved", [style.STONE, "#f2c28b", "#c8553d"])
 
 
+def _stored(run: Stored, name: str) -> SolidDemRun | SolidDemTilt:
+    """Results of a run or a tilt test in space."""
+    found = run[name]
+    assert isinstance(found, SolidDemRun | SolidDemTilt)
+    return found
+
+
 def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Everything that a run or a tilt test of solids has to show."""
     found = [_snapshots(run, name, folder)]
@@ -62,24 +69,24 @@ class _Stage:
 
 
 def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
-    r, times = run[name], run.array(name, "time")
+    r, times = _stored(run, name), run.array(name, "time")
     picks = [int(np.abs(times - t).argmin()) for t in run.array(name, "snapshot_time")]
     stage = _Stage(run, name, picks)
     columns = min(3, len(picks))
     rows = -(-len(picks) // columns)
-    tilt = isinstance(r, SolidDemTilt)
+    tilt = r if isinstance(r, SolidDemTilt) else None
     with style.figure(
         10.0, float(np.clip(3.3 * stage.aspect + 0.9, 2.6, 5.5)) * rows, rows=rows, columns=columns
     ) as (fig, axes):  # fmt: skip
         for n, (ax, k) in enumerate(zip(axes, picks, strict=False)):
-            stage.show(ax, k, r.load_direction_deg if tilt and n == 0 else None)
+            stage.show(ax, k, tilt.load_direction_deg if tilt is not None and n == 0 else None)
             ax.set_title(f"{times[k]:.3f} s")
         for ax in axes[len(picks) :]:
             ax.axis("off")
         if stage.share.any():
             legend(fig, list(axes[: rows * columns]), stage.farthest)
         saved = style.save(fig, folder, f"{name}-snapshots")
-    what = f"Collapse by {r.collapse_acceleration_g:.4f} g" if tilt else "The stones as they move"
+    what = f"Collapse by {tilt.collapse_acceleration_g:.4f} g" if tilt is not None else "The stones as they move"
     return saved, f"{what}; colours show the displacement of each block, at most {stage.farthest:.3g} m."
 
 
@@ -92,7 +99,7 @@ def legend(fig: Figure, axes: list[Axes], farthest: float) -> None:
 
 
 def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
-    r, time = run[name], run.array(name, "time")
+    r, time = _stored(run, name), run.array(name, "time")
     assert isinstance(r, SolidDemRun)
     shift, turn, tracked = (run.array(name, key) for key in ("shift", "turn", "tracked"))
     far = np.linalg.norm(shift[:, tracked], axis=2).max(axis=0)

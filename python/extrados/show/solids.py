@@ -73,7 +73,7 @@ def _draw_solids(run: Stored, name: str, folder: Path, r: SolidTilt) -> list[tup
             scene.ground(ax, stones.vertices, VIEW)
             scene.compass(ax, stones.vertices, VIEW, r.load_direction_deg if ax is axes[1] else None)
             if ax is axes[0] and len(strands):
-                ax.add_collection(LineCollection(strands, colors=TIE, linewidths=1.6, zorder=3))
+                ax.add_collection(LineCollection(list(strands), colors=TIE, linewidths=1.6, zorder=3))
         x, y, z = np.ptp(stones.vertices, axis=0)
         axes[0].set_title(f"{r.blocks} stones, {r.contacts} contacts; {x:.3g} x {y:.3g} x {z:.3g} m")
         axes[1].set_title(_title(r))
@@ -121,7 +121,7 @@ def _draw_forces(run: Stored, name: str, folder: Path, r: SolidTilt, stones: sce
         scene.compass(ax, stones.vertices, VIEW, r.load_direction_deg)
         ax.add_collection(
             LineCollection(
-                np.stack([middle - half, middle + half], axis=1), colors=style.THRUST, linewidths=1.1, zorder=3
+                list(np.stack([middle - half, middle + half], axis=1)), colors=style.THRUST, linewidths=1.1, zorder=3
             )
         )
         ax.plot(*middle.T, ".", color=style.THRUST, markersize=2.0, zorder=3)

@@ -24,8 +24,12 @@ NAMED = {"Gilbert and Melbourne 1994": GILBERT, "Housner 1963": HOUSNER, "Moreau
 #: Clauses of EN 1991-2:2003 that give the trains of this program
 TRAINS = {"LM1": "4.3.2", "LM71": "6.3.2", "SW/0": "6.3.3", "SW/2": "6.3.3"}
 TRAFFIC = "EN 1991-2:2003. Eurocode 1: Actions on structures. Part 2: Traffic loads on bridges"
-#: Trains of the UK annex, whose text was not read
-SPECIAL = "UK National Annex to EN 1991-2 (verify clause)."
+#: Other vehicles by the first letters of their names; of the UK annex and of the NATO agreement the text was not read
+VEHICLES = {
+    "SV": "UK National Annex to EN 1991-2 (verify clause).",
+    "CS454": "CS 454. Assessment of highway bridges and structures. Design Manual for Roads and Bridges: 7.3.1, 7.3.2.",
+    "MLC": "STANAG 2021. Military load classification of bridges, ferries, rafts and vehicles (verify Annex A).",
+}
 #: A value that is none of a publication
 UNCERTAIN = re.compile(r"from memory|derived here")
 
@@ -37,8 +41,7 @@ def references(kinds: Iterable[str], sources: Iterable[str], trains: Sequence[st
     clauses = sorted({TRAINS[train] for train in trains if train in TRAINS})
     if clauses:
         found.append(f"{TRAFFIC}: {', '.join(clauses)}.")
-    if any(train.startswith("SV") for train in trains):
-        found.append(SPECIAL)
+    found += [text for prefix, text in VEHICLES.items() if any(train.startswith(prefix) for train in trains)]
     places: list[str] = []
     for source in sources:
         for part in re.split(r"; ", source):

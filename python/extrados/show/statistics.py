@@ -4,8 +4,16 @@ from pathlib import Path
 
 import numpy as np
 
+from extrados.results.codes import CodeChecks
 from extrados.results.rocking import COLLAPSE, RECOVERY
-from extrados.results.statistics import Ensemble, OverDurations, OverLevels
+from extrados.results.statistics import (
+    Ensemble,
+    HarmonicMap,
+    OverDurations,
+    OverLevels,
+    Resonance,
+    RockingSpectrum,
+)
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 from extrados.show import style
@@ -32,7 +40,7 @@ def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
     found = []
     if "stripe_level" in arrays:
         found += [_curve(run, name, folder), _incremental(run, name, folder)]
-    if "bin_edge" in arrays and run[name].count:
+    if "bin_edge" in arrays and run[name].get("count"):
         found.append(_histogram(run, name, folder))
     if "intensity" in arrays and "grid" in arrays:
         found.append(_cloud(run, name, folder))
@@ -46,7 +54,7 @@ def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
 
 
 def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
-    r = run[name]
+    r = run.results_of(name, Ensemble)
     edges, counts = run.array(name, "bin_edge"), run.array(name, "bin_count")
     n = max(r.count, 1)
     with style.figure(6.0, 3.8) as (fig, (ax,)):
@@ -72,7 +80,7 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_xticks([0, 0.2, 0.4, 0.6, 0.8, 1.0])
         ax.set_xlabel("greatest rotation over the critical rotation")
         ax.set_ylabel("share of the runs [%]")
-        ax.set_title(f"{r.count} runs, {100 * r.collapse_probability:.1f} % collapse")
+        ax.set_title(f"{r.count} runs, {100 * (r.collapse_probability or 0.0):.1f} % collapse")
         full = np.flatnonzero(counts)
         if len(full) == 1:  # one bar says nothing by its height
             where = f"{edges[full[0]]:.2f} to {edges[full[0] + 1]:.2f}"
@@ -90,6 +98,13 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ), "Greatest rotation of all runs, beyond 1 in the last bin; the red bar holds those that collapse."
 
 
+def _ensemble(run: Stored, name: str) -> Ensemble | OverLevels:
+    """Results of a fragility, at one intensity of each motion or at several levels."""
+    found = run[name]
+    assert isinstance(found, Ensemble | OverLevels)
+    return found
+
+
 def _axis(r: Ensemble | OverLevels) -> str:
     """What an axis of intensities says."""
     return f"{r.intensity} [{r.intensity_unit}]" if r.intensity_unit else r.intensity
@@ -97,7 +112,7 @@ def _axis(r: Ensemble | OverLevels) -> str:
 
 def _cloud(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     """The motions at their own intensities; the curves over them."""
-    r = run[name]
+    r = run.results_of(name, Ensemble)
     x, ratio, outcome = (run.array(name, k) for k in ("intensity", "peak_ratio", "outcome"))
     grid = run.array(name, "grid")
     with style.figure(9.0, 4.2, columns=2, sharex=True) as (fig, (left, right)):
@@ -135,11 +150,11 @@ def _cloud(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         for k, (limit, curve, low, high) in enumerate(limits):
             line = right.plot(
                 grid,
-                curve.data,
+                curve.numbers,
                 ("--", "-.", ":")[k % 3],
                 label=f"rotation beyond {limit.rotation_ratio:g} of the critical: median {limit.median:.3g}",
             )[0]
-            right.fill_between(grid, low.data, high.data, color=line.get_color(), alpha=0.12, linewidth=0)
+            right.fill_between(grid, low.numbers, high.numbers, color=line.get_color(), alpha=0.12, linewidth=0)
         right.set_xscale("log")
         right.set_ylim(-0.02, 1.02)
         right.set_ylabel("probability")
@@ -155,7 +170,7 @@ def _cloud(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 def _annual(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     """Hazard, curve of collapse, and what each intensity adds to the annual rate."""
-    r = run[name]
+    r = _ensemble(run, name)
     x, rate = run.array(name, "hazard_intensity"), run.array(name, "hazard_rate")
     at, share = run.array(name, "contribution_intensity"), run.array(name, "contribution")
     with style.figure(9.0, 3.8, columns=2) as (fig, (left, right)):
@@ -191,13 +206,15 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     """Ground motions and the responses to them, side by side (Fig. 6-6)."""
     series = [run.series(name, f"history_{what}") for what in ("motion_time", "motion", "time", "rotation")]
     n = len(series[0])
-    stands = [np.abs(one.data).max(initial=0.0) for one in series[3] if not one.about.endswith("collapse")]
+    stands = [np.abs(one.numbers).max(initial=0.0) for one in series[3] if not one.about.endswith("collapse")]
     place = place_of_collapse(np.array(stands))
     with style.figure(9.0, 1.0 + 1.35 * n, rows=n, columns=2, sharex=True, sharey="col") as (fig, axes):
         for (left, right), at, ground, time, rotation in zip(axes.reshape(n, 2), *series, strict=True):
-            left.plot(at.data, ground.data, color=style.GROUND, linewidth=0.8)
+            left.plot(at.numbers, ground.numbers, color=style.GROUND, linewidth=0.8)
             fell = rotation.about.endswith("collapse")
-            right.plot(time.data, np.clip(rotation.data, -place, place), color=style.THRUST if fell else style.HINGE)
+            right.plot(
+                time.numbers, np.clip(rotation.numbers, -place, place), color=style.THRUST if fell else style.HINGE
+            )
             left.set_title(f"{at.about}: ground [g]", fontsize=8, loc="left")
             right.set_title(
                 f"rotation over the critical one: {'overturns' if fell else 'recovers'}", fontsize=8, loc="left"
@@ -214,8 +231,8 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 def _sensitivity(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     """First-order and total Sobol indices of each uncertain value, for the rotation and the collapse."""
-    r = run[name]
-    values = list(r.sensitivity)
+    r = run.results_of(name, Ensemble)
+    values = list(r.sensitivity or {})
     place = np.arange(len(values))
     with style.figure(7.5, 1.6 + 0.45 * len(values), columns=2, sharey=True) as (fig, axes):
         for ax, what, title in zip(axes, ("rotation", "collapse"), ("greatest rotation", "collapse"), strict=True):
@@ -241,7 +258,7 @@ def _sensitivity(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 
 def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
-    r, arrays = run[name], run.arrays[name]
+    r, arrays = run.results_of(name, OverLevels), run.arrays[name]
     level = run.array(name, "stripe_level")
     unit = arrays["stripe_level"].unit
     grid = run.array(name, "grid")
@@ -297,7 +314,7 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 
 def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
-    r = run[name]
+    r = run.results_of(name, OverLevels)
     level, ratio, over, risen = (
         run.array(name, key) for key in ("stripe_level", "incremental_ratio", "incremental_over", "incremental_risen")
     )
@@ -358,7 +375,7 @@ def _durations(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
 
 def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Figs 6-2, 6-3 and 6-4."""
-    r, arrays = run[name], run.arrays[name]
+    r, arrays = run.results_of(name, Resonance), run.arrays[name]
     found = []
     with style.figure(7.0, 4.6, rows=2, sharex=True, height_ratios=[1, 2]) as (fig, (ground, rotation)):
         t = run.array(name, "time")
@@ -425,7 +442,7 @@ def draw_rocking_spectrum(run: Stored, name: str, folder: Path) -> list[tuple[st
         if "rule_least" in run.arrays[name]:
             least, most = (np.minimum(run.array(name, key), place) for key in ("rule_least", "rule_most"))
             ax.fill_between(period, least, most, color=style.STONE, linewidth=0, label="between the impact rules")
-        for member, row, fell in zip(run[name].family, ratio, over, strict=True):
+        for member, row, fell in zip(run.results_of(name, RockingSpectrum).family, ratio, over, strict=True):
             line = ax.plot(period, np.where(fell == 1, np.nan, row), ".-", markersize=3, label=member)[0]
             ax.plot(period[fell == 1], np.full(int(fell.sum()), place), "x", color=line.get_color(), markersize=5)
         ax.axhline(1.0, color=style.EDGE, linewidth=0.8, linestyle=":")
@@ -438,7 +455,7 @@ def draw_rocking_spectrum(run: Stored, name: str, folder: Path) -> list[tuple[st
 
 def draw_harmonic_map(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Rest, rocking and overturning over frequency and amplitude."""
-    r = run[name]
+    r = run.results_of(name, HarmonicMap)
     f, a, outcome, ratio = (run.array(name, k) for k in ("frequency", "amplitude", "outcome", "peak_ratio"))
     with style.figure(7.0, 4.4) as (fig, (ax,)):
         shown = np.where(outcome == RECOVERY, np.minimum(ratio, 1.0), np.nan)
@@ -461,8 +478,8 @@ def draw_code_checks(run: Stored, name: str, folder: Path) -> list[tuple[str, st
     """Demand over capacity of each rule."""
     rows = [
         (rule, c.demand / c.capacity, c.code)
-        for rule, c in run[name].checks.items()
-        if c.verdict in ("holds", "fails") and c.capacity > 0.0
+        for rule, c in run.results_of(name, CodeChecks).checks.items()
+        if c.verdict in ("holds", "fails") and c.demand is not None and c.capacity is not None and c.capacity > 0.0
     ]
     if not rows:
         return []
@@ -476,11 +493,11 @@ def draw_code_checks(run: Stored, name: str, folder: Path) -> list[tuple[str, st
         ax.set_xlabel("demand over capacity")
         alternatives = (
             " The NTC checks at SLV are alternatives: one satisfied check suffices."
-            if any(check.alternative for check in run[name].checks.values())
+            if any(check.alternative for check in run.results_of(name, CodeChecks).checks.values())
             else ""
         )
         pale = " Pale bars: formulas for comparison." if any(not code for _, _, code in rows) else ""
         return [(style.save(fig, folder, name), (
             f"Demand over capacity of each rule that applies; above 1 the check is not satisfied.{alternatives}{pale} "
-            f"{run[name].overall().statement}"
+            f"{run.results_of(name, CodeChecks).overall().statement}"
         ))]  # fmt: skip

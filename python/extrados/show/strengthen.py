@@ -22,7 +22,7 @@ WIDE = 44
 
 def draw_strengthen(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Mechanisms before and after, capacity curves, forces over places, the comparison by cost, fragility."""
-    r = run[name]
+    r = run.results_of(name, Strengthen)
     found = [
         _mechanisms(run, r, name, folder),
         _mechanisms_in_space(run, r, name, folder),

@@ -1,10 +1,11 @@
 """One look for all figures."""
 
 import itertools
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import matplotlib
 import numpy as np
@@ -14,7 +15,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
+from matplotlib.text import Annotation
 from matplotlib.ticker import AutoLocator, MaxNLocator
+
+if TYPE_CHECKING:
+    from matplotlib.typing import RcKeyType
 
 STEPS = "#3a7d44"  # states found by equilibrium iterations
 STONE, EDGE, THRUST, HINGE, GROUND, SAFE = "#e8e2d4", "#6b6355", "#b3261e", "#1f4e79", "#3b7a57", "#3b7a57"
@@ -24,7 +29,7 @@ MODES = ("#f4f1ea", "#cfe3d6", "#f2c28b", "#c8553d")
 LETTER = "letter"
 RINGS = (9.0, 12.0, 18.0, 26.0)  # points from the place
 LEGEND_LINE, LEGEND_LETTER = 0.55, 0.062  # width of an entry of a legend without its letters, and of a letter [in]
-RC = {
+RC: "dict[RcKeyType, Any]" = {
     "font.size": 9, "axes.titlesize": 10, "axes.labelsize": 9, "legend.fontsize": 8, "figure.dpi": 150,
     "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
     "grid.color": "#e4e4e4", "grid.linewidth": 0.6, "lines.linewidth": 1.2, "svg.hashsalt": "extrados",
@@ -41,7 +46,7 @@ def canvas(width: float = 7.0, height: float = 4.0) -> Iterator[Figure]:
 
 @contextmanager
 def figure(
-    width: float = 7.0, height: float = 4.0, rows: int = 1, columns: int = 1, **options
+    width: float = 7.0, height: float = 4.0, rows: int = 1, columns: int = 1, **options: Any
 ) -> Iterator[tuple[Figure, np.ndarray]]:
     """A figure in the common style; its axes come as a flat array."""
     with canvas(width, height) as fig:
@@ -70,12 +75,19 @@ def kept() -> Iterator[dict[str, Figure]]:
         _kept.reset(before)
 
 
+def lay_out(fig: Figure) -> None:
+    """Settle the places of axes and labels once and for all."""
+    engine = fig.get_layout_engine()
+    if engine is not None:
+        engine.execute(fig)
+    fig.set_layout_engine("none")
+
+
 def write(fig: Figure, target: Path, name: str) -> str:
     """Write NAME.png and NAME.svg into a folder; returns the name."""
     # Laying out measures every label and takes longer than drawing: once, at the size of the PNG. Figure.savefig
     # would lay out and draw unseen anew for each format.
-    fig.get_layout_engine().execute(fig)
-    fig.set_layout_engine("none")
+    lay_out(fig)
     _spread(fig)
     there = _kept.get()
     if there is not None:
@@ -93,6 +105,13 @@ def legend_below(fig: Figure, ax: Axes) -> None:
     fig.legend(handles, labels, loc="outside lower center", ncols=_columns(fig, labels))
 
 
+def whole_figure(ax: Axes) -> Figure:
+    """The figure in which axes stand."""
+    fig = ax.get_figure(root=True)
+    assert fig is not None  # axes are made by a figure
+    return fig
+
+
 def _columns(fig: Figure, labels: list[str]) -> int:
     """How many entries of a legend fit side by side."""
     entry = LEGEND_LINE + LEGEND_LETTER * max(map(len, labels), default=0)
@@ -104,7 +123,7 @@ def legend_above(ax: Axes, handles: list | None = None, labels: list[str] | None
     if handles is None or labels is None:
         handles, labels = ax.get_legend_handles_labels()
     ax.legend(
-        handles, labels, ncols=min(_columns(ax.get_figure(root=True), labels), 4), loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.0,
+        handles, labels, ncols=min(_columns(whole_figure(ax), labels), 4), loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.0,
         borderpad=0.1,
     )  # fmt: skip
 
@@ -120,10 +139,11 @@ class InnerLocator(AutoLocator):
 
     CLEAR = 0.05  # of the axis, at each end
 
-    def tick_values(self, vmin: float, vmax: float) -> np.ndarray:
-        ticks = super().tick_values(vmin, vmax)
+    def tick_values(self, vmin: float, vmax: float) -> Sequence[float]:
+        ticks: Any = np.asarray(super().tick_values(vmin, vmax))
         clear = self.CLEAR * (vmax - vmin)
-        return ticks[(ticks >= vmin + clear) & (ticks <= vmax - clear)]
+        kept: Sequence[float] = ticks[(ticks >= vmin + clear) & (ticks <= vmax - clear)]
+        return kept
 
 
 #: Energies below this are rounding, in J
@@ -165,7 +185,13 @@ def draw_hinges(ax: Axes, points: np.ndarray, labels: list[str] | None = None) -
         letters(ax, points, labels, HINGE)
 
 
-def letters(ax: Axes, points: np.ndarray, labels: list[str], colour: str) -> None:
+def pair(point: np.ndarray) -> tuple[float, float]:
+    """A place of the plane as two numbers."""
+    x, y = point
+    return float(x), float(y)
+
+
+def letters(ax: Axes, points: Iterable[Any], labels: list[str], colour: str) -> None:
     """Labels beside places; where each stands is settled as the figure is saved, so that none hides another."""
     for point, label in zip(points, labels, strict=False):
         ax.annotate(
@@ -181,7 +207,7 @@ def _spread(fig: Figure) -> None:
     """
     pixel, renderer = fig.dpi / 72.0, FigureCanvasAgg(fig).get_renderer()
     for ax in fig.axes:
-        texts = [t for t in ax.texts if t.get_gid() == LETTER]
+        texts = [t for t in ax.texts if isinstance(t, Annotation) and t.get_gid() == LETTER]
         if not texts:
             continue
         ax.apply_aspect()  # as the drawing will, after the layout

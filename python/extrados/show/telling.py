@@ -172,7 +172,7 @@ def _verdicts(run: Stored, words: Language) -> list[Block]:
 
 def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
     """The overall answer of an assessment: its table, its reasons."""
-    r = run[name]
+    r = run.results_of(name, Assess)
     rows = []
     for v in r.verdicts:
         factor = v.margin_told("")
@@ -222,12 +222,12 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
         found.append(Words(f"No rule has found a reason why these differ: {text}.", "bad"))
     if r.sensitivity:
         found.append(Heading(words("Sensitivity of the verdicts"), 2))
-        rows = [
+        moved = [
             (m.key, f"{cell(m.base)} {m.unit}".strip(), f"{m.low:.4g} to {m.high:.4g}", _both(m.tilt_low, m.tilt_high), cell(m.tilt_turns, ""),
              _both(m.rocking_low, m.rocking_high), cell(m.rocking_turns, ""))
             for m in r.sensitivity if m.dem_base is None
         ]  # fmt: skip
-        head = (
+        head: tuple[str, ...] = (
             "key",
             "value",
             "varied",
@@ -236,7 +236,7 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
             "margin of rocking",
             "verdict changes at",
         )
-        found.append(Table(head, rows, (2.2, 1.1, 1.3, 1.3, 0.9, 1.3, 0.9)))
+        found.append(Table(head, moved, (2.2, 1.1, 1.3, 1.3, 0.9, 1.3, 0.9)))
         shaken = [
             (m.key, f"{cell(m.base)} {m.unit}", f"{m.low:.3g} to {m.high:.3g}", cell(m.dem_base), _both(m.dem_low, m.dem_high), cell(m.dem_turns, ""))
             for m in r.sensitivity if m.dem_base is not None
@@ -251,12 +251,14 @@ def _assessed(run: Stored, name: str, words: Language) -> list[Block]:
             found.append(Table(head, shaken, (2.2, 1.2, 1.6, 1.0, 1.6, 1.0)))
     if r.probes:
         found.append(Heading(words("Further runs"), 2))
-        rows = [
+        probed = [
             (p.strategy, p.changed, words(outcome_words(p.outcome, check=False)), cell(p.value, "")) for p in r.probes
         ]
         found.append(
             Table(
-                ("analysis", "difference from the deck", "verdict", "demand over capacity"), rows, (1.2, 4.0, 1.0, 1.2)
+                ("analysis", "difference from the deck", "verdict", "demand over capacity"),
+                probed,
+                (1.2, 4.0, 1.0, 1.2),
             )
         )
     if r.not_done:
@@ -357,7 +359,7 @@ def _hazard(run: Stored, deck: dict[str, Any], words: Language) -> list[Block]:
     ]
     for a in run.analyses:
         if a["kind"] == "assess" and a["results"]:
-            h = run[a["name"]].hazard
+            h = run.results_of(a["name"], Assess).hazard
             text = f"{h.told[:1].upper()}{h.told[1:]}. Strategies of a constant acceleration take {h.peak_ground_acceleration_g:.3g} g, {h.peak_told}."
             if h.pulse_amplitude_g is not None and h.pulse_period_s is not None:
                 text += f" The primary impulse has {h.pulse_amplitude_g:.3g} g over {h.pulse_period_s:.3g} s."
@@ -368,7 +370,12 @@ def _hazard(run: Stored, deck: dict[str, Any], words: Language) -> list[Block]:
 def _analysis(run: Stored, a: dict[str, Any], figures: Figures, words: Language) -> list[Block]:
     """One analysis: its answer, warnings, figures, forces and stresses."""
     how = next(
-        (run[b["name"]].parts.get(a["name"], "") for b in run.analyses if b["kind"] == "assess" and b["results"]), ""
+        (
+            run.results_of(b["name"], Assess).parts.get(a["name"], "")
+            for b in run.analyses
+            if b["kind"] == "assess" and b["results"]
+        ),
+        "",
     ).partition(": ")[2]
     foreign = _foreign(words)
     found: list[Block] = [Heading(title_of(words, a["name"], a["kind"]))]
@@ -517,12 +524,12 @@ def _own_tables(run: Stored, words: Language) -> list[tuple[str, str, Table]]:
             )
         if walls := getattr(r, "walls", None) if a["kind"] == "local-mechanism" else None:
             head = _heads(words, "wall", "rotates at the foot of storey", "alpha_0", "a_0*", "d_0*", "margin")
-            rows = [
+            tried = [
                 (w.wall, str(w.storey), words.number(w.multiplier), words.quantity(w.activation_acceleration_g, "g"),
                  words("none") if w.zero_displacement_m is None else words.quantity(w.zero_displacement_m, "m"), _value(words, w.margin, ""))
                 for w in walls
             ]  # fmt: skip
-            found.append(("walls", a["name"], Table(head, rows, (1.8, 1.6, 1.0, 1.0, 1.0, 1.0))))
+            found.append(("walls", a["name"], Table(head, tried, (1.8, 1.6, 1.0, 1.0, 1.0, 1.0))))
     return found
 
 
@@ -579,7 +586,12 @@ def _numbers(run: Stored, hidden: set[str], words: Language) -> list[Block]:
 
 def _repeat(run: Stored, deck: dict[str, Any], made: dict[str, Any], words: Language) -> list[Block]:
     lines = [f"extrados run {deck['path'] or 'deck.toml'}"]
-    parts = [n for b in run.analyses if b["kind"] == "assess" and b["results"] for n in run[b["name"]].parts]
+    parts = [
+        n
+        for b in run.analyses
+        if b["kind"] == "assess" and b["results"]
+        for n in run.results_of(b["name"], Assess).parts
+    ]
     lines += [f"extrados run {n}.toml        # of assess/, put beside the deck" for n in parts]
     files = run.summary.get("files", {})
     sums = [

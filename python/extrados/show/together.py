@@ -3,6 +3,7 @@
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.lines import Line2D
@@ -18,7 +19,7 @@ MARKED = 0.03
 #: Part of the base shear from which a wall of a building is marked
 LEAST_SHARE = 0.05
 #: Of the first sense of the load, and of the second
-SENSES = dict(zip(PREFIXES, ("-", "--"), strict=True))
+SENSES: dict[str, Literal["-", "--"]] = dict(zip(PREFIXES, ("-", "--"), strict=True))
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,7 @@ def pushes(runs: list[tuple[str, Stored]]) -> list[Push]:
         if not names:
             raise StoreError(f"{title}: no analysis of it has a capacity curve; expected sla or pushover")
         for name in names:
-            r = run[name]
+            r: Any = run[name]  # of a wall, of a building or of a frame
             incremental = bool((run.array(name, "event_point") < 0).all())
             called = short if last.count(short) == 1 else title
             called = called if len(names) == 1 else f"{called}, {name}"

@@ -3,7 +3,9 @@
 from pathlib import Path
 
 import numpy as np
+from matplotlib.axes import Axes
 
+from extrados.results.model import Array
 from extrados.results.store import Stored
 from extrados.results.verification import IdealisedCurve, Verification
 from extrados.schema.constants import GRAVITY
@@ -37,13 +39,13 @@ def _millimetres(value: float | None) -> str:
 def draw_verification(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """The governing curve with its idealisation, demands and capacities, and the same in the plane of spectral
     displacement and acceleration; nothing without a verification."""
-    found: Verification | None = run[name].verification
+    found: Verification | None = run[name].get("verification")
     if found is None or not found.curves:
         return []
     check = found.governing()
     k = next((i for i, c in enumerate(found.curves) if check is not None and c.push == check.push), 0)
     idea = found.curves[k]
-    d, p = (run.series(name, f"verified_{what}")[k].data for what in ("displacement", "load"))
+    d, p = (run.series(name, f"verified_{what}")[k].numbers for what in ("displacement", "load"))
     spectra = run.series(name, "spectrum")
     law = (
         np.array([0.0, idea.yield_displacement_m, idea.ultimate_displacement_m]),
@@ -67,7 +69,7 @@ def draw_verification(run: Stored, name: str, folder: Path) -> list[tuple[str, s
         left.set_ylim(0.0, None)
         left.set_xlabel("control displacement [mm]")
         left.set_ylabel("base shear [kN]")
-        _plane(right, run, name, idea, (d, p), law, spectra)
+        _plane(right, run, name, found, idea, (d, p), law, spectra)
         rows = [c for c in found.checks if c.push == idea.push]
         if spectra:
             for row, shade in zip(rows, STATES, strict=False):
@@ -107,7 +109,10 @@ def _weight(idea: IdealisedCurve) -> float:
     return idea.equivalent_mass_kg * idea.participation_factor * GRAVITY
 
 
-def _plane(ax, run: Stored, name: str, idea, curve, law, spectra) -> None:
+def _plane(
+    ax: Axes, run: Stored, name: str, found: Verification, idea: IdealisedCurve, curve: tuple[np.ndarray, np.ndarray],
+    law: tuple[np.ndarray, np.ndarray], spectra: list[Array],
+) -> None:  # fmt: skip
     """Curve, bilinear curve and spectra as acceleration over displacement of the oscillator."""
     gamma = idea.participation_factor
     ax.plot(1e3 * curve[0] / gamma, curve[1] / _weight(idea), color=style.THRUST)
@@ -116,9 +121,11 @@ def _plane(ax, run: Stored, name: str, idea, curve, law, spectra) -> None:
     if spectra:
         period = run.array(name, "spectrum_period")
         for one, shade in zip(spectra, STATES, strict=False):
-            ax.plot(1e3 * one.data * (period / (2.0 * np.pi)) ** 2, one.data / GRAVITY, color=shade, linewidth=1.0)
-            top = max(top, one.data.max() / GRAVITY)
-    ax.set_xlim(0.0, 1e3 * _furthest(run[name].verification, idea) / gamma)
+            ax.plot(
+                1e3 * one.numbers * (period / (2.0 * np.pi)) ** 2, one.numbers / GRAVITY, color=shade, linewidth=1.0
+            )
+            top = max(top, one.numbers.max() / GRAVITY)
+    ax.set_xlim(0.0, 1e3 * _furthest(found, idea) / gamma)
     ax.set_ylim(0.0, 1.08 * top)
     ax.set_xlabel("spectral displacement d* [mm]")
     ax.set_ylabel("spectral acceleration [g]")

@@ -22,14 +22,14 @@ from extrados.core.calls import within
 from extrados.core.errors import Cancelled
 from extrados.decks.reader import DeckError, make_deck
 from extrados.model.errors import WHOLE
-from extrados.results.assess import StrategyVerdict
+from extrados.results.assess import RowStatus, StrategyVerdict
 from extrados.results.frame import FramePushover
 from extrados.results.limit import Tilt, judge_dilatant
 from extrados.results.model import Result
 from extrados.results.shell import Pushover
 from extrados.results.sla import Sla
 from extrados.results.statistics import Ensemble, OverLevels
-from extrados.results.verdict import SelfWeight, judge_acceleration
+from extrados.results.verdict import Outcome, SelfWeight, judge_acceleration
 
 #: Strategies are stopped after this many budgets
 STOPPED_AFTER = 1.0
@@ -147,15 +147,15 @@ def row_of(
     """The row of a strategy that has been asked; wall: the side of a wall that stands against it, towards which statics does
     not push. without: what of the deck the strategy neglects, whose collapse without a restraint decides nothing."""
     if result.status != "ok":
-        status = "refused" if result.status == "refused" else "failed"
-        return no_row(strategy, status, result.reason, words)
+        return no_row(strategy, "refused" if result.status == "refused" else "failed", result.reason, words)
     r = result.results
-    outcome, margin, low, high = None, None, None, None
-    verdict, said = r.judged(demand), ""
+    outcome: Outcome | None = None
+    margin, low, high = None, None, None
+    verdict, said = r.require_verdict(demand), ""
     if isinstance(r, Tilt) and wall is not None:
         verdict, said = r.judged_towards(demand, (wall == "right",)), "Pushed away from the wall"
     elif isinstance(r, Tilt) and (cracked := _cracked(r)) is not None and cracked < (verdict.capacity or 0.0):
-        judged = judge_dilatant if r.fracture.dilating else judge_acceleration
+        judged = judge_dilatant if r.fracture is not None and r.fracture.dilating else judge_acceleration
         verdict, said = judged(cracked, demand), "With the leeward buttress cracked"
     wanted, borne, unit, statement = verdict.demand, verdict.capacity, verdict.unit, verdict.statement
     if said:
@@ -190,7 +190,7 @@ def _cracked(r: Tilt) -> float | None:
     return r.fracture.collapse_acceleration_g if r.fracture.stands is not False else 0.0
 
 
-def no_row(strategy: Strategy, status: str, reason: str, words: str = "") -> StrategyVerdict:
+def no_row(strategy: Strategy, status: RowStatus, reason: str, words: str = "") -> StrategyVerdict:
     """The row of a strategy without a result."""
     return StrategyVerdict(
         strategy=strategy.name, label=strategy.label, part=None, status=status, reason=reason, axis=strategy.axis, demand=None,

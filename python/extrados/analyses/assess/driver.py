@@ -30,11 +30,13 @@ from extrados.analyses.conclude import faulty
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem.tables import OF_SPRINGS
 from extrados.model.errors import BadGeometry, NoView
+from extrados.model.structures.masonry import Column
 from extrados.motions.from_deck import is_set
 from extrados.results import assess as out
 from extrados.results.dem import DemRun
+from extrados.results.fields import given
 from extrados.results.model import Array, Result, TableData
-from extrados.results.rocking import FailureDomain
+from extrados.results.rocking import Assessment, FailureDomain
 from extrados.results.rocking import Rocking as RockingResults
 from extrados.results.statistics import OverLevels
 from extrados.results.store import group_names
@@ -137,17 +139,16 @@ class _Work:
 
     def _asked(self, strategy: Strategy) -> Result | None:
         name = strategy.name
-        given = self.options.options.get(name, {})  # type: ignore[call-overload]
+        own = {} if name == "scaled" else self.options.options.get(name, {})
         try:
             choice = strategy.choose(self.asked())
         except (LeftOut, BadGeometry) as error:
-            if not given:
-                status = "left out" if isinstance(error, LeftOut) else "refused"
-                self.rows[name] = no_row(strategy, status, str(error))
+            if not own:
+                self.rows[name] = no_row(strategy, "left out" if isinstance(error, LeftOut) else "refused", str(error))
                 return None
             choice = Choice({}, "")
-        words = "; ".join([w for w in (choice.words,) if w] + ([f"of the deck: {_told(given)}"] if given else []))
-        choice = replace(choice, keys=_merged(choice.keys, given), words=words)
+        words = "; ".join([w for w in (choice.words,) if w] + ([f"of the deck: {_told(own)}"] if own else []))
+        choice = replace(choice, keys=_merged(choice.keys, own), words=words)
         self.choices[name] = choice
         without = self.asker.cannot_bear(choice.kind or strategy.kind)
         if without and name != "scaled":
@@ -167,7 +168,7 @@ class _Work:
             self.rows[name] = no_row(strategy, "refused", str(error), words)
             return None
         if self.many and result.status == "ok" and not whole:
-            verdict = result.results.judged(self.asker.demand(self.peak))
+            verdict = result.results.require_verdict(self.asker.demand(self.peak))
             result = replace(result, verdict=verdict)
         self.rows[name] = row_of(
             strategy, result, words, self.asker.demand(self.peak), self.options.acceptable_probability,
@@ -206,7 +207,7 @@ class _Work:
         if strategy.applies(self.context.building):
             return True
         if "strategies" in self.options.model_fields_set:
-            kind = self.context.building.structure.kind
+            kind = self.context.building.require_structure().kind
             self.rows[name] = no_row(strategy, "left out", f"this strategy cannot analyse a structure of kind '{kind}'")
         return False
 
@@ -248,14 +249,15 @@ class _Work:
         if found is None:
             self.context.warnings.append(f"the margin of rocking is not known: {row.reason}")
             return
-        low, high = scaled_margin(found.results)
+        curve = found.of(OverLevels)
+        low, high = scaled_margin(curve)
         down = self.rows["rocking"].outcome == "collapses"  # the run under the hazard itself is a factor of 1
         self._bracket("rocking", low, 1.0 if high is None and down else high)
         words = f"{self.rows['rocking'].parameters}; its margin from {row.parameters}"
-        if high is None and low != found.results.levels[-1]:
+        if high is None and low != curve.levels[-1]:
             words += "; at the next factor blocks slide or hinges form elsewhere, so that rocking bounds the margin from below alone"
         self.rows["rocking"] = self.rows["rocking"].model_copy(update={"parameters": words})
-        if found.results.resurrections:
+        if curve.resurrections:
             self.context.warnings.append(
                 "Rocking recovers at some factors above the least one that causes collapse. Do not rely on these safe regions."
             )
@@ -375,7 +377,7 @@ class _Work:
         runs += [(f"the motion times {factor:g}", keys, factor) for factor in PERTURBED]
         other: list[str] = []
         for told, changed, factor in runs:
-            model = self.one_motion().deck.motion
+            model = self.one_motion().deck.require_motion()
             motion = None if factor == 1.0 else hazard.scaled(self.asker.motion, model, factor)
             if factor != 1.0 and motion is None:
                 continue
@@ -429,14 +431,13 @@ class _Work:
         found = self._probe("rocking", f"the motion at {FINE} factors between {low:g} and {high:g}", "fragility",
                             {"intensity": "scale", "levels": levels, "bootstrap": 0}, tell=False)  # fmt: skip
         if found is not None and isinstance(found.results, OverLevels):
-            lower, upper = scaled_margin(found.results)
+            lower, upper = scaled_margin(found.of(OverLevels))
             self._bracket("rocking", lower or low, upper or high)
 
     def _cheap_probes(self, pairs: list[Pair]) -> None:
         names = {n for p in pairs for n in p}
         results = self.results
-        if "assessment" in names and (a := results["assessment"].results).primary_impulse is not None:
-            impulse = a.primary_impulse
+        if "assessment" in names and (impulse := results["assessment"].of(Assessment).primary_impulse) is not None:
             sine = {"kind": "sine-pulse", "amplitude": f"{impulse.amplitude_g!r} g", "period": impulse.period_s}
             self._keep("sine", self._probe("rocking", "the primary impulse alone, one sine", "rocking", {}, sine))
         if "sla" in names and "tilt" in results and not self.context.building.meshed_by_stones:
@@ -463,7 +464,7 @@ class _Work:
         if not isinstance(r, DemRun):
             return
         structure = building.structure
-        if structure.kind == "column" and structure.height is not None and structure.drums > 1 and "dem" in names:
+        if isinstance(structure, Column) and structure.height is not None and structure.drums > 1 and "dem" in names:
             changes = {"structure.drums": 1}
             self._keep(
                 "monolith", self._probe("dem", "one body instead of drums", "dem", choice.keys | ONE_RUN, None, changes)
@@ -481,7 +482,7 @@ class _Work:
 
     def _turning(self, left: int, choice: Choice) -> None:
         """The factors on the hazard between which discrete elements turn to fall."""
-        motion, model = self.asker.motion, self.one_motion().deck.motion
+        motion, model = self.asker.motion, self.one_motion().deck.require_motion()
         stands = self.rows["dem"].outcome == "stands"
         low, high = (1.0, None) if stands else (None, 1.0)
         if self.rows["dem"].outcome == "open":
@@ -498,10 +499,10 @@ class _Work:
             found = self._probe("dem", f"the motion times {factor:g}", "dem", choice.keys | ONE_RUN, table)
             if found is None:
                 break
-            if found.results.judged(self.asker.demand(self.peak)).outcome == "open":
+            if found.results.require_verdict(self.asker.demand(self.peak)).outcome == "open":
                 self.not_done.append(f"discrete elements at {factor:g} times the motion still move in the end")
                 break
-            falls = found.results.outcome == "collapse"
+            falls = found.of(DemRun).outcome == "collapse"
             low, high = (low, factor) if falls else (factor, high)
             if falls == stands:
                 break
@@ -525,7 +526,7 @@ class _Work:
             self.not_done.append(f"{changed}: {result.reason}")
             return None
         if tell:
-            verdict = result.results.judged(self.asker.demand(self.peak))
+            verdict = result.results.require_verdict(self.asker.demand(self.peak))
             value = verdict.demand / verdict.capacity if verdict.demand is not None and verdict.capacity else None
             if isinstance(result.results, RockingResults):
                 value = result.results.peak_rotation_ratio
@@ -584,7 +585,7 @@ class _Work:
             )
             return
         rocked = self.results.get("rocking")
-        restitution = rocked.results.restitution if rocked is not None else None
+        restitution = rocked.of(RockingResults).restitution if rocked is not None else None
         keys = sensitivity.varied(self.context.building, self.options.vary, restitution)
         data = {k: v for k, v in self.context.deck.data.items() if k not in ("analysis", "title", "note")}
         count = self.motions if self.many else None
@@ -704,7 +705,9 @@ class _Work:
                    if ((low := row.margin_at_least if row.outcome == "stands" else row.margin_below) is not None
                    and (row.outcome != "stands" or low >= 1.0)) or row.margin is not None]  # fmt: skip
         least = min(margins, default=(None, None), key=lambda m: m[0] if m[0] is not None else np.inf)
-        overall, statement = conclusion(facts, reasons, unexplained, self.context.building.structure.word, least, rows)
+        overall, statement = conclusion(
+            facts, reasons, unexplained, self.context.building.require_structure().word, least, rows
+        )
         fragility = self.results.get("probability")
         chance = estimate_collapse(rows, None if fragility is None else fragility.results)
         if self.finer_told:
@@ -712,8 +715,8 @@ class _Work:
         if overall != "cannot stand":
             statement += f" {chance.statement}"
         impulse = hazard.primary(facts.motion)
-        model = self.context.deck.motion
-        result.results = out.Assess(
+        model = self.context.deck.require_motion()
+        found = out.Assess(
             overall=overall, statement=statement,
             hazard=out.AssessHazard(
                 kind=model.kind, told=self._hazard_told(facts.motion), motions=self.motions, **self.chosen,
@@ -722,9 +725,9 @@ class _Work:
             ),
             verdicts=rows, agreement=agreement, collapse_probability=chance, reasons=reasons, unexplained=[list(p) for p in unexplained],
             parts=dict(zip(names, (words for _, words, _ in self.parts), strict=True)), probes=self.probes,
-            **({"sensitivity": self._sensitivity()} if self.moved or self.shaken else {}),
-            **({"advice": self.advice} if self.advice is not None else {}), not_done=self.not_done, least_margin=least[0], least_margin_strategy=least[1], budget_s=self.options.budget,
+            **given(sensitivity=self._sensitivity() if self.moved or self.shaken else None, advice=self.advice), not_done=self.not_done, least_margin=least[0], least_margin_strategy=least[1], budget_s=self.options.budget,
         )  # fmt: skip
+        result.results = found
         result.parts = [r for _, _, r in self.parts]
         for name, deck in zip(names, self.decks, strict=True):
             head = (
@@ -735,7 +738,7 @@ class _Work:
             )  # names of files may be no text
         result.files |= self.faults
         self._arrays(facts, rows, result)
-        result.answer = answer(statement, rows, reasons, result.results.sensitivity or [])
+        result.answer = answer(statement, rows, reasons, found.sensitivity or [])
         if self.advice is not None:
             result.answer += f"\nStrengthening. {self.advice.statement}"
         result.warnings += [
@@ -743,7 +746,7 @@ class _Work:
         ]
 
     def _hazard_told(self, motion: Any) -> str:
-        name = self.context.deck.motion.kind
+        name = self.context.deck.require_motion().kind
         if self.many:
             return f"{self.motions} motions of kind {name}; single runs take motion {self.chosen['member']}, {self.chosen['chosen_by']}"
         return f"{motion.name or name}, {motion.end:.3g} s"

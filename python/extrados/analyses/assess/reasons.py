@@ -9,7 +9,7 @@ from extrados.analyses.assess.asking import ENDING
 from extrados.analyses.assess.hazard import above, passages
 from extrados.model.structures.plan import Plan
 from extrados.motions.motion import Motion
-from extrados.results.assess import Reason, StrategyVerdict
+from extrados.results.assess import Agreement, Reason, StrategyVerdict
 from extrados.results.codes import Check, Checked, LocalMechanism
 from extrados.results.dem import DemRun
 from extrados.results.frame import FramePushover
@@ -67,7 +67,7 @@ class Facts:
         """The strategies with a verdict."""
         return [n for n, r in self.rows.items() if r.status == "ok" and r.outcome != "not-applicable"]
 
-    def relation(self, a: str, b: str) -> str:
+    def relation(self, a: str, b: str) -> Agreement:
         """agree, apart, disagree or open (results.assess)."""
         one, two = self.rows[a], self.rows[b]
         if {one.outcome, two.outcome} == {"collapses", "cannot-stand"}:

@@ -112,7 +112,7 @@ def margin_over(r: OverLevels, acceptable: float) -> float:
 def varied(building: Building, given: dict[str, float] | None, restitution: float | None) -> list[Varied]:
     """The keys that are moved: those of the deck, or thickness, corners, friction, restitution and density as the
     structure knows them. restitution: c_v of rocking, where a rule gives it."""
-    structure = building.structure
+    structure = building.require_structure()
     keys = given or dict.fromkeys(
         [
             *THICKNESS.get(structure.kind, ("structure.thickness",)), "structure.thickness_factor", "joints.friction",

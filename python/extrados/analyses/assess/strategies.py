@@ -2,19 +2,21 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from extrados import kinds
 from extrados.analyses.assess.hazard import STRONG, strong_end
 from extrados.analyses.assess.tables import Assess
+from extrados.analyses.assess.tables import Strategy as StrategyName
 from extrados.analyses.codes.actions import fits
 from extrados.analyses.context import Context
 from extrados.model.errors import NoView
 from extrados.model.structures.plan import Plan
 from extrados.motions.tables import Compatible
 from extrados.results import validity
+from extrados.results.assess import Axis
 from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import engineering
 from extrados.views.building import Building
@@ -91,10 +93,10 @@ class Strategy:
     """name: as decks call it; kind: of its analysis; label: in words; axis: what it compares (results.assess); assumes:
     what it takes for granted; choose: how it is asked."""
 
-    name: str
+    name: StrategyName | Literal["scaled"]
     kind: str
     label: str
-    axis: str
+    axis: Axis
     assumes: str
     choose: Callable[[Asked], Choice]
 
@@ -122,15 +124,15 @@ def _levels(asked: Asked) -> Choice:
 
 def _scatter(asked: Asked) -> dict[str, float]:
     """The uncertain values that a kind of structure knows."""
-    kind = asked.building.structure.kind
+    kind = asked.building.require_structure().kind
     own = {
         "arch": {"thickness": SCATTER, "restitution": SCATTER},
         "block": {"width": SCATTER, "height": SCATTER, "restitution": SCATTER},
         "column": {"width": SCATTER, "height": SCATTER, "restitution": SCATTER},
     }.get(kind, {"density": SCATTER, "imperfection": STRAY, "restitution": SCATTER})
-    if asked.building.structure.rocks_as == "piers":
+    if asked.building.require_structure().rocks_as == "piers":
         own = {"restitution": SCATTER}
-    if kind == "block" and asked.building.structure.width is None:
+    if kind == "block" and getattr(asked.building.structure, "width", None) is None:
         own = {"centre_height": SCATTER, "toe_right": SCATTER, "restitution": SCATTER}
     return own
 
@@ -141,7 +143,7 @@ def _probability(asked: Asked) -> Choice:
     uncertain = asked.options.uncertain or _scatter(asked)
     if asked.building.restraints or asked.building.supports.abutting_wall is not None:
         raise LeftOut("sizes of a building that is held by more than its weight are not varied")
-    each = RUN_SECONDS.get(asked.building.structure.kind, RUN_SECONDS_ELSE)
+    each = RUN_SECONDS.get(asked.building.require_structure().kind, RUN_SECONDS_ELSE)
     count = int(2 ** np.floor(np.log2(np.clip(asked.share("probability") / each, 16, 1024))))
     told = ", ".join(f"{name} {100 * v:g} %" for name, v in uncertain.items())
     return Choice(
@@ -197,11 +199,11 @@ def _codes(asked: Asked) -> Choice:
     from extrados.analyses.codes.tables import CodeChecks
 
     spectrum = asked.options.spectrum
-    if asked.building.structure.rocks_as == "piers":
+    if asked.building.require_structure().rocks_as == "piers":
         raise LeftOut(
             "the pier rules need the vertical load on top of the wall: give options.code-checks = { axial_load = ... }"
         )
-    own = asked.building.structure.kind in (CodeChecks.structures or ())
+    own = asked.building.require_structure().kind in (CodeChecks.structures or ())
     own = own and set(asked.building.special_keys) <= set(CodeChecks.bears)
     keys: dict[str, Any] = {} if own else {"mechanism": "building"}
     on_plan = isinstance(asked.building.structure, Plan)
@@ -318,20 +320,20 @@ def _too_long(seconds: float, share: float, how: str) -> str:
     return f"{how} it takes about {seconds:.0f} s, its share of the budget is {share:.0f} s"
 
 
+_ALL: tuple[tuple[StrategyName, str, str, Axis, validity.Validity, Callable[[Asked], Choice]], ...] = (
+    ("tilt", "tilt", "limit analysis", "acceleration", validity.Tilt, _as_it_is),
+    ("rocking", "rocking", "rocking", "displacement", validity.Rocking, _as_it_is),
+    ("assessment", "assessment", "primary impulse", "pulse", validity.Assessment, _as_it_is),
+    ("code-checks", "code-checks", "codes", "check", validity.CodeChecks, _codes),
+    ("probability", "fragility", "probability", "probability", validity.Fragility, _probability),
+    ("sla", "sla", "sequentially linear analysis", "acceleration", validity.Sla, _sla),
+    ("push-x", "pushover", "push along x", "acceleration", validity.Pushover, lambda asked: _push(asked, 0.0)),
+    ("push-y", "pushover", "push along y", "acceleration", validity.Pushover, lambda asked: _push(asked, 90.0)),
+    ("frame", "frame-pushover", "equivalent frame", "acceleration", validity.FramePushover, _frame),
+    ("dem", "dem", "discrete elements", "displacement", validity.Dem, _dem),
+)
 ALL = tuple(
-    Strategy(name, kind, label, axis, assumed.assumes, choose)
-    for name, kind, label, axis, assumed, choose in (
-        ("tilt", "tilt", "limit analysis", "acceleration", validity.Tilt, _as_it_is),
-        ("rocking", "rocking", "rocking", "displacement", validity.Rocking, _as_it_is),
-        ("assessment", "assessment", "primary impulse", "pulse", validity.Assessment, _as_it_is),
-        ("code-checks", "code-checks", "codes", "check", validity.CodeChecks, _codes),
-        ("probability", "fragility", "probability", "probability", validity.Fragility, _probability),
-        ("sla", "sla", "sequentially linear analysis", "acceleration", validity.Sla, _sla),
-        ("push-x", "pushover", "push along x", "acceleration", validity.Pushover, lambda asked: _push(asked, 0.0)),
-        ("push-y", "pushover", "push along y", "acceleration", validity.Pushover, lambda asked: _push(asked, 90.0)),
-        ("frame", "frame-pushover", "equivalent frame", "acceleration", validity.FramePushover, _frame),
-        ("dem", "dem", "discrete elements", "displacement", validity.Dem, _dem),
-    )
+    Strategy(name, kind, label, axis, assumed.assumes, choose) for name, kind, label, axis, assumed, choose in _ALL
 )
 #: Rocking at many factors on the hazard: the margin of `rocking`, and of a set the share of its motions
 SCALED = Strategy("scaled", "fragility", "rocking at factors on the hazard", "probability", "", _levels)
@@ -339,7 +341,7 @@ SCALED = Strategy("scaled", "fragility", "rocking at factors on the hazard", "pr
 
 def reckon_with(options: Assess, building: Building) -> set[str]:
     """Properties of the building that at least one of the strategies takes into account that are asked and can look at it."""
-    asked = [s for s in ALL if s.name in (options.strategies or [s.name]) and s.applies(building)]
+    asked = [s for s in ALL if s.name in (options.strategies or (s.name,)) and s.applies(building)]
     every = {s.kind for s in asked} | {"local-mechanism" for s in asked if s.name == "code-checks"}
     tables = [kinds.table("analysis", kind).model_construct(kind=kind, mechanism="building") for kind in every]
     return set().union(*(table.reckons_with(building) for table in tables))

@@ -98,7 +98,7 @@ def conclusion(
             said.append(f"{_upper(verdict(stands or collapses, 'stands' if stands else 'collapses'))}.")
     if left:
         said.append(f"The outcome stays open by {labels(left)}.")
-    decisive = [one for one in reasons if any(facts.relation(*p) in ("disagree", "open") for p in one.explains)]  # type: ignore[misc]
+    decisive = [one for one in reasons if any(facts.relation(*p) in ("disagree", "open") for p in one.explains)]
     if decisive:
         said.append(f"The difference comes from {_list(list(dict.fromkeys(one.headline for one in decisive)))}.")
     bare = [p for p in unexplained if facts.relation(*p) == "disagree"]

@@ -73,7 +73,7 @@ def actions(context: Context, options: CodeChecks | LocalMechanism | Verificatio
         if peak is None and spectrum is not None:
             peak = spectrum(0.0, 0.05)
         found[code.concluding] = Action(
-            code.concluding, spectrum, peak, None if of_motion else old and old.years, of_motion
+            code.concluding, spectrum, peak, None if of_motion or old is None else old.years, of_motion
         )
     if isinstance(options, LocalMechanism) and options.collapse_spectrum is not None:
         rare = spectrum_of(context, options.collapse_spectrum, "collapse_spectrum")

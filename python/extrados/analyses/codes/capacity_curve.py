@@ -6,6 +6,7 @@ Spectra 16): d* = d/Gamma, F* = F/Gamma, m* = sum m phi, Gamma = m*/sum m phi^2,
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 
@@ -70,7 +71,7 @@ class CapacityCurve:
         return min(self.displacement[-1] if drop is None else drop, self.limits.get("drift", np.inf))
 
     @property
-    def ended_by(self) -> str:
+    def ended_by(self) -> Literal["drop", "drift", "end"]:
         """ "drop" or "drift", whichever is first; "end": the curve ends before either, the capacity is a lower bound."""
         if self.limits.get("drift", np.inf) <= self.ultimate:
             return "drift"

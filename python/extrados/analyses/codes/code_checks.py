@@ -16,10 +16,13 @@ from extrados.analyses.rocking.conditions import of_one, told
 from extrados.core import motion as core_motion
 from extrados.core import rocking as core_rocking
 from extrados.model.structures.block import BlockAssembly
+from extrados.model.structures.brickwork import Brickwork
+from extrados.model.structures.walls import Panel
 from extrados.results import codes as out
 from extrados.results.model import Array, Result
 from extrados.schema.constants import GRAVITY
 from extrados.schema.table import FloorBelow
+from extrados.views.rockers.block import BlockModel
 
 #: q of the demand on a pier of masonry without reinforcement; of ASCE 41 m, which is 1 where Table 11-3 is not used
 BEHAVIOUR = {"NTC": 2.0, "EN1998": 1.5}
@@ -31,13 +34,13 @@ PLATEAU = np.linspace(0.05, 1.0, 96)
 
 def run(context: Context, options: CodeChecks) -> Result:
     """The rules of the code at its limit states, with the computed rocking of the deck's motion beside them."""
-    structure, code = context.deck.structure, code_of(context)
+    structure, code = context.building.require_structure(), code_of(context)
     result = Result("code-checks")
     beside: dict[str, Any] = {}
     if structure.rocks_as == "piers":
         lines, beside = _wall(context, options)
     else:
-        block = context.building.rocker().model.block
+        block = _block_of(context).block
         lines, beside = _block(context, options, block)
         if options.axial_load is not None:
             width, height = block.toe_right + block.toe_left, 2.0 * block.centre_height
@@ -71,10 +74,16 @@ def run(context: Context, options: CodeChecks) -> Result:
     return result
 
 
+def _block_of(context: Context) -> BlockModel:
+    """The building as a rocking block."""
+    model = context.building.rocker().model
+    assert isinstance(model, BlockModel)  # of the kinds that the table takes
+    return model
+
+
 def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple[list[Line], dict[str, Any]]:
     """The rules of rocking bodies, and the results that stand beside them."""
-    rocker = context.building.rocker()
-    model = rocker.model
+    rocker, model = context.building.rocker(), _block_of(context)
     context.warnings += model.warnings
     width, height = block.toe_right + block.toe_left, 2.0 * block.centre_height
     code, asked = code_of(context), actions(context, options)
@@ -159,7 +168,7 @@ def _formulas(
     context: Context, options: CodeChecks, main: Action, size: tuple[float, float], pgv: float | None
 ) -> list[Line]:
     """Formulas of other origin for a rocking block that the deck requests."""
-    model, wanted = context.building.rocker().model, code_of(context).research
+    model, wanted = _block_of(context), code_of(context).research
     alpha = float(model.alpha.min())
     pga = None if main.peak is None else main.peak / GRAVITY
 
@@ -181,11 +190,13 @@ def _formulas(
 
 def _wall(context: Context, options: CodeChecks) -> tuple[list[Line], dict[str, Any]]:
     """The pier rules for a wall without openings, with its material's compressive strength."""
-    wall = context.deck.structure
+    wall = context.building.require_structure()
+    assert isinstance(wall, Panel | Brickwork)  # the kinds that rock as piers
+    width, height = wall.size
     pier = context.building.pier_blocks()
     thickness = options.thickness or pier.depth
     weight = float(pier.mass[0]) * GRAVITY * thickness / pier.depth
-    return _pier(context, options, *wall.size, thickness, weight)
+    return _pier(context, options, width, height, thickness, weight)
 
 
 def _pier(

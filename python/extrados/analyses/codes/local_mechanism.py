@@ -27,6 +27,7 @@ from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.model.structures.plan import Plan
 from extrados.model.ties import Tie
 from extrados.results import codes as out
+from extrados.results.fields import Keys, given
 from extrados.results.limit import DILATANT, SAME
 from extrados.results.model import Array, Result, TableData
 from extrados.results.verdict import Bound
@@ -223,9 +224,9 @@ def _judged(context: Context, options: LocalMechanism, turning: _Turning) -> _Ju
         activation_acceleration_g=found.acceleration / fc / GRAVITY, zero_displacement_m=d0,
         ultimate_displacement_m=None if d0 is None else ntc.SLV * d0, collapse_displacement_m=None if d0 is None else ntc.SLC * d0,
         equivalent_period_s=None if d0 is None else ntc.equivalent_period(found.alone / fc, d0), swaying_weight_N=found.weight,
-        base_height_m=z, **({} if building is None else {"building_height_m": building}), confidence_factor=fc,
-        behaviour_factor=options.behaviour_factor, **({} if turning.bound is None else {"bound": turning.bound}),
-        **({"violated": violated} if violated else {}), checks={x.rule: x.check() for x in lines}, jurisdiction=code.jurisdiction,
+        base_height_m=z, confidence_factor=fc,
+        behaviour_factor=options.behaviour_factor,
+        **given(building_height_m=building, bound=turning.bound, violated=violated or None), checks={x.rule: x.check() for x in lines}, jurisdiction=code.jurisdiction,
         code=code.name, by_default=context.deck.code is None, clause="", **more,
     )  # fmt: skip
     made = made.model_copy(update=made.concluded())
@@ -436,6 +437,7 @@ def _without_dilatancy(limit: LimitAnalysis, sense: int) -> tuple[float, Mechani
     least = sense * state.gamma
     if least <= 0.0:
         raise NoAnswer("a block that friction alone holds between its neighbours slides out of them at any load")
+    assert limit.friction is not None  # blocks that cannot slide have no such state
     proof = certify(limit.assembly, limit.loads, limit.friction, state, mechanism, limit.strength)
     if not proof.holds(state.gamma):
         raise NoAnswer(f"the state found is not certified (zero gap {proof.zero_gap:.1e} g)")
@@ -479,7 +481,7 @@ def _held(held: Restraints, side: int, rotation: np.ndarray) -> np.ndarray:
 
 def _checks(
     context: Context, options: LocalMechanism, turning: _Turning, storeys: int, fc: float
-) -> tuple[list[Line], dict[str, float]]:
+) -> tuple[list[Line], Keys]:
     """The rules of the code at each of its limit states, and results that stand beside them."""
     code, asked = code_of(context), actions(context, options)
     part = _part(context, options, turning)
@@ -511,7 +513,7 @@ def _asce(options: LocalMechanism, part: Part, action: Action) -> list[Line]:
 
 def _ntc(
     context: Context, options: LocalMechanism, turning: _Turning, storeys: int, fc: float, action: Action
-) -> tuple[list[Line], dict[str, float]]:
+) -> tuple[list[Line], Keys]:
     """The checks of NTC at a limit state, and a_Z."""
     found, (z, height) = turning.found, turning.place
     note = f"alpha_0 {found.alpha0:.4g}, e* {found.part:.3g}"
@@ -557,7 +559,7 @@ def _part(context: Context, options: LocalMechanism, turning: _Turning) -> Part:
     """What turns, as the other codes see it."""
     z, height = turning.place
     top = None if options.height is None else options.height - options.hinge_height
-    element = "wall of a building" if turning.part is not None else options.mechanism
+    element: str = "wall of a building" if turning.part is not None else options.mechanism
     if options.mechanism == "building" and turning.part is None:
         element = "chain of blocks"
     held = element == "vertical-bending" or (

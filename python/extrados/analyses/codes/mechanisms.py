@@ -1,12 +1,13 @@
 """The local mechanisms of walls, from their table: one body that turns about a hinge, or two that bend."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 from extrados.analyses.codes.bending import Bending, HorizontalBending, vertical_bending
 from extrados.analyses.codes.kinematics import Overturning, Push, Weight
 from extrados.analyses.codes.ntc import toothed_edge
-from extrados.analyses.codes.tables import Floor, LocalMechanism
+from extrados.analyses.codes.tables import Floor, LocalMechanism, WallTie
 from extrados.analyses.context import Refused
 from extrados.limit.errors import CannotStand
 from extrados.schema.constants import GRAVITY
@@ -101,8 +102,9 @@ def _refuse_sizes(options: LocalMechanism) -> None:
         raise Refused(
             f"{options.hinge_height:g} m is not below the top of the wall, {top:g} m", ("analysis", "hinge_height")
         )
-    for name, parts in (("floors", options.floors), ("ties", options.ties)):
-        for k, part in enumerate(parts):
+    parts: dict[str, Sequence[Floor | WallTie]] = {"floors": options.floors, "ties": options.ties}
+    for name, those in parts.items():
+        for k, part in enumerate(those):
             if part.height > top:
                 raise Refused(
                     f"{part.height:g} m is above the top of the wall, {top:g} m", ("analysis", name, k, "height")

@@ -3,6 +3,7 @@ mechanism its sizes."""
 
 import contextlib
 from collections.abc import Iterator
+from functools import partial
 
 from extrados.analyses.codes.actions import actions, code_of, refuse_mixed
 from extrados.analyses.codes.kinematics import NoMechanism
@@ -43,13 +44,13 @@ def needs(context: Context, options: Analysis) -> Iterator[Need]:
         yield lambda: _refuse_elsewhere(context, options)
         if not options.of_stones(building):
             for what, key in building.special_keys.items():
-                yield lambda what=what, key=key: _refuse_unheld(what, key)
+                yield partial(_refuse_unheld, what, key)
         if options.mechanism == "building":
             yield lambda: _refuse_nothing(building)
             for name in sorted(
                 options.model_fields_set & {*OF_A_BODY, *(OF_A_PLACE if isinstance(structure, Plan) else ())}
             ):
-                yield lambda name=name: _refuse_given(name)
+                yield partial(_refuse_given, name)
             if isinstance(structure, Plan):
                 yield lambda: _read_walls(building)
         else:

@@ -223,7 +223,10 @@ def _varied(options: DemDomain, base: JointValues) -> list[Curve]:
 
 def _springs(curve: Curve) -> dict[str, float | None]:
     """Stiffness and damping of a curve; None of rigid contacts."""
-    told = {"beta_s": curve.values.beta, "stiffness_Pa_per_m": float(curve.values.stiffness.max())}
+    told: dict[str, float | None] = {
+        "beta_s": curve.values.beta,
+        "stiffness_Pa_per_m": float(curve.values.stiffness.max()),
+    }
     told |= {f"damping_ratio_{name}": ratio for name, ratio in curve.values.ratios().items()}
     return dict.fromkeys(told) if curve.rigid else told
 

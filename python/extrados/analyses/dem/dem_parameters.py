@@ -36,7 +36,7 @@ def run(context: Context, options: DemParameters) -> Result:
         convention=context.building.joints.stiffness_rule,
     )
     result.warnings = dem_model.warnings(model, options)
-    columns = {
+    columns: dict[str, np.ndarray | list[str]] = {
         "joint": list(model.assembly.joint_names),
         "stiffness": v.stiffness,
         "stone_length": v.length,

@@ -10,6 +10,7 @@ from extrados.analyses.dem import impact_rules
 from extrados.analyses.dem.calibration import beta_for_restitution
 from extrados.analyses.dem.model import JointValues, Model
 from extrados.analyses.dem.tables import DemTable
+from extrados.analyses.dem.ties import element_ties, section_strands
 from extrados.model.geometry.assembly import GROUND
 from extrados.model.structures.arch import ArchAssembly
 from extrados.views.building import Building
@@ -41,7 +42,9 @@ def joint_values(building: Building, rigid: bool = False) -> JointValues:
     values = JointValues(
         stiffness,
         shear,
-        *(building.joint_property(name) for name in ("friction", "cohesion", "tension")),
+        building.joint_property("friction"),
+        building.joint_property("cohesion"),
+        building.joint_property("tension"),
         beta,
         impact,
         length,
@@ -60,4 +63,6 @@ def make_model(context: Context, options: DemTable) -> Model:
         assert isinstance(assembly, ArchAssembly)
         joint = ArchModel(assembly).four_hinge.joint
         groups = tuple(tuple(range(a, b)) for a, b in itertools.pairwise(joint))
-    return Model(assembly, building.rigid(groups, options.floor), joint_values(building))
+    rigid = building.rigid(groups, options.floor)
+    ties = element_ties(building, section_strands(building), rigid.body_of_block)
+    return Model(assembly, rigid, joint_values(building), ties)

@@ -16,6 +16,7 @@ from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.perturbed import FACTOR, probe_chaos
 from extrados.analyses.dem.seen import Seen
 from extrados.analyses.dem.tables import Dem
+from extrados.analyses.dem.ties import section_arrays, tie_arrays, tie_columns, tie_rows
 from extrados.analyses.dem.trial import Trial
 from extrados.analyses.dem.variations import vary
 from extrados.analyses.dem.words import motion_answer
@@ -115,6 +116,7 @@ def _numbers(options: Dem, trial: Trial, seen: Seen, ground: np.ndarray) -> dict
         else None,
         "bounces": int(found.bounces[mobile].sum()),
         "airborne_time_s": float(found.airborne[mobile].max(initial=0.0)),
+        **tie_rows(model.ties, found.tension),
         "solver": options.solver,
         "convergence": measures.convergence(found.effort) if options.rigid else None,
         **measures.springs(options, model.values, found),
@@ -134,11 +136,13 @@ def _store(options: Dem, seen: Seen, ground: np.ndarray, result: Result) -> None
             "time": found.time,
             **{f"rotation of {names[i]}": seen.rotation[:, i] for i in tracked},
             **{f"{name}_energy": values for name, values in found.energy.items() if name != "leapfrog"},
+            **tie_columns(model.ties, found.tension),
         },
         {
             "time": "s",
             **{f"rotation of {names[i]}": "rad" for i in tracked},
             **{f"{name}_energy": "J" for name in found.energy if name != "leapfrog"},
+            **dict.fromkeys(tie_columns(model.ties, found.tension), "N"),
         },
     )
     result.tables["dem_hinges"] = measures.hinge_table(model, found.time, seen.state)
@@ -165,6 +169,8 @@ def _store(options: Dem, seen: Seen, ground: np.ndarray, result: Result) -> None
             for name, values in found.energy.items()
             if name != "leapfrog"
         },
+        **tie_arrays(model.ties, found.tension),
+        **section_arrays(model.ties),
         "ground": Array(ground, ("time",), "m/s^2"),
         "snapshot_time": Array(measures.snapshot_times(options, found), ("snapshot",), "s"),
         **measures.support_arrays(model),

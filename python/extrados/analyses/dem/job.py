@@ -23,7 +23,7 @@ SOLIDS_FOR_THREADS = 60
 KEEP_SECONDS, ENDED = 10.0, 999_999_999_999
 NUMBERS = ("stop_time", "step", "critical_step", "residual")
 COUNTS = ("steps", "settling_steps", "searches", "most_pairs")
-HISTORIES = ("time", "place", "rate")
+HISTORIES = ("time", "place", "rate", "tension")
 OF_BODIES = ("settled", "bounces", "airborne")
 NO_CONTACTS = dem.Contacts(*(np.zeros(shape) for shape in ((0, 2), (0, 2), (0, 2), 0, 0)))
 

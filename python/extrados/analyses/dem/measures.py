@@ -2,6 +2,7 @@
 
 import itertools
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -109,7 +110,7 @@ def convergence(effort: dem_run.Effort) -> Convergence:
 
 def springs(options: Dem, values: JointValues | SolidValues, found: dem_run.FoundRun) -> dict[str, float | None]:
     """Stiffness, damping and the stable step of joints with springs; None of rigid contacts."""
-    told = {
+    told: dict[str, float | None] = {
         "joint_stiffness_min_Pa_per_m": float(values.stiffness.min()),
         "joint_stiffness_max_Pa_per_m": float(values.stiffness.max()),
         "beta_s": values.beta,
@@ -174,7 +175,7 @@ class Collapse:
         return cls(displacement, 0.5 * displacement / size, 0.25 * displacement)
 
     @property
-    def options(self) -> dict[str, float]:
+    def options(self) -> dict[str, Any]:
         """As the core's options call it."""
         return {"collapse": self.displacement, "collapse_turn": self.turn, "collapse_drop": self.drop}
 
@@ -303,7 +304,7 @@ def support_arrays(model: Model) -> dict[str, Array]:
     }
 
 
-def snapshot_times(options: Dem, run: dem.Run) -> np.ndarray:
+def snapshot_times(options: Dem, run: dem_run.FoundRun) -> np.ndarray:
     """Times of the drawings: those asked for, or six between the first motion and the end of what matters."""
     if not len(run.time):
         return np.zeros(0)

@@ -9,14 +9,16 @@ from extrados.analyses.context import Refused
 from extrados.analyses.dem import impact_rules
 from extrados.analyses.dem.solid_model import SolidModel, SolidValues
 from extrados.analyses.dem.tables import DemTable
-from extrados.core import dem, dem3, dem_run
+from extrados.analyses.dem.ties import NO_TIES, ElementTies
+from extrados.core import dem, dem_run
+from extrados.core.dem_run import Law
 from extrados.core.errors import Cancelled, status_code
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.earth import passive_left_out
 from extrados.schema.constants import GRAVITY
 from extrados.views.rigid import RigidBodies
 
-Found = TypeVar("Found", dem.Run, dem3.Run)
+Found = TypeVar("Found", bound=dem_run.FoundRun)
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,7 @@ class Model:
     assembly: Assembly
     rigid: RigidBodies
     values: JointValues
+    ties: ElementTies = NO_TIES
 
     @property
     def body_names(self) -> list[str]:
@@ -76,8 +79,8 @@ class Model:
         """Bodies and laws for the core; contacts that form later take the median of the joints, without mortar."""
         v = values or self.values
 
-        def law(k: float, shear: float, friction: float, cohesion: float = 0.0, tension: float = 0.0) -> dem.Law:
-            return dem.Law(
+        def law(k: float, shear: float, friction: float, cohesion: float = 0.0, tension: float = 0.0) -> Law:
+            return Law(
                 float(k),
                 float(shear),
                 float(friction),
@@ -87,7 +90,7 @@ class Model:
             )
 
         laws = [law(np.median(v.stiffness), np.median(v.shear_stiffness), np.median(v.friction))]
-        numbers: dict[dem.Law, int] = {}
+        numbers: dict[Law, int] = {}
         joints: dict[tuple[int, int], int] = {}
         for j, pair in enumerate(self.rigid.joints):
             if pair is None:
@@ -98,7 +101,9 @@ class Model:
                 laws.append(one)
             joints[pair] = numbers[one]
         r = self.rigid
-        return dem.Bodies(r.centroid, r.mass, r.inertia, r.parts, r.owner, r.outer, r.depth, laws, joints)
+        return dem.Bodies(
+            r.centroid, r.mass, r.inertia, r.parts, r.owner, r.outer, r.depth, laws, joints, self.ties.core
+        )
 
 
 class Falls(Refused):

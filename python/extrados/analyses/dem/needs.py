@@ -7,6 +7,7 @@ from extrados import room
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import tables
 from extrados.analyses.dem.solid_model import RIGID, refusals, refuse_mortar, refuse_stones
+from extrados.analyses.dem.ties import refuse_rigid_ties
 from extrados.analyses.needs import SHARE, Need, stones_of
 from extrados.model.errors import BadGeometry, Key
 from extrados.model.geometry.assembly import Assembly
@@ -35,6 +36,8 @@ def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
         yield lambda: _refuse_bars(building)
     if _rigid(options):
         yield lambda: _refuse_springs(building)
+    yield lambda: refuse_rigid_ties(building)
+    yield building.anchored
     if building.joints.damping == "restitution" and building.joints.beta is None:
         yield lambda: _refuse_restitution(building)
     if building.initial.movements:
@@ -95,6 +98,8 @@ def _needs_of_solids(context: Context, options: tables.SpatialDem, stones: Solid
     for text, key in refusals(building, options):
         yield partial(refuse, text, key)
     yield lambda: refuse_stones(building, stones, _rigid(options))
+    yield lambda: refuse_rigid_ties(building)
+    yield building.strands
     if not isinstance(options, tables.Dem):
         return
     yield lambda: _refuse_long(options, len(stones.block_names), len(stones.a))

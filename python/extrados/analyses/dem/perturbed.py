@@ -38,7 +38,12 @@ def probe_chaos(
     nothing moves the building; outcome_of: of a run; name: of what is kept of it. An interruption is told in `result`."""
     if idle:
         return chaos_of(outcome_of(found), outcome_of(found), 0.0)
-    unknown = {"decided_by_last_digits": False, "perturbation_growth": None, "perturbed_outcome": None, "violated": []}
+    unknown: dict[str, Any] = {
+        "decided_by_last_digits": False,
+        "perturbation_growth": None,
+        "perturbed_outcome": None,
+        "violated": [],
+    }
     if job is None or result.status != "ok":
         return unknown
     try:

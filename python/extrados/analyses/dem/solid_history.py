@@ -14,6 +14,7 @@ from extrados.analyses.dem.solid_measures import SolidsSeen
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.solid_settlement import farthest_settlement
 from extrados.analyses.dem.tables import Dem
+from extrados.analyses.dem.ties import tie_arrays, tie_columns, tie_rows
 from extrados.analyses.dem.words import solid_answer
 from extrados.analyses.limit.solids import scene_arrays
 from extrados.core import dem3
@@ -139,6 +140,7 @@ def _numbers(options: Dem, seen: SolidsSeen) -> dict[str, Any]:
         "energy_residual_ratio": found.residual,
         "bounces": int(found.bounces[mobile].sum()),
         "airborne_time_s": float(found.airborne[mobile].max(initial=0.0)),
+        **tie_rows(model.ties, found.tension),
         "solver": options.solver,
         "convergence": measures.convergence(found.effort) if options.rigid else None,
         **measures.springs(options, model.values, found),
@@ -179,7 +181,10 @@ def _store(options: Dem, seen: SolidsSeen, ground: np.ndarray, result: Result) -
         columns |= {f"{axis} of {names[i]}": shift[:, i, k] for k, axis in enumerate("xyz")}
         columns[f"rotation of {names[i]}"] = seen.angle[:, i]
     units = {key: "rad" if key.startswith("rotation") else "m" for key in columns} | {"time": "s"}
-    result.tables["dem"] = TableData(columns | energies, units | dict.fromkeys(energies, "J"))
+    forces = tie_columns(model.ties, found.tension)
+    result.tables["dem"] = TableData(
+        columns | energies | forces, units | dict.fromkeys(energies, "J") | dict.fromkeys(forces, "N")
+    )
     result.arrays = {
         **run_arrays(model, found, measures.snapshot_times(options, found)),
         "shift": Array(shift, ("time", "block", "axis3"), "m", "of the centroids, from the settled state"),
@@ -189,6 +194,7 @@ def _store(options: Dem, seen: SolidsSeen, ground: np.ndarray, result: Result) -
         "opening": Array(seen.opening, ("time", "contact"), "m", "gap at the corner of each contact that gapes most"),
         "slip": Array(seen.slip, ("time", "contact"), "m", "slip at its most closed corner"),
         **{name: Array(values, ("time",), "J") for name, values in energies.items()},
+        **tie_arrays(model.ties, found.tension),
         "ground": Array(ground, ("time",), "m/s^2", "acceleration of the ground along the direction"),
     }  # fmt: skip
     if len(found.time):

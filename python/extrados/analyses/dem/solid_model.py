@@ -7,7 +7,9 @@ import numpy as np
 from extrados.analyses.context import Refused
 from extrados.analyses.dem import impact_rules
 from extrados.analyses.dem.tables import Dem, DemDomain, SpatialDem
+from extrados.analyses.dem.ties import NO_TIES, ElementTies, element_ties
 from extrados.core import dem3
+from extrados.core.dem_run import Law
 from extrados.model.errors import Key
 from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.model.geometry.solids.contacts import GROUND
@@ -51,6 +53,7 @@ class SolidModel:
     assembly: SolidAssembly
     supports: Supports
     values: SolidValues
+    ties: ElementTies = NO_TIES
 
     @property
     def count(self) -> int:
@@ -74,7 +77,7 @@ class SolidModel:
         parts = [*one.parts, *below]
         dry = [float(np.median(x)) for x in (v.stiffness, v.shear_stiffness, v.friction)]
         laws = [_law(v, *dry)]
-        numbers: dict[dem3.Law, int] = {}
+        numbers: dict[Law, int] = {}
         joints: dict[tuple[int, int], int] = {}
         weight: dict[tuple[int, int], list[int]] = {}
         for j, (a, b) in enumerate(zip(one.a.tolist(), one.b.tolist(), strict=True)):
@@ -94,7 +97,7 @@ class SolidModel:
             np.concatenate([one.centroid, np.reshape(middle, (-1, 3))]), np.concatenate([one.mass, np.zeros(count)]),
             np.concatenate([one.inertia, np.tile(np.eye(3), (count, 1, 1))]), [p.vertices for p in parts],
             [p.faces for p in parts], [*one.owner.tolist(), *range(self.count, self.count + count)], laws, joints,
-            self._dowels(),
+            self._dowels(), self.ties.core,
         )  # fmt: skip
 
     def _dowels(self) -> dem3.Dowels | None:
@@ -115,17 +118,18 @@ class SolidModel:
 
 def _law(
     values: SolidValues, stiffness: float, shear: float, friction: float, cohesion: float = 0.0, tension: float = 0.0
-) -> dem3.Law:
+) -> Law:
     stiffness, shear, friction, cohesion, tension = (
         float(f"{x:.12g}") for x in (stiffness, shear, friction, cohesion, tension)
     )
-    return dem3.Law(stiffness, shear, friction, cohesion=cohesion, tension=tension, damping=values.beta)
+    return Law(stiffness, shear, friction, cohesion=cohesion, tension=tension, damping=values.beta)
 
 
 def make_solid_model(building: Building, options: SpatialDem) -> SolidModel:
     """The model of a building's blocks in space."""
     assembly = building.solids()
-    return SolidModel(assembly, supports_of(assembly, options.floor), solid_values(building, assembly))
+    ties = element_ties(building, building.strands(), np.arange(len(assembly.mass)))
+    return SolidModel(assembly, supports_of(assembly, options.floor), solid_values(building, assembly), ties)
 
 
 def refusals(building: Building, options: SpatialDem) -> list[tuple[str, Key]]:
@@ -217,10 +221,10 @@ def _lengths(assembly: SolidAssembly) -> np.ndarray:
     for block, inward in _sides(assembly):
         for j in np.flatnonzero(block != GROUND).tolist():
             of_block.setdefault(int(block[j]), []).append((j, inward[j]))
-    for block, faces in of_block.items():
+    for number, faces in of_block.items():
         normals = np.array([n for _, n in faces])
         for j, inward in faces:
-            total[j] += float(np.ptp(points[block] @ inward)) * (0.5 if (normals @ inward < FACING).any() else 1.0)
+            total[j] += float(np.ptp(points[number] @ inward)) * (0.5 if (normals @ inward < FACING).any() else 1.0)
     return total
 
 

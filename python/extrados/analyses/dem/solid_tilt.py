@@ -11,6 +11,7 @@ from extrados.analyses.dem.job import SolidRuns, SolidTask
 from extrados.analyses.dem.solid_history import core_options, run_arrays
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.dem.tables import Dem
+from extrados.analyses.dem.ties import tie_rows
 from extrados.analyses.dem.tilt import GOES, RAMP, capacities, pushed, slides, unused
 from extrados.analyses.dem.words import solid_tilt_answer
 from extrados.core import dem3
@@ -52,6 +53,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
         energy_residual_ratio=max(last.residual, back_run.residual),
         time_step_s=last.step,
         steps=last.steps,
+        **tie_rows(model.ties, last.tension),
         solver=options.solver,
         convergence=measures.convergence(effort) if options.rigid else None,
         beta_s=None if options.rigid else model.values.beta,

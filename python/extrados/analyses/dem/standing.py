@@ -10,7 +10,7 @@ from extrados.analyses.dem.job import Runs, SolidRuns, SolidTask, Task
 from extrados.analyses.dem.model import Falls, Model, Restless, checked
 from extrados.analyses.dem.solid_model import SolidModel
 from extrados.analyses.limit.common import loads_of
-from extrados.core import dem, dem3
+from extrados.core import dem, dem3, dem_run
 from extrados.core.calls import interruptible
 from extrados.limit.answer import cannot_stand
 from extrados.limit.equilibrium import Disconnected
@@ -30,6 +30,8 @@ JAMMED = (
 )
 #: Steps of springs in which cases/solid/dem-cross-vault comes to rest, 14 times over
 SETTLING = 20_000
+#: s: a run that ends as it has settled
+BRIEF = 1e-6
 #: Walls of more joints are not held against other methods, which would take as long as the elements.
 MOST_JOINTS = 3000
 #: Nor are more solids.
@@ -92,15 +94,14 @@ def jammed(model: Model | SolidModel, threads: int) -> tuple[str, str]:
     Rigid contacts take any forces that hold; springs, which begin without force, find those that the weight calls up. A
     stone of slight taper sinks farther than springs give until it sits: it may go as far as on rigid contacts.
     """
-    brief = {"end_time": 1e-6, "output_step": 1e-6}  # it ends as it has settled
     both = (False, True)
     if isinstance(model, Model):
         far = max(settlement.farthest_settlement(model, rigid=rigid) for rigid in both)
-        options = dem.Options(settlement=far, settle_steps=SETTLING, **brief)
-        found: dem.Run | dem3.Run = Runs([model.bodies()], [Task(0, options)]).one(0, threads)
+        options = dem.Options(settlement=far, settle_steps=SETTLING, end_time=BRIEF, output_step=BRIEF)
+        found: dem_run.FoundRun = Runs([model.bodies()], [Task(0, options)]).one(0, threads)
     else:
         far = max(solid_settlement.farthest_settlement(model, rigid) for rigid in both)
-        in_space = dem3.Options(settlement=far, settle_steps=SETTLING, **brief)
+        in_space = dem3.Options(settlement=far, settle_steps=SETTLING, end_time=BRIEF, output_step=BRIEF)
         found = SolidRuns(model.bodies(), [SolidTask(in_space)]).one(0, threads)
     try:
         checked(found, model)

@@ -41,6 +41,8 @@ def of_springs(building: "Building") -> set[str]:
 class DemTable(BuildingAnalysis):
     """What all analyses with discrete elements ask."""
 
+    bears: ClassVar = ("[[ties]]",)
+
     uses: ClassVar = (
         "material.density", "material.young", "joints.friction", "joints.cohesion", "joints.tension",
         "joints.normal_stiffness", "joints.damping",

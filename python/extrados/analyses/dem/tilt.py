@@ -13,6 +13,7 @@ from extrados.analyses.dem.job import Runs, Task, answered
 from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.settlement import farthest_settlement
 from extrados.analyses.dem.tables import Dem
+from extrados.analyses.dem.ties import section_arrays, tie_rows
 from extrados.analyses.dem.trial import core_options
 from extrados.analyses.dem.words import tilt_answer
 from extrados.analyses.limit.common import geometry_arrays
@@ -20,6 +21,7 @@ from extrados.core import dem
 from extrados.core.ground import Ground
 from extrados.results import dem as out
 from extrados.results.dem import HINGED_FIRST, HINGED_SECOND
+from extrados.results.limit import NamedHinge
 from extrados.results.model import Array, Result
 from extrados.schema.constants import GRAVITY
 
@@ -74,6 +76,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         energy_residual_ratio=max(last.residual, back_run.residual),
         time_step_s=last.step,
         steps=last.steps,
+        **tie_rows(model.ties, last.tension),
         solver=options.solver,
         beta_s=None if options.rigid else model.values.beta,
         convergence=measures.convergence(last.effort.with_(back_run.effort)) if options.rigid else None,
@@ -86,6 +89,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         "rate": Array(measures.block_rates(model, last), ("time", "block", "component"), "m/s, m/s, rad/s"),
         "hinge": Array(state, ("time", "joint"), "", "0 closed, -1 hinged at the first end, 1 at the second, 2 open"),
         "snapshot_time": Array(last.time[[at, -1]], ("snapshot",), "s"),
+        **section_arrays(model.ties),
         **measures.support_arrays(model),
     }
     result.answer = tilt_answer(result.results)
@@ -157,14 +161,14 @@ def capacities(
                 high[k], last[k] = middle[k], run
 
 
-def _hinged(model: Model, run: dem.Run) -> tuple[np.ndarray, np.ndarray, int, list[dict]]:
+def _hinged(model: Model, run: dem.Run) -> tuple[np.ndarray, np.ndarray, int, list[NamedHinge]]:
     """States and slips of the joints, the output where it begins to go, and the hinges there."""
     gap_p, gap_q, slip = measures.openings(model, run)
     state = measures.hinges(model, gap_p, gap_q, slip)
     begun = np.searchsorted(measures.displacements(model, run).max(axis=1), GOES * model.size)
     at = min(int(begun), len(run.time) - 1)
     rows = [
-        {"joint": int(j), "name": model.assembly.joint_names[j], "side": "intrados" if state[at, j] == HINGED_FIRST else "extrados"}
-        for j in np.flatnonzero(np.isin(state[at], (HINGED_FIRST, HINGED_SECOND)))
+        NamedHinge(joint=j, name=model.assembly.joint_names[j], side="intrados" if state[at, j] == HINGED_FIRST else "extrados")
+        for j in np.flatnonzero(np.isin(state[at], (HINGED_FIRST, HINGED_SECOND))).tolist()
     ]  # fmt: skip
     return state, slip, at, rows

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -122,7 +123,7 @@ class Trial:
         """Does nothing move it?"""
         return self.ground is None and not self.moves and self.shift is None
 
-    def job(self, values: list[JointValues], factor: float = 1.0, **change: object) -> Runs:
+    def job(self, values: list[JointValues], factor: float = 1.0, **change: Any) -> Runs:
         """A run with each of these joint values; what moves the building times a factor; `change` replaces options of the core."""
         options = replace(self.options, **change)
         shift, rate = (None if self.shift is None else factor * self.shift), None

@@ -1,9 +1,12 @@
 """A run again with other damping, stiffness and friction of its joints."""
 
+from typing import Literal
+
 import numpy as np
 
 from extrados.analyses.context import Context
 from extrados.analyses.dem.job import answered
+from extrados.analyses.dem.model import JointValues
 from extrados.analyses.dem.seen import Seen
 from extrados.analyses.dem.tables import Dem
 from extrados.analyses.dem.trial import Trial
@@ -14,7 +17,7 @@ from extrados.results.model import Array, Result, TableData
 def vary(context: Context, options: Dem, trial: Trial, result: Result) -> dict[str, list[out.Variation]]:
     """Sensitivity to damping, stiffness and friction (thesis Tables 7.1 to 7.7): its key, and arrays into `result`."""
     values = trial.model.values
-    cases = [
+    cases: list[tuple[Literal["damping", "stiffness", "friction"], float, JointValues]] = [
         *(("damping", f, values.scaled(damping=f)) for f in options.vary_damping),
         *(("stiffness", f, values.scaled(stiffness=f)) for f in options.vary_stiffness),
         *(("friction", f, values.scaled(friction=f)) for f in options.vary_friction),

@@ -1,6 +1,6 @@
 """The answers of a run and of a tilt test in words."""
 
-from extrados.results.dem import ONE_PATH, Convergence, DemRun, DemTilt, SolidDemRun, SolidDemTilt
+from extrados.results.dem import ONE_PATH, Convergence, DemRun, DemTilt, SolidDemRun, SolidDemTilt, TieRun
 
 
 def solved(c: Convergence) -> str:
@@ -17,6 +17,7 @@ def _audit(r: DemRun | SolidDemRun) -> str:
     audit = f"energy ledger closed to {100 * r.energy_residual_ratio:.2g} %"
     if r.convergence is not None:
         return f"{audit}, {solved(r.convergence)}"
+    assert r.damping_ratio_rotation is not None and r.damping_ratio_edge is not None  # joints with springs
     return (
         f"{audit}, damping {100 * r.damping_ratio_rotation:.3g} % of critical at rotational and "
         f"{100 * r.damping_ratio_edge:.3g} % at edge impact"
@@ -38,6 +39,19 @@ def _fate(r: DemRun | SolidDemRun, joint: str) -> str:
     return f"Blocks {fate}: greatest displacement {1e3 * r.peak_displacement_m:.3g} mm ({r.governing_block})"
 
 
+def _tied(ties: list[TieRun] | None) -> str:
+    """The greatest forces of up to four ties."""
+    if not ties:
+        return ""
+    ranked = sorted(ties, key=lambda tie: -abs(tie.peak_force_N))[:4]
+    told = [
+        f"{tie.name} is slack" if tie.state == "slack" else f"{tie.name} reaches {1e-3 * tie.peak_force_N:.4g} kN"
+        + (" and yields" if tie.state == "yielded" else "")
+        for tie in ranked
+    ]  # fmt: skip
+    return f" Forces of the ties (tension positive): {', '.join(told)}{', ...' if len(ties) > 4 else ''}."
+
+
 def motion_answer(r: DemRun, idle: bool) -> str:
     """The answer of a run under a motion; idle: nothing moves the ground."""
     if idle and r.outcome == "at-rest":
@@ -47,6 +61,7 @@ def motion_answer(r: DemRun, idle: bool) -> str:
     return (
         f"{first}; {turn[0]} rotates by {1e3 * abs(turn[1]):.3g} mrad at most, slip {1e3 * r.peak_slip_m:.3g} mm, "
         f"{r.bounces} bounces; {audit}."
+        f"{_tied(r.ties)}"
     )
 
 
@@ -59,6 +74,7 @@ def tilt_answer(r: DemTilt) -> str:
         f"Collapse under a constant horizontal acceleration of {collapse:.4f} g pushed to +x (a tilt of "
         f"{r.tilt_angle_deg:.2f} deg) and at {back:.4f} g pushed to -x; the least is {least:.4f} g, to {sense}. "
         f"Hinges as it goes to +x: {where}."
+        f"{_tied(r.ties)}"
         + (f" {ONE_PATH}" if r.interval else "")
         + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")
     )
@@ -78,6 +94,7 @@ def solid_answer(r: SolidDemRun, idle: bool) -> str:
     return (
         f"{first}; {turn[0]} rotates by {1e3 * turn[1]:.3g} mrad at most, slip {1e3 * r.peak_slip_m:.3g} mm, {r.bounces} bounces; "
         f"{r.blocks} stones, {r.contacts} contacts; {audit}."
+        f"{_tied(r.ties)}"
     )
 
 
@@ -89,6 +106,7 @@ def solid_tilt_answer(r: SolidDemTilt) -> str:
         f"Collapse under a constant horizontal acceleration of {r.collapse_acceleration_g:.4f} g pushed along {r.load_direction_deg:g} "
         f"degrees in plan (a tilt of {r.tilt_angle_deg:.2f} deg) and at {r.collapse_acceleration_opposite_g:.4f} g the opposite way; "
         f"the least is {least:.4f} g. Contacts that gape or slide as it goes: {where}."
+        f"{_tied(r.ties)}"
         + (f" {ONE_PATH}" if r.interval else "")
         + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")
     )

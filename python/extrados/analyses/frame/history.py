@@ -1,15 +1,18 @@
 """frame-history: motion of a frame of macro-elements under a ground acceleration."""
 
+from typing import Literal
+
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.frame.modes import modes_of, rest_of
+from extrados.analyses.frame.modes import Mode, modes_of, rest_of, way_of
 from extrados.analyses.frame.pushover import MODES
-from extrados.analyses.frame.tables import FrameHistory
+from extrados.analyses.frame.tables import FrameHistory, FrameMotion
 from extrados.core.calls import interruptible
-from extrados.core.frame import STATE
+from extrados.core.frame import STATE, Frame, Path
 from extrados.results import frame as out
 from extrados.results.model import Array, Result, TableData
+from extrados.views.frame.plan import EquivalentFrame
 
 #: Time after the motion [s]
 AFTER = 2.0
@@ -21,30 +24,39 @@ def rayleigh(ratio: float, frequencies: tuple[float, float]) -> tuple[float, flo
     return 2.0 * ratio * one * two / (one + two), 2.0 * ratio / (one + two)
 
 
+def damped(frame: EquivalentFrame, core: Frame, options: FrameMotion) -> tuple[Mode, tuple[float, float]]:
+    """The mode of greatest participating mass along the motion, and Rayleigh's factors."""
+    way = way_of(options.direction)
+    mode = max(modes_of(frame, rest_of(frame, core).tangent, MODES), key=lambda m: m.participating(way))
+    given = options.damping_frequencies
+    pair = (given[0], given[1]) if given else (mode.frequency, 3.0 * mode.frequency)
+    return mode, rayleigh(options.damping_ratio, pair)
+
+
+def control_of(frame: EquivalentFrame, path: Path, way: np.ndarray) -> np.ndarray:
+    """Displacement [m] over time of the highest level along a direction, beyond that at rest."""
+    level = max(one.level for one in frame.masses)
+    return np.asarray((path.displacement - path.displacement[0]) @ frame.control(way, level))
+
+
 def run(context: Context, options: FrameHistory) -> Result:
     """Displacements, base shear and states of the elements over time."""
     result = Result("frame-history")
     frame = context.building.frame(options.frame)
     context.warnings += frame.remarks
     motion = context.motion
-    angle = np.radians(options.direction)
-    way = np.round(np.array([np.cos(angle), np.sin(angle)]), 15)
+    way = way_of(options.direction)
     end = options.end_time or motion.end + AFTER
     time = np.arange(0.0, end + 0.5 * options.time_step, options.time_step)
     ground = motion.sample(time)
-    level = max(one.level for one in frame.masses)
-    control = frame.control(way, level)
     with interruptible(), frame.core() as core:
-        mode = max(modes_of(frame, rest_of(frame, core).tangent, MODES), key=lambda m: m.participating(way))
-        given = options.damping_frequencies
-        pair = (given[0], given[1]) if given else (mode.frequency, 3.0 * mode.frequency)
-        damping = rayleigh(options.damping_ratio, pair)
+        mode, damping = damped(frame, core, options)
         path = core.move(frame.unit(way), ground, options.time_step, damping)
     if path.stop == "no equilibrium under the weight":
         raise Refused("the frame has no equilibrium under its weight", ("structure", "walls"))
     count = len(path.displacement)
     time = time[:count]
-    moved = (path.displacement - path.displacement[0]) @ control
+    moved = control_of(frame, path, way)
     piers = frame.piers_at
     drift = path.drift[:, piers]
     at = np.unravel_index(int(drift.argmax()), drift.shape)
@@ -52,11 +64,13 @@ def run(context: Context, options: FrameHistory) -> Result:
     for k, strip in enumerate(frame.strips):
         there = np.flatnonzero(path.state[:, k] >= STATE["failed_flexure"])
         if len(there):
-            word = "shear" if path.state[there[0], k] == STATE["failed_shear"] else "flexure"
+            word: Literal["flexure", "shear"] = (
+                "shear" if path.state[there[0], k] == STATE["failed_shear"] else "flexure"
+            )
             failed.append(
                 (
                     time[there[0]],
-                    {"element": strip.name, "mode": word, "control_displacement_m": float(moved[there[0]])},
+                    out.FailedElement(element=strip.name, mode=word, control_displacement_m=float(moved[there[0]])),
                 )
             )
     failed.sort(key=lambda row: row[0])

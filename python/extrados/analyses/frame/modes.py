@@ -28,6 +28,12 @@ class Mode:
         return float(way @ self.participation) ** 2 * self.mass
 
 
+def way_of(degrees: float) -> np.ndarray:
+    """Unit vector (2) of a direction on the plan [deg]."""
+    angle = np.radians(degrees)
+    return np.round(np.array([np.cos(angle), np.sin(angle)]), 15)
+
+
 def rest_of(frame: EquivalentFrame, core: Frame) -> Rest:
     """Equilibrium under the weight; Refused without one."""
     try:
@@ -71,10 +77,10 @@ def run(context: Context, options: FrameModes) -> Result:
         modes = modes_of(frame, rest_of(frame, core).tangent, options.modes)
     total = sum(one.mass for one in frame.masses)
     rows = [
-        {
-            "frequency_Hz": m.frequency, "period_s": 1.0 / m.frequency, "mass_ratio_x": m.participating(np.array([1.0, 0.0])) / total,
-            "mass_ratio_y": m.participating(np.array([0.0, 1.0])) / total,
-        }
+        out.FrameMode(
+            frequency_Hz=m.frequency, period_s=1.0 / m.frequency, mass_ratio_x= m.participating(np.array([1.0, 0.0])) / total,
+            mass_ratio_y=m.participating(np.array([0.0, 1.0])) / total,
+        )
         for m in modes
     ]  # fmt: skip
     result.results = out.FrameModes(

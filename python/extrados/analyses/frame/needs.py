@@ -4,16 +4,27 @@ from collections.abc import Iterator
 
 from extrados.analyses.codes.actions import refuse_mixed
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.frame.tables import FrameAnalysis, FrameHistory, FramePushover
+from extrados.analyses.frame.sampled import refuse_unknown
+from extrados.analyses.frame.tables import FrameAnalysis, FrameFragility, FrameHistory, FramePushover, Modes
+from extrados.analyses.motion_source import how_many
 from extrados.analyses.needs import Need
 
+#: Blocks whose modes are calculated, at most
+MOST_BLOCKS = 1500
 
-def needs(context: Context, options: FrameAnalysis) -> Iterator[Need]:
+
+def needs(context: Context, options: FrameAnalysis | Modes) -> Iterator[Need]:
     """Steps that raise where the deck is wrong, see `analyses.needs`."""
     building = context.building
+    if isinstance(options, Modes):
+        yield lambda: _few(context)
+        return
     yield lambda: building.frame(options.frame)
-    if isinstance(options, FrameHistory):
+    if isinstance(options, FrameHistory | FrameFragility):
         yield context.refuse_motion
+    if isinstance(options, FrameFragility):
+        yield lambda: refuse_unknown(building, options.frame, sorted(options.uncertain))
+        yield lambda: _enough(context, options)
     if isinstance(options, FramePushover):
         yield lambda: refuse_mixed(context, options.verification)
     if isinstance(options, FramePushover) and options.control_level is not None:
@@ -27,3 +38,20 @@ def _control(context: Context, options: FramePushover) -> None:
             f"control_level is {options.control_level}; masses are on {', '.join(map(str, sorted(levels)))}",
             ("analysis", "control_level"),
         )
+
+
+def _enough(context: Context, options: FrameFragility) -> None:
+    """Refused where one motion is to give a fragility, or more are asked for than the deck has and no building differs."""
+    there = how_many(context)
+    if there == 1 and not options.uncertain:
+        raise Refused("one motion of one building gives no fragility: use a suite, or uncertain values", ("motion",))
+    if there is not None and options.count is not None and options.count > there and not options.uncertain:
+        raise Refused(
+            f"{options.count}, but the deck has {there} motions: expected at most {there}", ("analysis", "count")
+        )
+
+
+def _few(context: Context) -> None:
+    count = len(context.building.blocks().mass)
+    if count > MOST_BLOCKS:
+        raise Refused(f"{count} blocks; modes are calculated of at most {MOST_BLOCKS}", ("structure",))

@@ -10,7 +10,7 @@ import numpy as np
 
 from extrados.analyses.codes.verification import confidence_factor
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.frame.modes import Mode, modes_of, rest_of
+from extrados.analyses.frame.modes import Mode, modes_of, rest_of, way_of
 from extrados.analyses.frame.tables import FramePushover
 from extrados.analyses.frame.verified import verify_frame
 from extrados.core.calls import interruptible
@@ -59,8 +59,7 @@ def pushes_of(frame: EquivalentFrame, options: FramePushover, modes: Sequence[Mo
     for direction, pattern, sense, shift in itertools.product(
         options.directions, options.patterns, options.senses, options.eccentricities
     ):
-        angle = np.radians(direction)
-        way = np.round(np.array([np.cos(angle), np.sin(angle)]), 15)
+        way = way_of(direction)
         across = np.array([-way[1], way[0]])
         mode = max(modes, key=lambda m: m.participating(way))
         shape = {
@@ -105,11 +104,11 @@ def run(context: Context, options: FramePushover) -> Result:
             paths = list(pool.map(one, pushes))
     if any(path.stop == "no equilibrium under the weight" for path in paths):
         raise Refused("the frame has no equilibrium under its weight", ("structure", "walls"))
-    runs = [_row(frame, push, path) for push, path in zip(pushes, paths, strict=True)]
+    runs = [row_of(frame, push, path) for push, path in zip(pushes, paths, strict=True)]
     peaks = [max(row["base_shear_N"]) for row in runs]
     least = int(np.argmin(peaks))
     result.results = out.FramePushover(
-        runs=runs, weight_N=frame.total_weight, moving_mass_kg=sum(m.mass for m in frame.masses), control_level=level,
+        runs=[out.FramePush(**row) for row in runs], weight_N=frame.total_weight, moving_mass_kg=sum(m.mass for m in frame.masses), control_level=level,
         control_height_m=height, base_shear_N=peaks[least], ultimate_displacement_m=runs[least]["ultimate_displacement_m"],
         governing=runs[least]["name"], failed=runs[least]["failed"], piers=frame.piers,
         spandrels=len(frame.elements) - frame.piers, walls=[wall.name for wall in frame.plan.walls], remarks=frame.remarks,
@@ -122,6 +121,8 @@ def run(context: Context, options: FramePushover) -> Result:
     if interrupted:
         result.status, result.reason = "interrupted", "interrupted; the curves up to then are kept"
     result.answer = _answer(result.results)
+    if verified is not None and verified.decides:
+        result.answer = f"{verified.judged('').statement.strip()} {result.answer}"
     return result
 
 
@@ -139,7 +140,7 @@ def _warn_tension(context: Context, frame: EquivalentFrame, force: np.ndarray) -
             )
 
 
-def _row(frame: EquivalentFrame, push: Push, path: Path) -> dict[str, Any]:
+def row_of(frame: EquivalentFrame, push: Push, path: Path) -> dict[str, Any]:
     """A run as results have it."""
     shear, moved = path.multiple, path.control
     peak = int(shear.argmax())
@@ -175,21 +176,29 @@ def _row(frame: EquivalentFrame, push: Push, path: Path) -> dict[str, Any]:
 def _limits(frame: EquivalentFrame, push: Push, path: Path) -> list[dict[str, Any]]:
     """Of each storey of each wall along the push: control displacements at which piers reach their strength and drift limit."""
     rows = []
-    for w, wall in enumerate(frame.plan.walls):
-        if abs(float(wall.direction @ push.way)) < FACING:
-            continue
-        for storey in range(1, frame.plan.reach(wall)[1] + 1):
-            own = [
-                k for k, s in enumerate(frame.strips) if s.kind == "pier" and s.wall == w and s.storey == storey
-            ]  # fmt: skip
-            row: dict[str, Any] = {"wall": wall.name, "storey": storey}
-            for name, least in (("strength", STATE["flexure"]), ("limit", STATE["failed_flexure"])):
-                reached = path.state[:, own] >= least
-                for word, there in (("first", reached.any(axis=1)), ("all", reached.all(axis=1))):
-                    k = np.flatnonzero(there)
-                    row[f"{word}_at_{name}_m"] = float(path.control[k[0]]) if len(k) else None
-            rows.append(row)
+    for wall, storey, own in storeys_of(frame, push.way):
+        row: dict[str, Any] = {"wall": wall, "storey": storey}
+        for name, least in (("strength", STATE["flexure"]), ("limit", STATE["failed_flexure"])):
+            reached = path.state[:, own] >= least
+            for word, there in (("first", reached.any(axis=1)), ("all", reached.all(axis=1))):
+                k = np.flatnonzero(there)
+                row[f"{word}_at_{name}_m"] = float(path.control[k[0]]) if len(k) else None
+        rows.append(row)
     return rows
+
+
+def storeys_of(frame: EquivalentFrame, way: np.ndarray) -> list[tuple[str, int, list[int]]]:
+    """Wall, storey and numbers of the piers, of every storey of every wall that a push along `way` meets in its plane."""
+    return [
+        (
+            wall.name,
+            storey,
+            [k for k, s in enumerate(frame.strips) if (s.kind, s.wall, s.storey) == ("pier", w, storey)],
+        )
+        for w, wall in enumerate(frame.plan.walls)
+        if abs(float(wall.direction @ way)) >= FACING
+        for storey in range(1, frame.plan.reach(wall)[1] + 1)
+    ]
 
 
 def _failed(frame: EquivalentFrame, path: Path) -> list[dict[str, Any]]:

@@ -17,6 +17,11 @@ if TYPE_CHECKING:
 #: Properties of the building that frames use
 ELASTIC = ("material.density", "material.young", "material.poisson")
 STRENGTHS = ("material.compressive_strength", "joints.cohesion")
+#: Uncertain values: of the masonry, and of [analysis.frame]
+MASONRY = ("density", "young", "compressive_strength")
+OPTIONS = ("diagonal_strength", "friction", "drift_flexure", "drift_shear", "stiffness")
+#: All of them; `strength` is one factor on all strengths of the masonry
+UNCERTAIN = (*MASONRY, "strength", "cohesion", *OPTIONS, "floor_stiffness")
 
 
 class FrameAnalysis(BuildingAnalysis):
@@ -24,7 +29,7 @@ class FrameAnalysis(BuildingAnalysis):
 
     view: ClassVar = "frame"
     structures: ClassVar = tuple(kind for kind, parts in kinds.STRUCTURES.items() if isinstance(parts.frame, str))
-    uses: ClassVar = (*ELASTIC, *STRENGTHS)
+    uses: ClassVar[tuple[str, ...]] = (*ELASTIC, *STRENGTHS)
     starter_structure: ClassVar = "building"
     frame: FrameOptions = key(FrameOptions(), "piers and spandrels, [analysis.frame]")
 
@@ -41,6 +46,16 @@ class FrameModes(FrameAnalysis):
 
     kind: Literal["frame-modes"]
     uses: ClassVar = ELASTIC
+    modes: int = key(6, "how many modes", ge=1, le=100)
+
+
+class Modes(BuildingAnalysis):
+    """Natural frequencies, shapes and participating masses of an arch, a vault or other plane blocks, all joints closed."""
+
+    kind: Literal["modes"]
+    view: ClassVar = "blocks"
+    uses: ClassVar = (*ELASTIC, "joints.normal_stiffness", "joints.shear_stiffness")
+    starter_structure: ClassVar = "arch"
     modes: int = key(6, "how many modes", ge=1, le=100)
 
 
@@ -92,17 +107,70 @@ class FramePushover(FrameAnalysis):
         return self
 
 
-class FrameHistory(FrameAnalysis):
-    """Motion of a building as a frame of macro-elements under a ground acceleration, by Newmark's method."""
+class FrameMotion(FrameAnalysis):
+    """Base of the analyses of frames in motion."""
 
-    kind: Literal["frame-history"]
     needs_motion: ClassVar = True
-    starter_motion: ClassVar = "sine-pulse"
     direction: Angle = key(0.0, "of the ground motion on the plan, counter-clockwise from x", ge=-360, le=360)
     time_step: Time = key(0.005, "of the integration; steps are cut where needed", gt=0, le=0.1)
-    end_time: Time | None = key(None, "end of the calculation; default that of the motion, and two seconds more", gt=0)
     damping_ratio: float = key(0.03, "Rayleigh damping at the two frequencies", ge=0, le=0.5)
     damping_frequencies: list[Annotated[float, Field(gt=0)]] | None = key(
         None, "two frequencies in Hz that have this ratio; default the first of the direction, and three times that",
         min_length=2, max_length=2,
     )  # fmt: skip
+
+
+class FrameHistory(FrameMotion):
+    """Motion of a building as a frame of macro-elements under a ground acceleration, by Newmark's method."""
+
+    kind: Literal["frame-history"]
+    starter_motion: ClassVar = "sine-pulse"
+    end_time: Time | None = key(None, "end of the calculation; default that of the motion, and two seconds more", gt=0)
+
+
+class FrameFragility(FrameMotion):
+    """Fragility of a building as a frame of macro-elements over many motions, with uncertain materials, drift limits and floors."""
+
+    kind: Literal["frame-fragility"]
+    starter_motion: ClassVar = "generated"
+    by: Literal["history", "pushover"] = key(
+        "history",
+        "history: the motion of the frame under every record; pushover: N2 with the spectrum of every record on the capacity "
+        "curves of both senses",
+        source="Fajfar 2000",
+    )
+    patterns: list[Literal["uniform", "static", "modal"]] = key(
+        ["uniform", "static"], "of pushovers: patterns of the forces, as of frame-pushover", min_length=1, max_length=3
+    )
+    target_drift: float = key(
+        0.02, "of pushovers: greatest control displacement, over the height of the highest level", gt=0, le=0.2
+    )
+    count: int | None = key(None, "number of motions; default 100, or the whole suite", ge=2, le=1_000_000)
+    seed: int | None = key(None, "replaces the seed of a generated set; also draws uncertain values", ge=0, le=2**62)
+    intensity: Literal["pga", "sa"] = key("pga", "measure of the motions: PGA [g], or SA(sa_period) [g]")
+    sa_period: Time | None = key(None, "period of SA", gt=0)
+    levels: list[Annotated[float, Field(gt=0, le=100)]] | None = key(
+        None, "of histories: intensities [g] to which every motion is scaled; default: the motions as they are",
+        min_length=1, max_length=200,
+    )  # fmt: skip
+    uncertain: dict[str, float] = key(
+        {}, "coefficients of variation of " + ", ".join(f"`{name}`" for name in UNCERTAIN) + "; lognormal factors of mean 1, one "
+        "for the whole building, drawn by a Sobol sequence; `strength` multiplies all strengths of the masonry"
+    )  # fmt: skip
+    confidence: float = key(0.95, "of all intervals", gt=0, lt=1)
+    bootstrap: int = key(500, "draws for the intervals of the curves", ge=0, le=100_000)
+
+    @model_validator(mode="after")
+    def _sensible(self) -> "FrameFragility":
+        if (self.intensity == "sa") != (self.sa_period is not None):
+            raise ValueError('intensity = "sa" and sa_period go together')
+        if self.by == "pushover" and self.levels is not None:
+            raise ValueError("levels: N2 gives the intensity that each motion needs; levels belong to histories")
+        for name, value in self.uncertain.items():
+            if name not in UNCERTAIN:
+                raise ValueError(f"uncertain.{name} is unknown; expected {', '.join(UNCERTAIN)}")
+            if not 0.0 < value <= 1.0:
+                raise ValueError(
+                    f"uncertain.{name} is {value:g}, expected a coefficient of variation above 0, at most 1"
+                )
+        return self

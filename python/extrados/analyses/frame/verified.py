@@ -17,8 +17,10 @@ from extrados.analyses.frame.tables import FramePushover
 from extrados.analyses.sla.curve import envelope
 from extrados.core.frame import Path
 from extrados.results.codes import LocalMechanism as Found
-from extrados.results.frame import OutOfPlane
+from extrados.results.frame import FramePush, OutOfPlane
+from extrados.results.frame import FramePushover as FramePushed
 from extrados.results.model import Result
+from extrados.results.verdict import SelfWeight
 from extrados.results.verification import Verification
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
@@ -46,10 +48,9 @@ def verify_frame(
     pushes: Sequence[Push], paths: Sequence[Path],
 ) -> Verification | None:  # fmt: skip
     """Displacement demand and capacity of all pushes. tangent: stiffness (n, n) under the weight [N/m]."""
-    mass = frame.mass
     total = sum(one.mass for one in frame.masses)
     rows, violated, sliding = [], [], []
-    for push, path, row in zip(pushes, paths, result.results.runs, strict=True):
+    for push, path, row in zip(pushes, paths, result.of(FramePushed).runs, strict=True):
         if not path.multiple.max() > 0.0:
             violated.append(unverified(push.name))
             continue
@@ -57,16 +58,7 @@ def verify_frame(
             shape = push.mode.shape
         else:
             shape = np.linalg.solve(0.5 * (tangent + tangent.T), push.forces)
-        shape = shape / float(push.control @ shape)
-        own, square = float(shape @ mass @ frame.unit(push.way)), float(shape @ mass @ shape)
-        limits = {
-            name: min(reached)
-            for name, key in (("drift", "all_at_limit_m"), ("strength", "all_at_strength_m"))
-            if (reached := [s[key] for s in row.storeys if s[key] is not None])
-        }
-        d, p = envelope(path.control, path.multiple, float(path.control[0]))
-        # one mass and one displacement that have the same sums of m phi and of m phi^2
-        curve = CapacityCurve(d - d[0], p, np.array([own**2 / square]), np.array([square / own]), limits)
+        curve = capacity_curve_of(frame, push, path, row, shape)
         rows.append(Verified(push.name, curve, total))
         limit, storey = sliding_limit(frame, context.building, push, options.frame.confidence_factor)
         if path.multiple.max() > limit:
@@ -85,6 +77,23 @@ def verify_frame(
     return verify(context, result, options.verification, rows, violated, options.frame.confidence_factor)
 
 
+def capacity_curve_of(
+    frame: EquivalentFrame, push: Push, path: Path, row: FramePush, shape: np.ndarray
+) -> CapacityCurve:  # fmt: skip
+    """The capacity curve of a push, with the limits of its piers. shape (n): displacements of the equivalent oscillator."""
+    mass = frame.mass
+    shape = shape / float(push.control @ shape)
+    own, square = float(shape @ mass @ frame.unit(push.way)), float(shape @ mass @ shape)
+    limits = {
+        name: min(reached)
+        for name, key in (("drift", "all_at_limit_m"), ("strength", "all_at_strength_m"), ("first", "first_at_limit_m"))
+        if (reached := [s[key] for s in row.storeys if s[key] is not None])
+    }
+    d, p = envelope(path.control, path.multiple, float(path.control[0]))
+    # one mass and one displacement that have the same sums of m phi and of m phi^2
+    return CapacityCurve(d - d[0], p, np.array([own**2 / square]), np.array([square / own]), limits)
+
+
 def out_of_plane(context: Context, options: FramePushover, period: float) -> OutOfPlane:
     """Every wall above the foot of each storey as a local mechanism (C8.7.1.2), with the floor spectrum of a period [s]."""
     given = options.verification
@@ -99,7 +108,13 @@ def out_of_plane(context: Context, options: FramePushover, period: float) -> Out
         if isinstance(found, Found) and found.walls
         else ""
     )
-    statement = f"{wall}{verdict.statement}" if verdict is not None else found.statement()
+    statement = (
+        f"{wall}{verdict.statement}"
+        if verdict is not None
+        else found.statement()
+        if isinstance(found, SelfWeight)
+        else ""
+    )
     return OutOfPlane(
         factor=None if verdict is None else verdict.ratio, outcome="not-applicable" if verdict is None else verdict.outcome,
         building_period_s=period, statement=statement,

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -23,7 +23,9 @@ from extrados.limit.resistance import Resistance, together
 from extrados.limit.ties import pulls, tensions
 from extrados.model.errors import WHOLE, BadGeometry
 from extrados.model.geometry.assembly import GROUND, Assembly
-from extrados.results.limit import Hinge, Reaction, TieForce
+from extrados.model.structures.blocks import Blocks
+from extrados.results.fields import Keys
+from extrados.results.limit import Hinge, Reaction, Side, TieForce
 from extrados.results.model import Array
 from extrados.views.building import Building
 
@@ -47,14 +49,14 @@ def loads_of(assembly: Assembly, options: Any, building: Building) -> Loads:
     loads = tilt_loads(assembly)
     dead, live = np.zeros_like(loads.dead), np.zeros_like(loads.live)
     for k, load in enumerate(getattr(options, "load", [])):
-        spreads = assembly.earth is not None and load.y is None and load.force != 0.0
-        if spreads:
+        earth = assembly.earth if load.y is None and load.force != 0.0 else None
+        if earth is not None:
             middle, length = (
                 (load.x, CONTACT) if load.x_end is None else (0.5 * (load.x + load.x_end), load.x_end - load.x)
             )
-            dead += under_load(assembly.earth, len(dead), middle, load.force, length)
+            dead += under_load(earth, len(dead), middle, load.force, length)
         for block, point, share in pieces(assembly, load, k):
-            down = 0.0 if spreads else -share * load.force
+            down = 0.0 if earth is not None else -share * load.force
             dead += forces_at(len(dead), block, point, (share * load.horizontal, down))
             if load.sways:
                 live += forces_at(len(live), block, point, (share * load.force, 0.0))
@@ -127,7 +129,7 @@ def mended_capacity(building: Building, options: LimitAnalysisTable, gamma: floa
     if not building.told()[0] or building.structure is None:
         return None
     mended = building.structure.mended(building.folder)
-    if mended is None:
+    if not isinstance(mended, Blocks):
         return None
     told = f'with all gaps closed (contact_tolerance = "{1e3 * mended.contact_tolerance:.3g} mm")'
     try:
@@ -221,7 +223,7 @@ def push_arrays(assembly: Assembly, loads: Loads, state: State) -> dict[str, Arr
     }
 
 
-def tie_rows(building: Building, loads: Loads, state: State, key: str = "ties") -> dict[str, list[TieForce]]:
+def tie_rows(building: Building, loads: Loads, state: State, key: str = "ties") -> Keys:
     """What a state asks of the ties, under a key of results; nothing without ties."""
     if not building.ties:
         return {}
@@ -229,7 +231,9 @@ def tie_rows(building: Building, loads: Loads, state: State, key: str = "ties") 
     for tie, force in zip(building.ties, _tensions(building, loads, state), strict=True):
         least = SLACK * (tie.yield_force or loads.scale)
         yields = tie.yield_force is not None and abs(force) > tie.yield_force - least
-        sort = "yields" if yields else "slack" if abs(force) < least else "carries"
+        sort: Literal["slack", "carries", "yields"] = (
+            "yields" if yields else "slack" if abs(force) < least else "carries"
+        )
         rows.append(TieForce(name=tie.name or "", force_N=force, state=sort))
     return {key: rows}
 
@@ -335,7 +339,7 @@ def graphic_arrays(answer: Answer, name: str, state: State, about: str) -> dict[
     }
 
 
-def hinge_rows(assembly: Assembly, hinges: list[tuple[int, str]], pivot: np.ndarray) -> list[Hinge]:
+def hinge_rows(assembly: Assembly, hinges: list[tuple[int, Side]], pivot: np.ndarray) -> list[Hinge]:
     """Hinges as results tell them."""
     rows = []
     for j, side in hinges:

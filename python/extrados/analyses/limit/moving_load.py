@@ -20,8 +20,8 @@ from extrados.analyses.limit.common import (
     tie_rows,
     zone_arrays,
 )
-from extrados.analyses.limit.tables import MovingLoad, PartialFactors
-from extrados.analyses.limit.trains import Train, fitting_train, unverified
+from extrados.analyses.limit.tables import MovingLoad, PartialFactors, Serviceability
+from extrados.analyses.limit.trains import Train, fitting_train, train_of, unverified
 from extrados.analyses.limit.variation import signature, spoken
 from extrados.limit.answer import cannot_stand
 from extrados.limit.errors import CannotStand, Immovable, NoAnswer
@@ -36,6 +36,7 @@ from extrados.model.geometry.chains import is_stack
 from extrados.model.geometry.earth import skyline
 from extrados.model.structure import Structure
 from extrados.results import limit as out
+from extrados.results.fields import Keys
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
@@ -214,8 +215,8 @@ def factored(assembly: Assembly, loads: Loads, factors: PartialFactors) -> Loads
 def run(context: Context, options: MovingLoad) -> Result:
     """Collapse load over place; the most dangerous place with its thrust line, zone and mechanism."""
     building, factors = context.building, options.factors
-    assembly, structure = building.blocks(), building.structure
-    whole = structure.crossed == "top" and options.chain is None
+    assembly, structure = building.blocks(), building.require_structure()
+    whole = (structure.crossed == "top" or assembly.earth is not None) and options.chain is None
     chain = None if whole else chain_of(assembly, options.chain)
     if not limit_of(building, options).stands():
         answer_of(building, options)  # refuses, and says why it cannot stand
@@ -255,7 +256,7 @@ def run(context: Context, options: MovingLoad) -> Result:
     state, mechanism = worst.state, worst.mechanism
     heavier = replace(assembly, mass=factors.masonry * assembly.mass)
     result = Result("moving-load")
-    asked: dict[str, object] = {}
+    asked: Keys = {}
     if options.force is not None:
         asked |= {"load_N": options.force, "safety_factor": capacity[k] / options.force}
     if train.known:
@@ -264,6 +265,8 @@ def run(context: Context, options: MovingLoad) -> Result:
             "train": train.name,
             "live_load_factor": factors.live * factors.dynamic,
         }
+    if options.serviceability is not None:
+        asked |= _permissible(context, options, options.serviceability, job, strip)
     if job.associated and friction is not None:
         asked["dilating_joints"] = reduced.dilating(mechanism)
     r = out.MovingLoad(
@@ -323,6 +326,34 @@ def run(context: Context, options: MovingLoad) -> Result:
     return result
 
 
+def _permissible(
+    context: Context, options: MovingLoad, service: Serviceability, job: Places, strip: float
+) -> dict[str, object]:
+    """Of the permissible limit state: least factor over all places [-], its place [m] and the permissible stress [Pa].
+
+    All partial factors are one. Limit analysis with the permissible stress as strength gives the greatest multiple of the
+    train under which a thrust line exists that no joint carries with more; 0 where none exists without the train.
+    """
+    building = context.building
+    whole = building.material.compressive_strength
+    if whole is None:
+        raise Refused("serviceability: requires compressive_strength", ("material", "compressive_strength"))
+    stress, assembly = service.strength_share * whole, job.assembly
+    if assembly.earth is not None:
+        passive = assembly.earth.passive * service.passive_share
+        assembly = replace(assembly, earth=replace(assembly.earth, passive=passive))
+    dead, friction = loads_of(assembly, options, building), building.friction()
+    found: dict[str, object] = {"permissible_stress_Pa": stress}
+    if not LimitAnalysis(assembly, friction, strength=stress, loads=dead).stands():
+        return found | {"permissible_factor": 0.0, "permissible_place_m": float(job.places[0])}
+    given, live = train_of(options, assembly.depth), service.live * strip
+    train = replace(job.train, forces=given.forces * live, even=given.even * (1.0, 1.0, live))
+    one = replace(job, assembly=assembly, friction=friction, strength=stress, dead=dead, train=train)
+    factor = sweep(context, "permissible", one, len(one.places), "permissible limit state", slow=True).whole()["factor"]
+    k = int(factor.argmin())
+    return found | {"permissible_factor": float(factor[k]), "permissible_place_m": float(one.places[k])}
+
+
 def _places(options: MovingLoad, train: Train, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
     """Places of the first axle [m] and which way it heads, 1 or -1."""
     if options.places is not None:
@@ -369,7 +400,7 @@ def _envelope(assembly: Assembly, line: np.ndarray, normal: np.ndarray) -> Table
 
 def _words(options: MovingLoad, r: out.MovingLoad, structure: Structure) -> str:
     what = r.chain or structure.word
-    way = "span" if r.chain or structure.crossed == "arch" else "way"
+    way = "span" if r.chain else "way"
     place = f"x = {r.worst_place_m:.2f} m ({100 * r.worst_place_over_span:.0f} % of the {way})"
     if r.adequacy_factor is not None and options.force is None:
         heading = f", heading to {r.worst_way}" if options.both_ways else ""
@@ -387,6 +418,11 @@ def _words(options: MovingLoad, r: out.MovingLoad, structure: Structure) -> str:
         text += f" The given load of {options.force / 1e3:.4g} kN has a safety factor of {r.safety_factor:.2f}."
         if r.adequacy_factor is not None and abs(r.adequacy_factor / r.safety_factor - 1.0) > 1e-9:
             text += f" With its partial factors the adequacy factor is {r.adequacy_factor:.3g}."
+    if r.permissible_factor is not None:
+        text += (
+            f" Up to {r.permissible_factor:.3g} times the train a thrust line exists with stresses below "
+            f"{r.permissible_stress_Pa / 1e6:.3g} MPa (permissible limit state)."
+        )
     if r.dilating_joints:
         text += f" Joints slide: {out.DILATANT}."
     if r.characteristic and (r.load_N is not None or r.adequacy_factor is not None):

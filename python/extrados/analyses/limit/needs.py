@@ -7,12 +7,13 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit import tables
 from extrados.analyses.limit.asked import deviation_of, refuse_still, refuse_unruled, sections_of, values_of
 from extrados.analyses.needs import Need, stones_of
+from extrados.analyses.table import BuildingAnalysis
 from extrados.model.errors import BadGeometry, Key
 from extrados.model.geometry.assembly import Assembly
 from extrados.views.building import Building
 
 
-def needs(context: Context, options: tables.BuildingAnalysis) -> Iterator[Need]:
+def needs(context: Context, options: BuildingAnalysis) -> Iterator[Need]:
     """Steps that raise where the deck is wrong, see `analyses.needs`."""
     building = context.building
     try:
@@ -25,21 +26,18 @@ def needs(context: Context, options: tables.BuildingAnalysis) -> Iterator[Need]:
             return  # solids have no chains and trains
     except BadGeometry:
         return  # told already
-    if loads := getattr(options, "load", []):
-        from extrados.analyses.limit.applied import pieces
-
-        for k, load in enumerate(loads):
-            if load.z is not None:
-                yield functools.partial(_refuse_height, k)
-            yield lambda k=k, load=load: pieces(building.blocks(), load, k)
-    if getattr(options, "fracture", False):
+    for k, load in enumerate(getattr(options, "load", [])):
+        if load.z is not None:
+            yield functools.partial(_refuse_height, k)
+        yield functools.partial(_placed, building, load, k)
+    if isinstance(options, tables.LimitAnalysisTable) and getattr(options, "fracture", False):
         yield functools.partial(refuse_fracture, building, options)
     if getattr(options, "buttress_alone", False):
         yield lambda: _refuse_alone(building)
-    if getattr(options, "chain", None) is not None:
+    if (chain := getattr(options, "chain", None)) is not None:
         from extrados.analyses.limit.applied import chain_of
 
-        yield lambda: chain_of(building.blocks(), options.chain)
+        yield lambda: chain_of(building.blocks(), chain)
     match options:
         case tables.Sweep():
             yield lambda: values_of(building, options)
@@ -55,7 +53,14 @@ def needs(context: Context, options: tables.BuildingAnalysis) -> Iterator[Need]:
             yield lambda: refuse_still(building, options)
 
 
-def _refuse_of_sections(building: Building, options: tables.BuildingAnalysis) -> None:
+def _placed(building: Building, load: tables.AppliedLoad, number: int) -> None:
+    """Refused where a load acts on no block of the section."""
+    from extrados.analyses.limit.applied import pieces
+
+    pieces(building.blocks(), load, number)
+
+
+def _refuse_of_sections(building: Building, options: BuildingAnalysis) -> None:
     """Refused where a deck asks of solids what is known in a plane section alone."""
     assert isinstance(options, tables.Tilt)  # the others take sections alone
     asked: dict[str, tuple[bool, Key]] = {

@@ -1,6 +1,7 @@
 """Ties, chains, hoops and loads of a deck on blocks in space, and the programmes of the blocks with them."""
 
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from extrados.results.limit import TieForce
 from extrados.results.model import Array
 from extrados.schema.constants import GRAVITY
 from extrados.views.building import Building
+from extrados.views.solids.strands import strand_names
 
 
 def solid_limit(building: Building, options: Tilt) -> SolidLimit:
@@ -32,14 +34,13 @@ def solid_limit(building: Building, options: Tilt) -> SolidLimit:
 def strand_rows(building: Building, limit: SolidLimit, tension: np.ndarray) -> list[TieForce]:
     """Tension of each strand in a state [N]; the segments of a bonded chain are numbered."""
     rows = []
-    for k, (strand, force) in enumerate(zip(limit.strands, tension.tolist(), strict=True)):
-        name = building.ties[strand.tie].name or ""
-        segments = [n for n, other in enumerate(limit.strands) if other.tie == strand.tie]
+    names = strand_names(building, limit.strands)
+    for name, strand, force in zip(names, limit.strands, tension.tolist(), strict=True):
         whole = max(b for b in (strand.high, -strand.low, 0.0) if np.isfinite(b)) or float(limit.weight.sum())
         yields = force > strand.high - SLACK * whole or force < strand.low + SLACK * whole
-        state = "slack" if abs(force) < SLACK * whole else "yields" if yields else "carries"
-        if len(segments) > 1:
-            name += f", segment {segments.index(k) + 1}"
+        state: Literal["slack", "carries", "yields"] = (
+            "slack" if abs(force) < SLACK * whole else "yields" if yields else "carries"
+        )
         rows.append(TieForce(name=name, force_N=force, state=state))
     return rows
 

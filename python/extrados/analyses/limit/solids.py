@@ -17,6 +17,7 @@ from extrados.limit.solids import Falls, Programme, SolidLimit
 from extrados.model.geometry.assembly import GROUND
 from extrados.model.geometry.solids.assembly import SolidAssembly
 from extrados.results import solids as out
+from extrados.results.fields import Keys, given
 from extrados.results.limit import DILATANT
 from extrados.results.model import Array, Result
 from extrados.results.solid_files import scene_files
@@ -44,8 +45,10 @@ def run(context: Context, options: Tilt) -> Result:
     count = options.rose or (DIRECTIONS if len(assembly.mass) <= FEW else 0)
     angles = first + 360.0 * np.arange(count) / count if count else np.array([first, opposite])
     asked = np.unique(np.round(np.concatenate([[first, opposite], angles]), 9))
-    given = limit.pushes(asked.tolist(), context.threads, lambda done: context.progress(done, len(asked), "directions"))
-    found_at = dict(zip(asked.tolist(), given, strict=True))
+    pushed = limit.pushes(
+        asked.tolist(), context.threads, lambda done: context.progress(done, len(asked), "directions")
+    )
+    found_at = dict(zip(asked.tolist(), pushed, strict=True))
     there, back = (_stands(found_at[round(d, 9)], assembly) for d in (first, opposite))
     if there.gamma < 0.0 or back.gamma < 0.0:
         low, high = sorted((there.gamma, -back.gamma))
@@ -62,7 +65,7 @@ def run(context: Context, options: Tilt) -> Result:
         for one in (there, back, rose[least] if rose else there)
         if isinstance(one, Programme)
     )
-    sliding: dict[str, object] = {}
+    sliding: Keys = {}
     if slides:
         sought = asked.tolist() if options.friction_rule != "associated" else [first, opposite, float(angles[least])]
         sliding, states = _without_dilatancy(context, options, limit, [round(d, 9) for d in sought], found_at, result)
@@ -94,8 +97,10 @@ def run(context: Context, options: Tilt) -> Result:
         duality_gap=max(there.gap, back.gap), equilibrium_residual=max(there.equilibrium, back.equilibrium),
         friction_residual=max(there.cone, back.cone), overlap_residual=max(there.overlap, back.overlap),
         dilating_contacts=slides, **sliding,
-        **({"ties": strand_rows(building, limit, there.tension)} if limit.strands else {}),
-        **({} if options.pyramids is None else {"pyramids": _pyramids(limit, first, options.pyramids)}),
+        **given(
+            ties=strand_rows(building, limit, there.tension) if limit.strands else None,
+            pyramids=None if options.pyramids is None else _pyramids(limit, first, options.pyramids),
+        ),
     )  # fmt: skip
     result.results = found
     force, centre = _resultants(assembly, there)
@@ -119,7 +124,7 @@ def run(context: Context, options: Tilt) -> Result:
 
 def _without_dilatancy(
     context: Context, options: Tilt, limit: SolidLimit, directions: list[float], found_at: dict[float, Programme | Falls | None], result: Result
-) -> tuple[dict[str, object], dict[float, Programme]]:  # fmt: skip
+) -> tuple[Keys, dict[float, Programme]]:  # fmt: skip
     """Keys of the results on sliding without dilatancy, and the least states by direction: along the push, opposite, and further
     directions [deg]."""
     contacts = len(limit.assembly.a)
@@ -139,24 +144,25 @@ def _without_dilatancy(
         rows.append(row)
         if state is not None:
             states[direction] = state
-        if told := doubt(row.load_paths, f"along {direction:g} degrees"):
-            result.warnings.append(told)
-    told: dict[str, object] = {"non_dilatant": rows}
+        if doubtful := doubt(row.load_paths, f"along {direction:g} degrees"):
+            result.warnings.append(doubtful)
+    told: Keys = {"non_dilatant": rows}
     by_direction = {row.direction_deg: row for row in rows}
     for direction, end in zip(_ends(options), ("", "_opposite"), strict=True):
-        row = by_direction.get(round(direction, 9))
-        if row is not None and row.load_path_g is not None:
-            told[f"collapse_acceleration_load_path{end}_g"] = row.load_path_g
-        if row is not None and row.least_g is not None:
-            told[f"collapse_acceleration_non_associated{end}_g"] = row.least_g
+        least = by_direction.get(round(direction, 9))
+        if least is not None and least.load_path_g is not None:
+            told[f"collapse_acceleration_load_path{end}_g"] = least.load_path_g
+        if least is not None and least.least_g is not None:
+            told[f"collapse_acceleration_non_associated{end}_g"] = least.least_g
     return told, states
 
 
 def _by_faces(
     limit: SolidLimit, corners: Sequence[Programme | Falls | None], directions: Sequence[float], result: Result
-) -> dict[str, object]:
+) -> Keys:
     """Keys of the results on the friction of whole faces; a warning where it is much less than that of corners."""
-    law, told, spread = FaceLaw(limit), {}, 0.0
+    law, spread = FaceLaw(limit), 0.0
+    told: Keys = {}
     for end, direction, one in zip(("", "_opposite"), directions, corners, strict=True):
         if not isinstance(one, Programme):
             continue

@@ -150,12 +150,14 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
     try:
         found = settle(limit, movement)
     except NoEquilibrium as error:
-        raise Refused(f"the {building.structure.word} cannot follow the movement: {error}", WHOLE) from None
+        raise Refused(f"the {building.require_structure().word} cannot follow the movement: {error}", WHOLE) from None
     motion = found.motion
     wide = motion[:, :2].max(axis=1)
     moving = np.flatnonzero(np.abs(motion).max(axis=1) > OPENS * np.abs(motion).max())
     arched = {j for joints in assembly.chains.values() if not is_stack(assembly, joints) for j in joints}
-    sides = {True: ("intrados", "extrados"), False: ("first end", "second end")}
+    sides: dict[bool, tuple[out.OpenSide, out.OpenSide]] = {
+        True: ("intrados", "extrados"), False: ("first end", "second end")
+    }  # fmt: skip
     result = Result("supports")
     opened = [
         out.JointOpening(
@@ -209,7 +211,7 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
     most_moved = 1e3 * float(np.hypot(*movement[:, :2].T).max())
     given = f" by up to {most_moved:.3g} mm" if most_moved > 0.0 else ""
     result.answer = (
-        f"Under the movements of its supports{given} {_counted(len(wide_open), 'joint')} of the {building.structure.word} "
+        f"Under the movements of its supports{given} {_counted(len(wide_open), 'joint')} of the {building.require_structure().word} "
         f"{'opens' if len(wide_open) == 1 else 'open'}"
         + (f": {shown}" if shown else "")
         + (f" and {len(wide_open) - 6} more" if len(wide_open) > 6 else "")

@@ -53,7 +53,7 @@ class Sections:
             if name != "name" and cell:
                 data = changed(data, name, _value(cell))
         try:
-            building = self.building.apart().having(structure=read_table(type(self.building.structure), data))
+            building = self.building.apart().having(structure=read_table(type(self.building.require_structure()), data))
         except BadGeometry as error:
             return Outcome(reason=str(error))
         return evaluate(building, self.options, fracture=self.options.fracture)

@@ -304,6 +304,7 @@ def _examples(
         if not same:
             continue
         one = ask.at(same[len(same) // 2])
+        assert one.assembly is not None and one.mechanism is not None  # sections of one mechanism have one
         pose = finite_motion(one.assembly, one.mechanism)
         blocks[number] = len(pose)
         for i, (outline, c, p) in enumerate(zip(one.assembly.outlines, one.assembly.centroid, pose, strict=True)):

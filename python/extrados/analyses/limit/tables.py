@@ -42,8 +42,8 @@ class AppliedLoad(Table):
 class LimitAnalysisTable(BuildingAnalysis):
     """What all questions of limit analysis ask."""
 
-    uses: ClassVar = ("material.density", "material.compressive_strength", "joints.friction")
-    bears: ClassVar = ("[[ties]]",)
+    uses: ClassVar[tuple[str, ...]] = ("material.density", "material.compressive_strength", "joints.friction")
+    bears: ClassVar[tuple[str, ...]] = ("[[ties]]",)
     friction_rule: Literal["associated", "non-associated"] = key(
         "associated",
         "associated sliding dilates (an upper bound); non-associated does not: of its many states the least is sought",
@@ -145,7 +145,7 @@ class MovingSupports(BuildingAnalysis, Animated):
 
     kind: Literal["supports"]
     beside: ClassVar = ("material.density", "joints.friction", "initial.movements")
-    bears: ClassVar = ("[[ties]]",)
+    bears: ClassVar[tuple[str, ...]] = ("[[ties]]",)
     spread: float = key(1.0, "outward movement of the right support, relative to the other component", ge=-10, le=10)
     settle: float = key(0.0, "downward movement of the right support, relative to the other component", ge=-10, le=10)
     movement: Length | None = key(
@@ -161,6 +161,15 @@ class MovingSupports(BuildingAnalysis, Animated):
         if not building.initial.movements and not building.ties and building.one_arch:
             found.discard("joints.friction")
         return found
+
+
+#: Trains of trains.toml, and LM1, whose loads depend on the width
+TrainName = Literal[
+    "LM1", "LM71", "SW/0", "SW/2", "SV80", "SV100", "SV196", "CS454 single", "CS454 double 1.0", "CS454 double 1.3",
+    "CS454 double 1.8", "CS454 triple 1.0", "CS454 triple 1.3", "CS454 double 1.0 lift", "CS454 double 1.3 lift",
+    "CS454 double 1.8 lift", "CS454 triple 1.3 lift", "MLC30 tracked", "MLC40 tracked", "MLC50 tracked", "MLC60 tracked",
+    "MLC70 tracked", "MLC80 tracked", "MLC100 tracked",
+]  # fmt: skip
 
 
 class UniformLoad(Table):
@@ -183,6 +192,21 @@ class PartialFactors(Table):
     friction: float = key(1.0, "under the coefficients of friction", gt=0, le=10)
 
 
+class Serviceability(Table):
+    """A permissible limit state beside the collapse load: repeated traffic does not damage the structure progressively."""
+
+    strength_share: float = key(
+        0.5,
+        "permissible compressive stress over the compressive strength; the default is a choice of this program",
+        gt=0,
+        le=1,
+    )
+    passive_share: float = key(
+        0.0, "share of `fill.passive` that acts under service loads, whose movements are small", ge=0, le=1
+    )
+    live: float = key(1.0, "factor on the moving load", gt=0, le=10)
+
+
 class MovingLoad(LimitAnalysisTable):
     """A load, axles or a train that crosses: what of it brings the structure down, at every place."""
 
@@ -190,10 +214,11 @@ class MovingLoad(LimitAnalysisTable):
     chain: str | None = key(
         None, "the arch it crosses; default the first: arch, vault or nave; a bridge is crossed along its whole top"
     )
-    train: Literal["LM1", "LM71", "SW/0", "SW/2", "SV80", "SV100", "SV196"] | None = key(
+    train: TrainName | None = key(
         None,
-        "load model of EN 1991-2, or a special vehicle of its UK annex, in place of axles and loads",
-        source="EN 1991-2 4.3.2, 6.3.2, 6.3.3; SV: UK National Annex to EN 1991-2 (verify clause)",
+        "load model of EN 1991-2, a special vehicle of its UK annex, an axle or bogie of CS 454, or a tracked vehicle of a military "
+        "class, in place of axles and loads",
+        source="EN 1991-2 4.3.2, 6.3.2, 6.3.3; SV: UK National Annex to EN 1991-2 (verify clause); CS 454 7.3.1; STANAG 2021 (verify)",
     )
     gap: Length | None = key(
         None, "gap between the bogies of an SV vehicle: 1.2 (the default), 5 or 9 m", ge=1.2, le=9.0
@@ -213,6 +238,11 @@ class MovingLoad(LimitAnalysisTable):
     width: Length | None = key(None, "transverse width that carries the load, at most the depth", gt=0)
     contact_length: Length = key(0.3, "length of an axle's contact along a bridge with fill", gt=0)
     factors: PartialFactors = key(PartialFactors(), "partial factors")
+    serviceability: Serviceability | None = key(
+        None,
+        "permissible limit state: the multiple of the train under which a thrust line exists with stresses below a share of the "
+        "compressive strength; it requires compressive_strength",
+    )
     both_ways: bool = key(False, "the train also crosses to the left, its first axle ahead")
     count: int = key(81, "number of places along the span", ge=3, le=2000)
     places: list[Length] | None = key(
@@ -232,6 +262,8 @@ class MovingLoad(LimitAnalysisTable):
             raise ValueError("axle_loads replaces shares and force")
         if self.uniform and self.axle_loads is None and self.axles:
             raise ValueError("uniform needs axle_loads, or axles = [] without axles")
+        if self.serviceability is not None and self.train is None and self.axle_loads is None and not self.uniform:
+            raise ValueError("serviceability: requires a train, axle_loads or uniform")
         if not self.axles and not self.uniform:
             raise ValueError("axles: expected one at least, or uniform loads")
         if self.lanes is not None and self.train != "LM1":

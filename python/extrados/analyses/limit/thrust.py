@@ -22,6 +22,7 @@ from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium, Sta
 from extrados.model.geometry.assembly import Assembly
 from extrados.model.geometry.chains import is_stack
 from extrados.results import limit as out
+from extrados.results.fields import Keys, given
 from extrados.results.model import Result, TableData
 
 
@@ -46,7 +47,7 @@ def run(context: Context, options: Thrust) -> Result:
             ("analysis", "gamma"),
         ) from None
     safety = None if part is None else safety_factor(part)
-    lines = {}
+    lines: Keys = {}
     for name, state in states.items():
         lines[name] = out.ThrustLine(
             **_horizontal(answer, state, chain),
@@ -67,7 +68,7 @@ def run(context: Context, options: Thrust) -> Result:
         dilating=bool(limit.dilating(answer.mechanism) or limit.dilating(answer.back_mechanism)),
         duality_gap=answer.gap,
         **lines,
-        **({} if part is None else {"least_part_of_joints": part}),
+        **given(least_part_of_joints=part),
     )
     result.results = r
     result.arrays = geometry_arrays(assembly) | tie_arrays(context.building, answer.loads, states)
@@ -94,7 +95,7 @@ def _with_central(
     return {**ends, "central": central}, part
 
 
-def _horizontal(answer: Answer, state: State, chain: str | None) -> dict[str, float]:
+def _horizontal(answer: Answer, state: State, chain: str | None) -> Keys:
     """Horizontal thrust of a chain, of one that ties hold at its crown too; nothing where there is none."""
     if chain is None:
         return {}

@@ -34,6 +34,7 @@ from extrados.limit.programme import LimitAnalysis, Mechanism, NoAnswer, NoEquil
 from extrados.model.errors import NoView
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.results import limit as out
+from extrados.results.fields import Keys
 from extrados.results.model import Array, Result
 from extrados.views.building import Building
 
@@ -81,6 +82,7 @@ def run(context: Context, options: Tilt) -> Result:
     answer = answer_of(building, options, limit)
     state, mechanism = answer.collapse_state, answer.mechanism
     result = Result("tilt")
+    measures: Keys = assembly.measures
     fracture = _fracture(building, options, answer, result) if options.fracture else {}
     dilating = {1: limit.dilating(mechanism), -1: limit.dilating(answer.back_mechanism)}
     sliding = _without_dilatancy(limit, answer, dilating, result)
@@ -104,7 +106,7 @@ def run(context: Context, options: Tilt) -> Result:
         **tie_rows(building, answer.loads, state),
         **tie_rows(building, answer.loads, answer.back_state, "ties_opposite"),
         **_thrusts(answer),
-        **assembly.measures,
+        **measures,
         duality_gap=answer.gap,
         **fracture,
         **sliding,
@@ -131,7 +133,7 @@ def run(context: Context, options: Tilt) -> Result:
             result.arrays.update(tie_arrays(building, answer.loads, {word: state_of}))
     if options.animation != "none":
         result.arrays |= _film(limit, answer)
-    result.answer = _words(building.structure.word, assembly, answer, found)
+    result.answer = _words(building.require_structure().word, assembly, answer, found)
     result.warnings += answer.warnings
     if closed := mended_capacity(building, options, answer.gamma):
         result.warnings.append(closed)
@@ -141,10 +143,8 @@ def run(context: Context, options: Tilt) -> Result:
             f"a coefficient of friction of {needed:.2f} is needed, more than masonry has ({USUAL_FRICTION:g} or so): joints slide "
             "before; give friction"
         )
-    if getattr(context.deck.structure, "preset", None):
-        result.warnings.append(
-            f'the sizes of preset "{context.deck.structure.preset}" are inferred or guessed, not taken from a survey'
-        )
+    if preset := getattr(context.deck.structure, "preset", None):
+        result.warnings.append(f'the sizes of preset "{preset}" are inferred or guessed, not taken from a survey')
     return result
 
 
@@ -172,7 +172,7 @@ def _film(limit: LimitAnalysis, answer: Answer) -> dict[str, Array]:
     }  # fmt: skip
 
 
-def _thrusts(answer: Answer) -> dict[str, object]:
+def _thrusts(answer: Answer) -> Keys:
     """Least and greatest horizontal thrust upright of each chain [N]; the first also by the common names."""
     table = {}
     for name in answer.least:
@@ -197,12 +197,10 @@ def _admissible(answer: Answer, sliding: dict[str, object]) -> list[float]:
     return [low, high]
 
 
-def _without_dilatancy(
-    limit: LimitAnalysis, answer: Answer, dilating: dict[int, list[int]], result: Result
-) -> dict[str, object]:
+def _without_dilatancy(limit: LimitAnalysis, answer: Answer, dilating: dict[int, list[int]], result: Result) -> Keys:
     """Least states without dilatancy and their certificates: of both senses where the deck asks for that rule, and beside
     the upper bound of associated friction of each sense in whose mechanism pressed joints slide."""
-    told: dict[str, object] = {}
+    told: Keys = {}
     if limit.associated and limit.friction is not None:
         told |= {"dilating_joints": dilating[1], "dilating_joints_opposite": dilating[-1]}
     beside = limit.without_dilatancy() if limit.associated and any(dilating.values()) else limit
@@ -243,6 +241,7 @@ def _without_dilatancy(
         bounds = beside.without_dilatancy_between(direction)
         lower, upper = (None if g is None else direction * g for g in bounds)
         state, mechanism = pair
+        assert limit.friction is not None  # joints that cannot slide need no such state
         proof = certify(limit.assembly, limit.loads, limit.friction, state, mechanism, limit.strength)
         certified = proof.holds(state.gamma)
         if certified or not limit.associated:
@@ -276,6 +275,7 @@ def _paths(
 
     def follow(ratio: float, effort: int) -> tuple[float, Certificate]:
         state, mechanism = collapse_along_path(limit, direction, ratio, effort)
+        assert limit.friction is not None  # joints that cannot slide need no such state
         proof = certify(limit.assembly, limit.loads, limit.friction, state, mechanism, None)
         if proof.holds(state.gamma):
             ends.append((state, mechanism))
@@ -284,7 +284,7 @@ def _paths(
     return follow_paths(follow, patient=patient), ends
 
 
-def _fracture(building: Building, options: Tilt, answer: Answer, result: Result) -> dict[str, out.Fracture]:
+def _fracture(building: Building, options: Tilt, answer: Answer, result: Result) -> Keys:
     """The key of the capacity with a cracked buttress beside the monolithic one; its arrays go to `result`."""
     assembly = building.blocks()
     block = assembly.buttresses[-1] if assembly.buttresses else None
@@ -295,7 +295,7 @@ def _fracture(building: Building, options: Tilt, answer: Answer, result: Result)
     except NoEquilibrium:
         result.warnings.append("with its leeward buttress cracked the structure cannot stand upright")
         return {"fracture": out.Fracture(stands=False)}
-    if found is None:
+    if found is None or block is None:
         return {"fracture": out.Fracture(cracks=False, collapse_acceleration_g=answer.gamma, ratio=1.0)}
     outlines = found.assembly.outlines
     result.arrays.update(

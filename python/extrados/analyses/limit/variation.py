@@ -12,8 +12,8 @@ from extrados.analyses.limit.tables import LimitAnalysisTable
 from extrados.limit.answer import cannot_stand
 from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium
 from extrados.limit.solver import Immovable, NoAnswer
+from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import GROUND, Assembly, part_of
-from extrados.model.geometry.builder import BadGeometry
 from extrados.results import limit as out
 from extrados.views.building import Building
 

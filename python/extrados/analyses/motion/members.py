@@ -85,7 +85,9 @@ class Matched:
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
         def member(k: int) -> dict[str, np.ndarray]:
             stop_if_asked()
-            return {"acceleration": compatible_motion(self.model, self.folder, k).ground.samples[0]}
+            samples = compatible_motion(self.model, self.folder, k).ground.samples
+            assert samples is not None  # of a compatible motion
+            return {"acceleration": samples[0]}
 
         return stacked(member, first, count)
 
@@ -109,6 +111,7 @@ class Measures:
         }  # fmt: skip
         if self.components:
             samples = motion.ground.samples
+            assert samples is not None  # of a record
             row["vertical_pga_g"] = np.abs(samples[1]).max() / GRAVITY if len(samples) > 1 else np.nan
             row |= rotd_peaks(motion)
         return row

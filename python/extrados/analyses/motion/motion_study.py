@@ -184,6 +184,7 @@ def _all_directions(
 ) -> dict[str, np.ndarray]:
     """What both horizontal components give over all directions, into `result`; columns for the table of spectra."""
     horizontal, step, damping = context.motion.horizontal, context.motion.ground.step, _damping(options)
+    assert horizontal is not None  # of a record with both components
     psa = directions.spectra(horizontal, step, periods, damping, context.threads)
     found = {}
     for name, values in zip(("rotd50", "rotd100"), psa, strict=True):
@@ -255,6 +256,7 @@ def _members(context: Context, options: MotionStudy, warnings: list[str]) -> tup
         return Held(read), len(read)
     if isinstance(model, models.Generated):
         return Generated(generated_set(model, folder)), options.count
+    assert isinstance(model, models.Compatible)  # is_set
     job = Matched(model, folder)
     swept = sweep(context, "compatible", job, options.count, "compatible motions", slow=True).whole()
     made = [compatible_motion(model, folder, k, a) for k, a in enumerate(swept["acceleration"])]
@@ -279,7 +281,7 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
     impulses = sweep(context, "impulses", primary, min(count, MOST_IMPULSES), "impulses of motions", slow=True).whole()
     psa = spectra["psa"]
     result = Result("motion", warnings=warnings)
-    r = {
+    r: dict[str, Any] = {
         "count": count,
         "damping": damping,
         **{f"median_{n}": float(np.median(measures[n])) for n in MEDIANS},

@@ -4,6 +4,7 @@ import numpy as np
 
 from extrados.analyses.context import Context
 from extrados.analyses.limit.tilt import geometry_arrays
+from extrados.analyses.rocking.common import Moving
 from extrados.analyses.rocking.history import answer_of, rest_time, rock, rocking_result, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
 from extrados.core import arch as core_arch
@@ -17,6 +18,7 @@ from extrados.views.rockers.rocker import Rocker
 def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     """History, impacts, energies and the dynamic thrust line."""
     model = rocker.model
+    assert isinstance(model, ArchModel)
     context.warnings += model.warnings
     gamma = model.collapse[0].gamma
     end_time = options.end_time or context.motion.end + rest_time(rocker)
@@ -37,7 +39,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
         restitution_inelastic=model.impacts.inelastic,
         critical_rotation_rad=model.limits.critical,
         uplift_acceleration_g=gamma,
-        required_friction=float(response.joints.friction),
+        required_friction=None if response.joints is None else float(response.joints.friction),
         thrust_line_residual_m=thrust.miss.max(initial=0.0),
     )
     result.arrays |= {
@@ -56,7 +58,7 @@ def _mirrored(values: np.ndarray, left: np.ndarray) -> np.ndarray:
     return out
 
 
-def thrust_line(model: ArchModel, response: core_rocking.Response) -> core_arch.ThrustLine:
+def thrust_line(model: ArchModel, response: Moving) -> core_arch.ThrustLine:
     """Dynamic thrust line at all output times; NaN at rest, where the mechanism does not define it."""
     side = np.sign(response.rotation)
     moving = side != 0.0

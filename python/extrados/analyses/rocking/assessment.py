@@ -10,11 +10,12 @@ from extrados.analyses.rocking.conditions import Counted, astray_of, of_many, ro
 from extrados.analyses.rocking.criterion import CAP, Fit, fit_own, interpolated
 from extrados.analyses.rocking.doubts import DIFFER
 from extrados.analyses.rocking.tables import Assessment
-from extrados.core.rocking import FAILED, OUTCOMES, ensemble
+from extrados.core.rocking import FAILED, OUTCOMES, Outcome, ensemble
 from extrados.model.errors import WHOLE
 from extrados.motions.impulse import Impulse, primary_impulses
 from extrados.motions.tables import SinePulse
 from extrados.results import rocking as out
+from extrados.results.fields import given
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 from extrados.views.rockers.arch import ArchModel
@@ -40,8 +41,9 @@ def run(context: Context, options: Assessment) -> Result:
     result = Result("assessment")
     # The table was made of arches with the thesis' impact rule: anything else is judged by its own curve.
     table = None
-    by_table = arch is not None and rocker.model.rule == "thesis"
-    if by_table:
+    by_table = isinstance(rocker.model, ArchModel) and rocker.model.rule == "thesis"
+    ratio = embrace = 0.0
+    if arch is not None and by_table:
         ratio, embrace = arch.thickness / arch.radius, float(np.degrees(arch.embrace))
         table = interpolated(ratio, embrace, gamma)
     if by_table and table is None:
@@ -70,7 +72,7 @@ def run(context: Context, options: Assessment) -> Result:
         run_outcome=run_outcome,
         margin=worst.margin if worst else None,
         **conditions,
-        **({"margins_by_rule": by_rule} if by_rule else {}),
+        **given(margins_by_rule=by_rule or None),
         violated=_undecided(by_rule),
         margin_conditions=at_margin,
         primary_impulse=out.PrimaryImpulse(**{k: rows[0][k] for k in out.PrimaryImpulse.model_fields})
@@ -127,7 +129,7 @@ def run(context: Context, options: Assessment) -> Result:
     return result
 
 
-def _run_through(context: Context, rocker: Rocker, factor: float = 1.0) -> tuple[str | None, dict[str, Any]]:
+def _run_through(context: Context, rocker: Rocker, factor: float = 1.0) -> tuple[Outcome | None, dict[str, Any]]:
     """Outcome of the whole motion times a factor by the equation of motion, None where the run gave none; the conditions under it."""
     end = context.motion.end + SETTLE * rocker.time_unit
     found = ensemble(
@@ -186,7 +188,7 @@ def _row(rank: int, impulse: Impulse, fit: Fit, own: Fit, radius: float) -> out.
         explained=impulse.explained,
         goodness_of_fit=impulse.goodness,
         failing_amplitude_g=needed,
-        failing_amplitude_own_g=own.amplitude(impulse.period, radius),
+        failing_amplitude_own_g=float(own.amplitude(impulse.period, radius)),
         margin=needed / amplitude,
         verdict="fails" if amplitude >= needed else "stands",
     )
@@ -197,9 +199,9 @@ def _coefficients(fit: Fit) -> out.Coefficients:
 
 
 def _answer(r: out.Assessment, worst: out.AssessedImpulse | None, what: str) -> str:
-    if worst is None:
-        return "The motion holds no impulse in the given range of periods: it is too short, or zero."
     first = r.primary_impulse
+    if worst is None or first is None:
+        return "The motion holds no impulse in the given range of periods: it is too short, or zero."
     text = (
         f"The primary impulse of the motion is {abs(first.amplitude_g):.3f} g over {first.period_s:.3f} s, "
         f"starting at {first.start_s:.2f} s. "

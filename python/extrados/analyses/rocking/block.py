@@ -4,6 +4,7 @@ import numpy as np
 
 from extrados.analyses.context import Context
 from extrados.analyses.limit.tilt import geometry_arrays
+from extrados.analyses.rocking.common import Moving
 from extrados.analyses.rocking.history import answer_of, rest_time, rock, rocking_result, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
 from extrados.core import rocking as core_rocking
@@ -16,8 +17,9 @@ from extrados.views.rockers.rocker import Rocker
 
 def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     """History, impacts, energies, and the friction that keeps the toe from sliding."""
-    structure = context.deck.structure
+    structure = context.building.require_structure()
     model = rocker.model
+    assert isinstance(model, BlockModel)
     context.warnings += rocker.warnings
     if structure.kind == "column":
         context.warnings.append(
@@ -27,7 +29,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     ran = rock(context, options, rocker, end_time, 12)
     response = ran.response
 
-    tangential, normal = toe_forces(model, response, rocker.restraints)
+    tangential, normal = toe_forces(model, response, rocker.restraints, response.forces)
     c, s = np.cos(model.block.slope), np.sin(model.block.slope)
     along, across = c * tangential + s * normal, c * normal - s * tangential  # on a sloping base
     friction = np.abs(along) / np.maximum(across, 1e-300)
@@ -68,9 +70,9 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
 
 
 def toe_forces(
-    model: BlockModel, response: core_rocking.Response, held: Restraints | None = None
+    model: BlockModel, response: Moving, held: Restraints | None = None, forces: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Horizontal (to +x) and vertical (up) force of the ground on the block at the output times [N]; held: what holds it."""
+    """Horizontal (to +x) and vertical (up) force of the ground on the block at the output times [N]; held: its restraints, with their forces."""
     b = model.block
     side = np.where(response.rotation < 0.0, -1.0, 1.0)
     i = (side < 0.0).astype(int)
@@ -83,8 +85,8 @@ def toe_forces(
     y = radius * (np.sin(rest) * acceleration - np.cos(rest) * rate**2)
     mass = b.mass[0]
     tangential, normal = mass * (response.ground + x), mass * (GRAVITY + response.vertical + y)
-    if held is not None:
-        pull = held.pull(response.rotation, response.forces)
+    if held is not None and forces is not None:
+        pull = held.pull(response.rotation, forces)
         tangential, normal = tangential - pull[:, 0], normal - pull[:, 1]
     return tangential, normal
 

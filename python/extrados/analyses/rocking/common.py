@@ -1,6 +1,9 @@
 """What all analyses of rocking share."""
 
 from dataclasses import replace
+from typing import Protocol
+
+import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking.tables import RockingTable
@@ -8,6 +11,21 @@ from extrados.model.geometry.assembly import GROUND
 from extrados.motions.supports import Shift, with_shifts
 from extrados.views.building import Building
 from extrados.views.rockers.rocker import Rocker
+
+
+class Moving(Protocol):
+    """States of a rocking structure (n each): rotation [rad], rate, acceleration, ground and vertical [m/s^2]."""
+
+    @property
+    def rotation(self) -> np.ndarray: ...
+    @property
+    def rate(self) -> np.ndarray: ...
+    @property
+    def acceleration(self) -> np.ndarray: ...
+    @property
+    def ground(self) -> np.ndarray: ...
+    @property
+    def vertical(self) -> np.ndarray: ...
 
 
 def rocker_of(context: Context, options: RockingTable) -> Rocker:

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from extrados.core.rocking import FAILED, JointDemand, Response
+from extrados.results import fields
 from extrados.results.rocking import Conditions, JointTime
 from extrados.schema.constants import GRAVITY
 from extrados.views.rockers.rocker import Rocker
@@ -226,8 +227,7 @@ def of_one(rocker: Rocker, response: Response, handed: bool = False) -> Conditio
     return Conditions(
         friction=given if np.isfinite(given) else None,
         required_friction=needed,
-        **({"slides_first": slides} if slides else {}),
-        **({"leaves_first": leaves} if leaves else {}),
+        **fields.given(slides_first=slides, leaves_first=leaves),
         thrust_line_outside=outside,
         energy_astray=astray,
         not_checked=not_checked(rocker),

@@ -98,10 +98,11 @@ def doubts(context: Context, options: Rocking, rocker: Rocker, response: Respons
     turns = turning(response.outcome, [*(probe.outcome for probe in probes), *others])
     chaotic = grown > CHAOTIC or turns > 0.0
     violated = [chaos_told(grown, turns)] if chaotic else []
-    rivals: dict[str, tuple[float, Body]] = rocker.model.rivals(DIFFER)
+    rivals: dict[str, tuple[float, Body]] = rocker.rivals(DIFFER)
     more = _keeping_more(context, rocker, response)
     bodies = [rocker.held(body) for _, body in rivals.values()]
-    bodies += [arch_body(rocker.model.four_hinge, c_v) for c_v, _ in more]
+    if isinstance(rocker.model, ArchModel):
+        bodies += [arch_body(rocker.model.four_hinge, c_v) for c_v, _ in more]
     if not bodies:
         return Doubts([], grown, chaotic, [], violated)
     which = np.arange(len(bodies))
@@ -111,7 +112,7 @@ def doubts(context: Context, options: Rocking, rocker: Rocker, response: Respons
     )  # fmt: skip
     if found.interrupted:
         return nothing
-    outcome = ["" if place == FAILED else OUTCOMES[place] for place in found.outcome]
+    outcome = [None if place == FAILED else OUTCOMES[place] for place in found.outcome]
     warnings = []
     rules = [
         RuleOutcome(rule=rule, restitution=c_v, outcome=one)
@@ -141,7 +142,7 @@ def doubts_on_contacts(
     under the rival rules of impact too. response: of the mechanism until then."""
     run = over.contacts
     growth_found = run.perturbation_growth or 0.0
-    rivals = rocker.model.rivals(DIFFER) if response.impacts else {}
+    rivals = rocker.rivals(DIFFER) if response.impacts else {}
     rules = []
     for rule, (c_v, body) in rivals.items():
         rival = replace(contacts, leaving=replace(contacts.leaving, body=rocker.held(body)))

@@ -9,6 +9,7 @@ from extrados.analyses.rocking import stack as stack_rocking
 from extrados.analyses.rocking.common import with_moving_supports
 from extrados.analyses.rocking.shapes import film_arrays, on_contacts
 from extrados.analyses.rocking.tables import Rocking
+from extrados.results import rocking as out
 from extrados.results.model import Result
 from extrados.views.rockers.arch import ArchModel
 from extrados.views.rockers.block import BlockModel
@@ -28,7 +29,7 @@ def run(context: Context, options: Rocking) -> Result:
     result = next(run for kind, run in kinds.items() if isinstance(rocker.model, kind))(context, options, rocker)
     if options.animation != "none":
         result.arrays |= film_arrays(rocker, result)
-    if result.results.hand_over is not None:
+    if result.of(out.Rocking).hand_over is not None:
         result.arrays |= on_contacts(context.building.blocks(), result)
         for line in ("snapshot_thrust", "film_line"):  # of the mechanism
             result.arrays.pop(line, None)
@@ -37,7 +38,7 @@ def run(context: Context, options: Rocking) -> Result:
 
 def _with_friction(context: Context, result: Result) -> Result:
     """The result; where its joints were not watched, with the condition that does not hold if they lack friction."""
-    r, given = result.results, context.building.joints.coefficient
+    r, given = result.of(out.Rocking), context.building.joints.coefficient
     watched = r.conditions is not None and "friction" in r.conditions
     if watched or given is None or r.required_friction is None or r.required_friction <= given:
         return result

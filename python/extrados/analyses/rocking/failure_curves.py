@@ -4,7 +4,7 @@ import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from extrados.analyses.rocking.doubts import DIFFER, OFTEN, too_fast
 from extrados.analyses.rocking.failure_domain import LowestAmplitudes, curves_by_rule, natural_durations, warned
 from extrados.analyses.rocking.needs import structures_of
 from extrados.analyses.rocking.tables import FailureCurves
-from extrados.core.rocking import FAILED, OUTCOMES, Body, ensemble
+from extrados.core.rocking import FAILED, OUTCOMES, Body, Outcome, ensemble
 from extrados.limit.errors import CannotStand
 from extrados.model.errors import BadGeometry
 from extrados.motions.impulse import Impulse, primary_impulses
@@ -98,7 +98,9 @@ def run(context: Context, options: FailureCurves) -> Result:
             "single impulses without the motion before and after them; use the outcomes of the runs"
         )
     longest = max(len(d) for d, _, _ in curves)
-    padded = [np.array([np.append(c[k], np.full(longest - len(c[k]), np.nan)) for c in curves]) for k in (0, 1)]
+    padded = [
+        np.array([np.append(np.asarray(c[k]), np.full(longest - len(c[k]), np.nan)) for c in curves]) for k in (0, 1)
+    ]
     result.arrays = {
         "duration": Array(padded[0], ("curve", "point"), "s", "t_p of step and rectangular pulses, else the period T_p"),
         "amplitude": Array(padded[1], ("curve", "point"), "g", "lowest amplitude of collapse"),
@@ -163,7 +165,7 @@ def _fits(
     else:
         found["criterion"] = table, arch.radius
     near = (amplitudes > criterion.FLOOR * gamma) & (amplitudes < criterion.CAP * gamma)
-    made = {}
+    made: dict[str, tuple[out.CurveFit, Callable[[np.ndarray], np.ndarray]]] = {}
     for name, (f, radius) in found.items():
         amplitude = partial(f.amplitude, radius=radius)
         misfit = np.abs(amplitude(durations[near]) / amplitudes[near] - 1.0)
@@ -217,9 +219,10 @@ def _said(structure: Table, path: str) -> str:
     *way, last = path.split(".")
     for part in way:
         place = place[int(part)] if isinstance(place, list) else getattr(place, part)
-    value = getattr(place, last)
+    within: Table = place
+    value = getattr(within, last)
     number = f"{value:g}" if isinstance(value, float) else str(value)
-    return f"{last.replace('_', ' ')} {number} {unit_of(type(place), last)}".rstrip()
+    return f"{last.replace('_', ' ')} {number} {unit_of(type(within), last)}".rstrip()
 
 
 def _curve(context: Context, options: FailureCurves, variant: Variant) -> tuple[np.ndarray, np.ndarray, dict[str, Any]]:
@@ -278,7 +281,7 @@ def _row(
     variant: Variant, durations: np.ndarray, amplitudes: np.ndarray, holds: dict[str, Any], shaken: list[Shaken]
 ) -> out.FailureCurve:  # fmt: skip
     rocker = variant.rocker
-    outcomes: list[str | None] = []
+    outcomes: list[Outcome | None] = []
     if shaken:
         each = np.arange(len(shaken))
         ends = np.array([s.motion.end for s in shaken]) + variant.settle
@@ -288,8 +291,8 @@ def _row(
         outcomes = [None if place == FAILED else OUTCOMES[place] for place in e.outcome]
     return out.FailureCurve(
         label=variant.label,
-        durations_s=durations,
-        amplitudes_g=amplitudes,
+        durations_s=durations.tolist(),
+        amplitudes_g=amplitudes.tolist(),
         uplift_acceleration_g=rocker.uplift,
         restitution=rocker.restitution,
         natural_time_s=rocker.time_unit if _slender(variant) else variant.natural,
@@ -301,7 +304,7 @@ def _row(
     )
 
 
-def _against(durations: np.ndarray, amplitudes: np.ndarray, impulse: Impulse) -> str | None:
+def _against(durations: np.ndarray, amplitudes: np.ndarray, impulse: Impulse) -> Literal["stands", "fails"] | None:
     """Verdict of a curve on an impulse; None where its period lies outside. Above the cap of the curve nothing fails."""
     if not durations[0] <= impulse.period <= durations[-1]:
         return None

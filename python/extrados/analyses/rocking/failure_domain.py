@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from extrados.analyses.batches import computed, sweep
+from extrados.analyses.batches import Swept, computed, sweep
 from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.rocking.conditions import ROWS, Counted, astray_of, of_many, told
@@ -23,6 +23,7 @@ from extrados.core.rocking import Body
 from extrados.motions import pulses
 from extrados.motions.motion import Motion
 from extrados.results import rocking as out
+from extrados.results.fields import Keys, given
 from extrados.results.model import Array, Result, TableData
 from extrados.results.rocking import COLLAPSE, RECOVERY
 from extrados.schema.constants import GRAVITY
@@ -83,7 +84,7 @@ class Mapper:
         self,
         body: Body,
         pulse: str,
-        durations: Sequence[float],
+        durations: Sequence[float] | np.ndarray,
         settle: float,
         threads: int,
         start_rotation: float = 0.0,
@@ -111,6 +112,7 @@ class Mapper:
         """Outcome codes, `code`, and what was demanded of the joints (rocking.conditions) for pulses `index` of the given
         amplitudes [m/s^2]; Unfinished where some are missing."""
         job = self.job(index, amplitude)
+        found: Sequence[Swept | dict[str, np.ndarray]]
         if self.context is not None:
             found = [sweep(self.context, "failure-domain", job, len(index), "failure domain").whole()]
         else:
@@ -147,14 +149,16 @@ def failure_curves(
         )
         handed[handed] = known
     within = np.where(handed.any(axis=1), np.inf, accuracy)
-    refined = [_refine(mapper.codes, codes, grid, wanted, within) for wanted in (MODE_I, MODE_II)]
+    mode_i, mode_ii = (_refine(mapper.codes, codes, grid, wanted, within) for wanted in (MODE_I, MODE_II))
     # The pocket is the first safe amplitude above a failing one: the same search with the roles exchanged.
     risen = np.where((codes < MODE_I) & (np.cumsum(codes >= MODE_I, axis=1) > 0), MODE_I, RECOVERY)
 
     def safe(index: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
         return np.where(mapper.codes(index, amplitude) < MODE_I, MODE_I, RECOVERY)
 
-    return Curves(durations, amplitudes, codes, *refined, _refine(safe, risen, grid, MODE_I, within), rows, handed)
+    return Curves(
+        durations, amplitudes, codes, mode_i, mode_ii, _refine(safe, risen, grid, MODE_I, within), rows, handed
+    )
 
 
 @dataclass(frozen=True)
@@ -325,20 +329,22 @@ def run(context: Context, options: FailureDomain) -> Result:
     gamma, slender = model.unit_acceleration, model.what != "arch"
     r = out.FailureDomain(
         pulse=options.pulse,
-        **{
-            name: out.ModeCurve(
-                durations_s=durations,
-                amplitudes_g=curve / GRAVITY,
-                **({"amplitude_ratios": curve / GRAVITY / gamma} if slender else {}),
-            )
-            for name, curve in names.items()
-        },
-        pocket_begins_g=curves.pocket / GRAVITY,
-        sliding_from_g=first_of(curves.rows["slips"], amplitudes) / GRAVITY,
-        hinges_elsewhere_from_g=first_of(curves.rows["strays"], amplitudes) / GRAVITY,
+        **given(
+            **{
+                name: out.ModeCurve(
+                    durations_s=durations.tolist(),
+                    amplitudes_g=(curve / GRAVITY).tolist(),
+                    **given(amplitude_ratios=curve / GRAVITY / gamma if slender else None),
+                )
+                for name, curve in names.items()
+            }
+        ),
+        pocket_begins_g=(curves.pocket / GRAVITY).tolist(),
+        sliding_from_g=(first_of(curves.rows["slips"], amplitudes) / GRAVITY).tolist(),
+        hinges_elsewhere_from_g=(first_of(curves.rows["strays"], amplitudes) / GRAVITY).tolist(),
         conditions=conditions,
-        **({"handed_over": handed} if handed else {}),
-        **_by_rule(context, options, model, durations, amplitudes, 40.0 * unit, curves.handed.any(axis=1)),
+        **given(handed_over=handed or None),
+        **_by_rule(context, options, model, durations, amplitudes, 40.0 * unit, np.asarray(curves.handed.any(axis=1))),
         uplift_acceleration_g=model.uplift,
         restitution=model.restitution,
         natural_time_s=unit if model.what == "arch" else model.time_unit,
@@ -374,9 +380,9 @@ def run(context: Context, options: FailureDomain) -> Result:
     result.answer = _answer(model, options, durations, curves, r.safe_pockets)
     result.warnings += warned(r)
     if handed:
-        given = f" at friction {conditions.friction:.2f}" if conditions.friction is not None else ""
+        friction = f" at friction {conditions.friction:.2f}" if conditions.friction is not None else ""
         result.warnings.append(
-            f"Rigid contacts decided {handed} of {curves.codes.size} pulses: joints slide{given} in {conditions.sliding} pulses, and hinges "
+            f"Rigid contacts decided {handed} of {curves.codes.size} pulses: joints slide{friction} in {conditions.sliding} pulses, and hinges "
             f"form elsewhere in {conditions.hinges_elsewhere}. The curves at these durations are known to a cell of the map."
         )
         if options.at_amplitudes:
@@ -484,7 +490,7 @@ def curves_by_rule(
 
 def _at_amplitudes(
     context: Context, options: FailureDomain, model: Rocker, durations: np.ndarray, settle: float
-) -> dict[str, out.AtAmplitudes]:
+) -> Keys:
     """The key of the shortest failing durations at the amplitudes that the deck asks for; none where it asks none."""
     if not options.at_amplitudes:
         return {}
@@ -493,7 +499,11 @@ def _at_amplitudes(
     found = shortest_durations(
         model.body, options.pulse, at, tried, settle, options.accuracy, context.threads, context, model.start_rotation
     )
-    rows = out.AtAmplitudes(amplitudes_g=at / GRAVITY, mode_I_durations_s=found[0], mode_II_durations_s=found[1])
+    rows = out.AtAmplitudes(
+        amplitudes_g=(at / GRAVITY).tolist(),
+        mode_I_durations_s=found[0].tolist(),
+        mode_II_durations_s=found[1].tolist(),
+    )
     return {"at_amplitudes": rows}
 
 

@@ -14,6 +14,7 @@ from extrados.analyses.rocking.tables import Rocking
 from extrados.core.restraints import LENGTH
 from extrados.core.rocking import Body, Response, history
 from extrados.results import rocking as out
+from extrados.results.fields import given
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 from extrados.views.rockers.arch import ArchModel
@@ -159,9 +160,8 @@ def rocking_result(
         decided_by_last_digits=doubt.chaotic,
         perturbation_growth=doubt.growth,
         conditions=ran.conditions,
-        **({} if over is None else {"hand_over": over}),
+        **given(hand_over=over, outcomes_by_rule=doubt.rules or None),
         violated=doubt.violated,
-        **({"outcomes_by_rule": doubt.rules} if doubt.rules else {}),
         **_held(rocker, response),
         **further,
     )
@@ -272,7 +272,9 @@ def drawn_times(time: np.ndarray, rotations: np.ndarray, options: Rocking) -> np
         return np.zeros(0, dtype=int)
     if options.thrust_line_times:
         return np.unique(np.clip(np.searchsorted(time, options.thrust_line_times), 0, len(time) - 1))
-    crests = [k for q in np.abs(rotations) for k in np.flatnonzero((q[1:-1] >= q[:-2]) & (q[1:-1] > q[2:])) + 1]
+    crests: list[int] = [
+        k for q in np.abs(rotations) for k in (np.flatnonzero((q[1:-1] >= q[:-2]) & (q[1:-1] > q[2:])) + 1).tolist()
+    ]
     size = np.abs(rotations).max(axis=0)
     chosen = sorted(dict.fromkeys([*crests, int(size.argmax())]), key=lambda k: -size[k])[:6]
     return np.array(sorted(chosen))

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from extrados.analyses.rocking.conditions import rows_of
 from extrados.core import rocking as core_rocking
@@ -52,11 +53,11 @@ class RunsJob:
 def runs_job(
     bodies: list[Body],
     grounds: list[Ground],
-    body,
-    motion,
-    scale,
-    end,
-    start=0.0,
+    body: ArrayLike,
+    motion: ArrayLike,
+    scale: ArrayLike,
+    end: ArrayLike,
+    start: ArrayLike = 0.0,
     *,
     tolerance: float = 1e-8,
     strict: bool = True,
@@ -65,7 +66,7 @@ def runs_job(
     """The job of these runs; numbers are spread over all members."""
     n = max(np.size(v) for v in (body, motion, scale, end, start))
 
-    def spread(value, kind: type) -> np.ndarray:
+    def spread(value: ArrayLike, kind: type) -> np.ndarray:
         return np.ascontiguousarray(np.broadcast_to(np.asarray(value, dtype=kind), n))
 
     return RunsJob(

@@ -49,7 +49,7 @@ def structures_of(context: Context, options: tables.FailureCurves) -> list[Struc
             raise Refused(f"a variant changes keys of '{data['kind']}', not its kind", (*key, "kind"))
         try:
             table = functools.reduce(lambda table, name: changed(table, name, change[name]), change, data)
-            found.append(read_table(type(building.structure), table))
+            found.append(read_table(type(building.require_structure()), table))
         except (BadGeometry, Refused, ValueError) as error:
             raise Refused(f"variant {number + 1}: {error}" if options.variants else str(error), key) from None
     return found

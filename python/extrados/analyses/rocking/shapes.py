@@ -72,7 +72,7 @@ def film(time: np.ndarray, pose: np.ndarray) -> dict[str, Array]:
 
 def film_arrays(rocker: Rocker, result: Result) -> dict[str, Array]:
     """The shapes of a stored history at the pictures of a film."""
-    get = {name: array.data for name, array in result.arrays.items()}
+    get = {name: np.asarray(array.data) for name, array in result.arrays.items()}
     time = get["time"]
     if not len(time):
         return {}
@@ -88,7 +88,7 @@ def film_arrays(rocker: Rocker, result: Result) -> dict[str, Array]:
 
 def on_contacts(assembly: Assembly, result: Result) -> dict[str, Array]:
     """Shapes of a structure whose blocks rigid contacts took over: six, and the film where the analysis made one of the mechanism."""
-    time, place = result.arrays["contacts_time"].data, result.arrays["contacts_place"].data
+    time, place = np.asarray(result.arrays["contacts_time"].data), np.asarray(result.arrays["contacts_place"].data)
     if not len(time):
         return {}
     away = np.abs(place - place[-1]).max(axis=(1, 2))

@@ -8,7 +8,7 @@ from extrados.analyses.limit.common import geometry_arrays
 from extrados.analyses.rocking.history import LARGEST, ROOM, count, drawn_times
 from extrados.analyses.rocking.shapes import film, pictures
 from extrados.analyses.rocking.tables import Rocking
-from extrados.core.rocking import FAILED, OUTCOMES, ensemble
+from extrados.core.rocking import FAILED, OUTCOMES, Outcome, ensemble
 from extrados.core.soft_base import SoftBaseResponse, soft_base_history, soft_base_start
 from extrados.results import rocking as out
 from extrados.results.model import Array, Result, TableData
@@ -58,7 +58,7 @@ def run(context: Context, options: Rocking) -> Result:
         critical = (model.critical(1), -model.critical(-1))
         grown = growth([over_critical(one.rotation, critical) for one in (r, *probes[:2])])
         turns = turning(r.outcome, [one.outcome for one in probes])
-    rigid: tuple[str, float] | None = None
+    rigid: tuple[Outcome, float] | None = None
     if not r.interrupted:
         side = 0 if ratio >= 0.0 else 1
         same = ensemble(
@@ -72,7 +72,7 @@ def run(context: Context, options: Rocking) -> Result:
 
 def _result(
     context: Context, options: Rocking, model: SoftBaseModel, r: SoftBaseResponse, chaos: tuple[float, float],
-    rigid: tuple[str, float] | None,
+    rigid: tuple[Outcome, float] | None,
 ) -> Result:  # fmt: skip
     potential = r.potential - model.potential(model.rest)
     energy = r.kinetic + potential
@@ -185,7 +185,7 @@ def _result(
 
 
 def _answer(
-    context: Context, model: SoftBaseModel, r: SoftBaseResponse, found: out.Rocking, rigid: tuple[str, float] | None
+    context: Context, model: SoftBaseModel, r: SoftBaseResponse, found: out.Rocking, rigid: tuple[Outcome, float] | None
 ) -> str:
     """The outcome in words."""
     way = "+x" if r.peak[0] > 0 else "-x"

@@ -27,7 +27,7 @@ class RockingTable(BuildingAnalysis):
         "joints.energy_ratio", "initial.movements", "supports.abutting_wall", "supports.rebound", "supports.stiffness",
         "supports.foundation", "supports.damping_ratio",
     )  # fmt: skip
-    bears: ClassVar = HOLDS
+    bears: ClassVar[tuple[str, ...]] = HOLDS
     soft_base: ClassVar = False
     form: Literal["nonlinear", "linear"] = key(
         "nonlinear", "full equations, or the linear form of slender blocks", source="Housner 1963"

@@ -95,7 +95,7 @@ def _piers(
                     ), 1.0, 1.0, None, "SLV",
                 ),
             ]  # fmt: skip
-            value = {line.rule: line.capacity for line in lines}
+            value = {line.rule: line.capacity for line in lines if line.capacity is not None}
             row: dict[str, Any] = {
                 "wall": wall.name, "storey": storey, "from": pier.start, "to": pier.end, "height": height, "load": load
             }  # fmt: skip

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from extrados.analyses.context import Refused
-from extrados.analyses.shell.tables import Pushover, Settlement
+from extrados.analyses.shell.tables import Drive, Pushover, Settlement
 from extrados.analyses.sla.events import Curve
 from extrados.analyses.sla.kept import State
 from extrados.analyses.sla.model import (
@@ -37,7 +37,7 @@ class ShellModel:
 
     mesh: ShellMesh
     freedoms: core.Freedoms
-    groups: list
+    groups: list[core.Group]
     behaviour: core.Behaviour
     constant: np.ndarray
     reference: np.ndarray
@@ -163,7 +163,9 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     angle = np.radians(options.direction)
     along = np.array([np.cos(angle), np.sin(angle), 0.0])
     along[np.abs(along) < 1e-12] = 0.0
-    ties, groups, axes = [], [], []
+    groups: list[core.Group] = []
+    ties: list[list[tuple[int, int, float]]] = []
+    axes: list[np.ndarray] = []
     if options.drives:
         ties.append(_tie(mesh, options, along, held))
     moved, grounds = _grounds(mesh, options, held)
@@ -179,10 +181,10 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     for bar in mesh.bars:
         groups.append(_bar(mesh, bar, options))
     if mesh.springs:
-        node, direction, stiffness = (np.array(column) for column in zip(*mesh.springs, strict=True))
+        nodes, ways, stiffness = (np.array(column) for column in zip(*mesh.springs, strict=True))
         groups.append(
             core.Springs(
-                np.column_stack([node, np.full(len(node), -1)]), np.column_stack([direction, direction]),
+                np.column_stack([nodes, np.full(len(nodes), -1)]), np.column_stack([ways, ways]),
                 stiffness.astype(float),
             )
         )  # fmt: skip
@@ -266,7 +268,7 @@ def nodes_on(mesh: ShellMesh, wall: int, level: float) -> np.ndarray:
     return nodes[np.abs(mesh.xyz[nodes, 2] - level) < 1e-6]
 
 
-def _place(mesh: ShellMesh, drive, what: str) -> np.ndarray:
+def _place(mesh: ShellMesh, drive: Drive, what: str) -> np.ndarray:
     names = [wall.name for wall in mesh.walls]
     if drive.wall not in names:
         there = f"there are {', '.join(names)}" if names else "it has none"
@@ -329,23 +331,24 @@ def _grounds(
             for way in ("down", "out"):
                 if getattr(part, way):
                     asked.setdefault(Ground(foot, way, x), what)
-    ties, grounds = [], {}
+    ties: list[list[tuple[int, int, float]]] = []
+    grounds: dict[Ground, int] = {}
     for ground, what in asked.items():
-        foot = mesh.feet[ground.foot]
+        support = mesh.feet[ground.foot]
         low, high = ground.x or (-np.inf, np.inf)
-        inside = np.flatnonzero((foot.along >= low - 1e-6) & (foot.along <= high + 1e-6))
+        inside = np.flatnonzero((support.along >= low - 1e-6) & (support.along <= high + 1e-6))
         free = [
-            (int(foot.nodes[i]), d, share)
+            (int(support.nodes[i]), d, share)
             for i in inside
-            for d, share in (((2, -1.0),) if ground.way == "down" else enumerate(foot.out[i, :2].tolist()))
-            if abs(share) > 1e-9 and (int(foot.nodes[i]), d) in held
+            for d, share in (((2, -1.0),) if ground.way == "down" else enumerate(support.out[i, :2].tolist()))
+            if abs(share) > 1e-9 and (int(support.nodes[i]), d) in held
         ]
         if not free and not what:
             continue  # it is not held that way
         if not free:
             word = "wall" if mesh.walls else "foot"
             raise BadGeometry(
-                f"{what}: no support of {word} '{foot.name}' lies there that holds it {'upright' if ground.way == 'down' else 'across'}"
+                f"{what}: no support of {word} '{support.name}' lies there that holds it {'upright' if ground.way == 'down' else 'across'}"
             )
         held -= {(n, d) for n, d, _ in free}
         grounds[ground] = len(ties)
@@ -411,13 +414,13 @@ def first_mode(model: ShellModel, options: Pushover, mass: np.ndarray) -> tuple[
     zero = np.zeros((nodes, 6))
     with model.open(options, 1) as core_model:
         for _ in range(ROUNDS):
-            moved = []
+            found = []
             for vector in vectors:
                 load = zero.copy()
                 load[:, :3] = mass[:, None] * vector
                 core_model.loads(zero, load)
-                moved.append(core_model.displacement(1.0)[:, :3])
-            moved = np.stack(moved)
+                found.append(core_model.displacement(1.0)[:, :3])
+            moved = np.stack(found)
             stiff = np.einsum("inx,n,jnx->ij", moved, mass, vectors)
             heavy = np.einsum("inx,n,jnx->ij", moved, mass, moved)
             inverse = np.linalg.inv(np.linalg.cholesky(heavy))
@@ -437,7 +440,8 @@ def _shells(
     local = np.einsum("eax,ecx->eca", axes[:, :2], corners - corners.mean(axis=1, keepdims=True)).reshape(-1, 2)
     alone = np.arange(len(local)).reshape(part.connect.shape)
     # Equal elements have equal bands: their tooth tables are made once
-    band, reach = (None if b is None else np.round(b, 9) for b in bands_of(local, part.kind, alone, options))
+    band, reach = bands_of(local, part.kind, alone, options)
+    band, reach = np.round(band, 9), None if reach is None else np.round(reach, 9)
     tension, crushing, beds = laws_of(materials, part.linear, part.strength, band, reach, options)
     return core.Shells(
         part.kind, part.connect, part.thickness, np.array([m.young for m in materials]),
@@ -479,16 +483,19 @@ def _joint(joint: ShellJoint, frames: np.ndarray, options: Pushover) -> core.She
         return np.repeat(values, layers, axis=0)
 
     count = len(connect) * layers
-    axes = [each(axis) for axis in (joint.normal, joint.along, joint.out)]
+    normal, along, out = (each(axis) for axis in (joint.normal, joint.along, joint.out))
     upright = np.abs(joint.normal[:, 2]) > 0.5
     law = JointLaw(
         normal=each(np.column_stack([~upright, upright]).astype(float)), area=each(area) * np.tile(share, len(connect))[:, None],
         **{name: np.full(count, value) for name, value in joint.strength.items()}, small=1.0, softening=joint.softening,
     )  # fmt: skip
-    row = core.ShellJoints.rows(*axes, np.tile(height, len(connect)) * each(joint.thickness), frames[each(connect)])
+    row = core.ShellJoints.rows(
+        normal, along, out, np.tile(height, len(connect)) * each(joint.thickness), frames[each(connect)]
+    )
+    tension, crushing, cohesion = teeth_of_joints(law, np.ones(count), options)
     return core.ShellJoints(
         each(connect), law.normal, law.area, law.normal_stiffness, law.shear_stiffness, law.friction,
-        *teeth_of_joints(law, np.ones(count), options), small=law.small, row=row,
+        tension, crushing, cohesion, small=law.small, row=row,
     )  # fmt: skip
 
 

@@ -32,6 +32,7 @@ from extrados.analyses.sla.measures import numbers_of, out_of_reach
 from extrados.analyses.sla.stored import events_of_curve
 from extrados.core.calls import interruptible
 from extrados.core.sla import EVENT, ShellJoints, Shells
+from extrados.model.properties import Material
 from extrados.model.structures.plan import Plan
 from extrados.results import shell as out
 from extrados.results.model import Array, Result, TableData
@@ -105,6 +106,7 @@ def _run(context: Context, options: Pushover) -> Result:
         numbers["verification"] = found
     if options.frame is not None:
         numbers["frame"] = _frame(context, result, model, options, elastic)
+    result.warnings += _no_base_shear(options, numbers)
     result.results = out.Pushover(**numbers)
     result.answer = _answer(context.building, options, numbers)
     if interrupted:
@@ -206,6 +208,11 @@ def _elastic(model: ShellModel, options: Pushover) -> dict[str, Any]:
     return {"constant": constant, "pushed": both, "bytes": bytes_of, "unit": model.unit, "under": under}
 
 
+def _facing(model: ShellModel) -> np.ndarray:
+    """Cosine of each wall's direction to the push: forces of a section are those of what is above on what is below."""
+    return np.array([float(wall.along @ model.along[:2]) for wall in model.mesh.walls])
+
+
 def _by_wall(model: ShellModel, found: list[Section]) -> tuple[np.ndarray, np.ndarray]:
     """Shear along each wall and normal force at the feet [N]."""
     shear, normal = np.zeros(len(model.mesh.walls)), np.zeros(len(model.mesh.walls))
@@ -261,8 +268,7 @@ def _numbers(
     shear0, normal0 = _by_wall(model, elastic["constant"])
     shear1, _ = _by_wall(model, elastic["pushed"])
     base = 0.0 if model.driven else base
-    # Forces of a section are those of what is above on what is below
-    facing = np.array([float(wall.along @ model.along[:2]) for wall in model.mesh.walls])
+    facing = _facing(model)
     carried = curve.sign * shear * facing
     numbers["walls"] = [
         {
@@ -353,6 +359,18 @@ def _place_of(model: ShellModel, point: int) -> dict[str, Any] | None:
             return where | {"along_m": float(places["s"][k]), "height_m": float(places["z"][k])}
         place += (points.stop - points.start) // layers
     return None
+
+
+def _no_base_shear(options: Pushover, numbers: dict[str, Any]) -> list[str]:
+    """A warning where drives of unequal ratios make the load another quantity than the base shear."""
+    if len({drive.ratio for drive in options.drives}) < 2 or not numbers["walls"]:
+        return []
+    carried, load = sum(row["shear_N"] for row in numbers["walls"]), numbers["greatest_load_N"]
+    return [
+        "The drives move their storeys by unequal ratios. The load of the curve is the work of all drives over the control displacement, "
+        f"and not the base shear. At the greatest load of {engineering(load, 'N')} the walls carry {engineering(carried, 'N')} along the "
+        "push at their feet. Compare the shear of the walls with measured base shears."
+    ]
 
 
 def _remarks(model: ShellModel, curve: Curve) -> list[str]:
@@ -473,7 +491,7 @@ def _variants(context: Context, options: Pushover, result: Result, numbers: dict
 def _varied(building: Building, variant: Variant) -> Building:
     """The building with other material, and of walls on a plan with other thicknesses, floors and forces."""
 
-    def material(of):
+    def material(of: Material) -> Material:
         scaled = {
             name: getattr(of, name) * factor
             for names, factor in (
@@ -549,6 +567,11 @@ def _state_arrays(result: Result, model: ShellModel, curve: Curve, prefix: str) 
     result.arrays[f"{prefix}state_displacement"] = Array(
         np.stack([s.displacement[:, :3] for s in states]), (*dims, "nodes", "axis"), "m", "displacements of the nodes"
     )
+    if model.mesh.walls:
+        result.arrays[f"{prefix}state_wall_shear"] = Array(
+            np.stack([curve.sign * _facing(model) * _by_wall(model, sections(model, s.report))[0] for s in states]),
+            (*dims, "walls"), "N", "shear that each wall carries along the push at its foot",
+        )  # fmt: skip
     seen = [cracks(model, s.report) for s in states]
     for name, unit, about in (
         ("width", "m", "greatest width of a crack through the thickness"), ("angle", "rad", "of its normal to the wall"),

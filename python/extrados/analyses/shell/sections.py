@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -40,7 +41,7 @@ def sections(model: ShellModel, report: dict[str, np.ndarray]) -> list[Section]:
         section
         for wall in range(len(model.mesh.walls))
         for storey, level in enumerate(model.mesh.levels[:-1], 1)
-        for section in _sections(model, report, wall, storey, lambda low, _, level=level: np.abs(low - level) < 1e-6)
+        for section in _sections(model, report, wall, storey, partial(_begins_at, level))
     ]
 
 
@@ -49,6 +50,11 @@ def sections_at(
 ) -> list[Section]:
     """Forces in the piers of a wall that a height cuts, from the row of elements there."""
     return _sections(model, report, wall, storey, lambda low, high: (low <= height) & (high > height))
+
+
+def _begins_at(level: float, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Whether elements have their lower end at a height [m]."""
+    return np.abs(low - level) < 1e-6
 
 
 def _sections(

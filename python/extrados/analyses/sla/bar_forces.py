@@ -1,6 +1,8 @@
 """Forces of bars and ties: from event to event where a bar is held at its ends alone, along it at the kept states where it
 is embedded."""
 
+from typing import Any
+
 import numpy as np
 
 from extrados.analyses.sla.bars import PRESSURE, TAUT, TENSION, NamedBar
@@ -53,7 +55,7 @@ def bar_rows(model: SlaModel, curve: Curve) -> list[BarForce]:
                 found.append(float(force[np.abs(force).argmax()]))
             else:
                 found.append(None)
-        row = {"name": bar.name, "force_at_greatest_load_N": found[0], "last_force_N": found[1]}
+        row: dict[str, Any] = {"name": bar.name, "force_at_greatest_load_N": found[0], "last_force_N": found[1]}
         if ends is not None and fine.any():
             row["greatest_force_N"] = float(ends[fine][np.abs(ends[fine]).argmax()])
         damage = curve.damage_end[:, point : point + len(bar.place)]

@@ -54,14 +54,14 @@ def dry_points(core_model: core.Model, model: SlaModel) -> DryPoints:
         found.append((first + at, *(np.repeat(value * each, per)[at] for value in (*values, 1.0))))
     if any(len(number) for number, *_ in found):
         bars = [group for group in model.groups if isinstance(group, core.Bars)]
-        first = np.cumsum(
+        begins = np.cumsum(
             [core_model.points - sum(len(bar.connect) for bar in bars), *(len(bar.connect) for bar in bars)]
         )
-        for bar, start in zip(bars, first[:-1].tolist(), strict=True):
+        for bar, start in zip(bars, begins[:-1].tolist(), strict=True):
             each = np.ones(len(bar.connect))
             if bar.bears != "both":
-                values = (np.nan, 1.0, 1.0, -1.0 if bar.bears == "tension" else 1.0)
-                found.append((start + np.arange(len(each)), *(value * each for value in values)))
+                alike = (np.nan, 1.0, 1.0, -1.0 if bar.bears == "tension" else 1.0)
+                found.append((start + np.arange(len(each)), *(value * each for value in alike)))
     return DryPoints(*(np.concatenate(column) for column in zip(*found, strict=True)))
 
 

@@ -60,6 +60,11 @@ def _run(context: Context, options: Sla) -> Result:
     result = Result("sla")
     model = build(mesh, options, strength_factors(mesh, options, options.strength_seed))
     context.warnings += mesh.warnings
+    if any(len({part.ratio for part in load.parts}) > 1 for load in options.reference or []):
+        context.warnings.append(
+            "The parts of the displacement move by unequal ratios. The load is the work of all parts over the displacement, and not the "
+            "sum of their forces."
+        )
     damage, earlier = start_of(context, options, model)
 
     def chain(of: Any) -> Chain:

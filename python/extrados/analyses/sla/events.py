@@ -213,7 +213,8 @@ def run_curves(
         )
     curves = []
     with model.open(options, threads) as core_model:
-        stage_a, warnings, rubs = None, [], False
+        warnings: list[str] = []
+        stage_a, rubs = None, False
         if damage is not None:
             if damage.shape[1] != core_model.points:
                 raise Refused(

@@ -56,6 +56,12 @@ def multiplier(ua: np.ndarray, ub: np.ndarray, last: np.ndarray, way: np.ndarray
     return max(loads, key=lambda load: float(((gap + load * ub) * way).sum()))
 
 
+def _has_fallen(rows: list[tuple[float, ...]], start: float, fraction: float) -> bool:
+    """Whether the load of the steps so far has fallen below a fraction of its peak."""
+    load, *_, displacement = np.array(rows).T
+    return has_fallen(displacement, load, start, fraction)
+
+
 def run_incremental(
     core_model: core.Model,
     model: SlaModel,
@@ -99,7 +105,7 @@ def run_incremental(
             reason = "target displacement"
         elif soft > model.mechanism_ratio * compliance:
             reason = "mechanism"
-        elif options.stop_fraction and has_fallen(*np.array(rows)[:, [-1, 0]].T, start, options.stop_fraction):
+        elif options.stop_fraction and _has_fallen(rows, start, options.stop_fraction):
             reason = FELL
     return _events(rows, reason, cancel_requested())
 

@@ -1,6 +1,7 @@
 """A curve under way as arrays: what the batch layer keeps of a long event loop, every so many events."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -57,9 +58,10 @@ class UnderWay:
     @staticmethod
     def of(found: dict[str, np.ndarray]) -> "UnderWay":
         """From its arrays."""
+        columns: dict[str, Any] = {name: found[f"event_{name}"] for name in ONE_PER_EVENT}
+        checks, solutions, factors = (int(n) for n in found["guard"])
         events = core.Events(
-            **{name: found[f"event_{name}"] for name in ONE_PER_EVENT},
-            guard=tuple(int(n) for n in found["guard"]), crack_total=float(found["crack_total"]),
+            **columns, guard=(checks, solutions, factors), crack_total=float(found["crack_total"]),
         )  # fmt: skip
         states, k = [], 0
         while f"state_{k}" in found:

@@ -67,7 +67,8 @@ def read_measured(context: Context, file: str) -> Measured:
     displacement = columns["displacement"]
     if not (np.diff(displacement) > 0.0).all():
         raise Refused(f"{file}: the displacements must rise from line to line", KEY)
-    least, greatest = columns.get("least", columns.get("load")), columns.get("greatest", columns.get("load"))
+    least, greatest = (columns.get(name, columns.get("load")) for name in ("least", "greatest"))
+    assert least is not None and greatest is not None  # the head of the file has them
     if (least > greatest).any():
         raise Refused(f"{file}: a least load is above the greatest", KEY)
     return Measured(displacement, least, greatest)

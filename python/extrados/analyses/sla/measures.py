@@ -148,7 +148,7 @@ def _residual(curve: Curve) -> float | None:
 
 def tooth_counts(model: SlaModel) -> list[int]:
     """Least and greatest number of teeth of the cracking elements (of the widest and narrowest bands)."""
-    laws = {}
+    laws: dict[tuple[core.Softening, float], tuple[float, float]] = {}
     for group, meshed in zip(model.planes, model.mesh.groups, strict=True):
         if group.tension is not None:
             for k, law in enumerate(group.tension):
@@ -174,7 +174,11 @@ def joint_openings(result: Result, model: SlaModel, curve: Curve) -> list[str]:
     share = np.bincount(joint, np.where(width > 0.0, area, 0.0), count) / np.bincount(joint, area, count)
     most = np.zeros(count)
     np.maximum.at(most, joint, width)
-    columns = {"joint": model.mesh.joint_names, "greatest_opening": most, "open_part": share}
+    columns: dict[str, np.ndarray | list[str]] = {
+        "joint": model.mesh.joint_names,
+        "greatest_opening": most,
+        "open_part": share,
+    }
     units = {"greatest_opening": "m"}
     if model.slides:
         slip = np.zeros(count)

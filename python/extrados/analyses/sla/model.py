@@ -35,7 +35,7 @@ class SlaModel:
 
     mesh: Mesh
     freedoms: core.Freedoms
-    groups: list
+    groups: list[core.Group]
     behaviour: core.Behaviour
     constant: np.ndarray
     reference: np.ndarray
@@ -189,32 +189,32 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     if not (freedoms.equation >= 0).any():
         raise BadGeometry("every node is held: nothing can move")
 
-    groups, bands, points = [], [], []
+    groups: list[core.Group] = []
+    bands, points = [], []
     start = 0
     for group in mesh.groups:
         count = len(group.connect)
         factors = np.ones(count) if strength is None else strength[start : start + count]
         start += count
         band, reach = crack_bands(mesh, group, options)
-        joints = group.law is not None
         groups.append(
-            _joints(group, factors, options) if joints else _plane(mesh, group, band, reach, factors, options)
+            _plane(mesh, group, band, reach, factors, options)
+            if group.law is None
+            else _joints(group, group.law, factors, options)
         )
         bands.append(band)
         points.append(point_positions(mesh.xy, group))
     named: list[NamedBar] = []
     made = [(f"bar {k}", *_bar(mesh, bar, options)) for k, bar in enumerate(mesh.bars, 1)]
     made += [(tie.name or "", tie_group(mesh, tie, rod, options), rod.place) for tie, rod in mesh.rods]
-    for name, group, place in made:
-        groups.append(group)
-        named.append(NamedBar(name, group, sum(len(bar.place) for bar in named), place))
+    for name, bars, place in made:
+        groups.append(bars)
+        named.append(NamedBar(name, bars, sum(len(bar.place) for bar in named), place))
     if springs:
-        node, direction, stiffness = (np.array(column) for column in zip(*springs, strict=True))
-        ground = np.full(len(node), -1)
+        nodes, ways, stiffness = (np.array(column) for column in zip(*springs, strict=True))
+        ground = np.full(len(nodes), -1)
         groups.append(
-            core.Springs(
-                np.column_stack([node, ground]), np.column_stack([direction, direction]), stiffness.astype(float)
-            )
+            core.Springs(np.column_stack([nodes, ground]), np.column_stack([ways, ways]), stiffness.astype(float))
         )
     for i, x in enumerate(options.section_x):
         if not mesh.low[0] <= x <= mesh.high[0]:
@@ -320,7 +320,7 @@ def bands_of(
 
 def softening_of(material: Material, options: CrackOptions, factor: float = 1.0) -> core.Softening | None:
     """The tension softening of a material, its strength times `factor`; None where it does not crack."""
-    if material.tensile_strength is None:
+    if material.tensile_strength is None or material.fracture_energy is None:
         return None
     return core.Softening(
         material.tensile_strength * factor, material.fracture_energy, material.softening, options.ripple,
@@ -359,7 +359,7 @@ def bedding_of(material: Material) -> core.Bedding | None:
 
 def crushing_of(material: Material, options: CrackOptions) -> core.Softening | None:
     """The softening of a material in compression; None where it does not crush."""
-    if material.crushing_energy is None:
+    if material.crushing_energy is None or material.compressive_strength is None:
         return None
     return core.Softening(
         material.compressive_strength, material.crushing_energy, material.crushing, options.ripple,
@@ -410,9 +410,9 @@ def _plane(
     )  # fmt: skip
 
 
-def _joints(group: ElementGroup, factors: np.ndarray, options: Sla) -> core.Joints:
+def _joints(group: ElementGroup, law: JointLaw, factors: np.ndarray, options: Sla) -> core.Joints:
     """Joints of no thickness; `factors` of their tensile strength and cohesion."""
-    law = group.law
+    tension, crushing, cohesion = teeth_of_joints(law, factors, options)
     return core.Joints(
         group.connect,
         law.normal,
@@ -420,19 +420,25 @@ def _joints(group: ElementGroup, factors: np.ndarray, options: Sla) -> core.Join
         law.normal_stiffness,
         law.shear_stiffness,
         law.friction,
-        *teeth_of_joints(law, factors, options),
-        group.dry,
+        tension,
+        crushing,
+        cohesion,
+        False if group.dry is None else group.dry,
         law.small,
         options.friction_ripple,
     )
 
 
+#: Softening by element; None where none softens
+Softenings = list[core.Softening | None] | None
+
+
 def teeth_of_joints(
     law: JointLaw, factors: np.ndarray, options: CrackOptions
-) -> tuple[list[core.Softening | None] | None, ...]:
+) -> tuple[Softenings, Softenings, Softenings]:
     """How tension, compression and cohesion of joints soften, by element."""
 
-    def softenings(strength: np.ndarray, energy: np.ndarray) -> list[core.Softening | None] | None:
+    def softenings(strength: np.ndarray, energy: np.ndarray) -> Softenings:
         made: dict[tuple[float, float], core.Softening] = {}
         rows = []
         for pair in zip(strength.tolist(), energy.tolist(), strict=True):
@@ -550,7 +556,7 @@ def _edge_load(mesh: Mesh, load: Load, what: str) -> np.ndarray:
 def _covered(mesh: Mesh, load: Load, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The part of each straight edge within a place, as fractions from its first node; begin >= end where none is."""
     tolerance = 1e-6 * float(np.max(mesh.high - mesh.low))
-    ranges = [load.x, load.y]
+    ranges: list[Sequence[float] | None] = [load.x, load.y]
     if load.edge is not None:
         axis = 0 if load.edge in ("left", "right") else 1
         at = float((mesh.low if load.edge in ("left", "bottom") else mesh.high)[axis])

@@ -87,7 +87,7 @@ def repeat(context: Context, options: Sla, result: Result) -> dict[str, out.Scat
         return {}
     loads = swept["peak_load"][passed]
     scatter = out.Scatter(
-        seeds=done, peak_loads_N=loads, mean_N=loads.mean(), lowest_N=loads.min(), highest_N=loads.max(),
+        seeds=done, peak_loads_N=loads.tolist(), mean_N=loads.mean(), lowest_N=loads.min(), highest_N=loads.max(),
         coefficient_of_variation=loads.std(ddof=1) / loads.mean() if len(loads) > 1 else None,
     )  # fmt: skip
     result.tables["scatter"] = TableData(

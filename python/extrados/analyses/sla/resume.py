@@ -107,7 +107,7 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
         return None, None
     stored = read_earlier(context, options)
     try:
-        get = {name: array.data for name, array in stored.arrays["sla"].items()}
+        get = {name: array.numbers for name, array in stored.arrays["sla"].items()}
         there, here = get["point_xy"], model.point_xy
         if len(there) != len(here):
             raise Refused(

@@ -35,8 +35,8 @@ def mesh_arrays(model: SlaModel) -> dict[str, Array]:
             h if g.joint is None else np.hypot(*(model.mesh.xy[g.connect[:, 1]] - model.mesh.xy[g.connect[:, 0]]).T) / g.gauss[0]
             for g, h in zip(model.mesh.groups, model.bands, strict=True)
         ]  # fmt: skip
-        reach = np.concatenate([np.repeat(h, n) for h, n in zip(reach, per, strict=True)])
-        arrays["point_reach"] = Array(reach, ("points",), "m", "length along a crack that a point stands for")
+        each = np.concatenate([np.repeat(h, n) for h, n in zip(reach, per, strict=True)])
+        arrays["point_reach"] = Array(each, ("points",), "m", "length along a crack that a point stands for")
     return arrays
 
 

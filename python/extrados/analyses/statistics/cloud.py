@@ -83,13 +83,13 @@ def describe(
             result.warnings.append(f"no curve of rotations beyond {limit:g} of the critical over {name}: {error}")
             continue
         _curve(f"beyond_{limit:g}", f"a rotation ratio above {limit:g}", found, region, grid, columns, result)
-        annual = {}
+        annual: dict[str, Any] = {}
         if hazard is not None:
             rate, interval = rates(hazard[0], found, region.curves, None)
             annual = {"annual_rate": rate, "annual_rate_interval": interval}
         rows.append(
             out.RotationLimit(
-                rotation_ratio=limit, median=found.median, dispersion=found.dispersion, median_interval=region.median, **annual
+                rotation_ratio=limit, median=found.median, dispersion=found.dispersion, median_interval=region.median.tolist(), **annual
             )
         )  # fmt: skip
     if rows:

@@ -1,6 +1,8 @@
 """fragility: probability of uplift and collapse over many motions (thesis 6.3, Figs 6-7, 6-8, 6-10)."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -26,6 +28,7 @@ from extrados.core.soft_base import SoftBase, SoftBaseResponse, soft_base_histor
 from extrados.motions.from_deck import is_set
 from extrados.motions.motion import Motion
 from extrados.results import statistics as out
+from extrados.results.fields import Keys
 from extrados.results.model import Array, Result, StreamedTable, TableData
 from extrados.results.rocking import COLLAPSE, Conditions
 from extrados.schema.constants import GRAVITY
@@ -67,10 +70,10 @@ class EnsembleJob:
         usable = [i for i, ground in enumerate(found) if not isinstance(ground, str)]
         place = np.full(len(found), -1)
         place[usable] = np.arange(len(usable))
-        grounds: list[Ground] = [found[i] for i in usable]
+        grounds = [ground for ground in found if not isinstance(ground, str)]
         motion = member // per_motion - low
         reason = np.array([ground if isinstance(ground, str) else "" for ground in found])[motion]
-        rows = {
+        rows: dict[str, np.ndarray] = {
             "outcome": np.full(count, FAILED, np.int8), "half_cycles": np.zeros(count, np.int32),
             **{n: np.full(count, np.nan)
                for n in ("peak", "peak_ratio", "stop_time", "scale", "pga", "pgv", "arias", "intensity", "friction")},
@@ -161,7 +164,8 @@ def job_of(context: Context, options: Fragility, base: Rocker, duration: float |
         else Bodies([base.body], np.array([base.start_rotation]), np.zeros(1, bool))
     )
     levels = np.array(options.levels) if options.levels else None
-    measure, unit = options.intensity, INTENSITIES[options.intensity][1]
+    measure: str = options.intensity
+    unit = INTENSITIES[options.intensity][1]
     if measure == "pga-ratio":
         measure, unit = "pga", base.unit_acceleration * GRAVITY
     elif measure == "pgv-ratio":
@@ -244,8 +248,7 @@ def _describe(
         lambda: ((rows["outcome"], rows["peak_ratio"]) for _, rows in swept.pieces("outcome", "peak_ratio")),
         options.confidence, initial,
     )  # fmt: skip
-    middle = {name: median(lambda name=name: (rows[name] for _, rows in swept.pieces(name)))
-              for name in ("pga", "pgv", "arias")}  # fmt: skip
+    middle = {name: median(partial(_column, swept, name)) for name in ("pga", "pgv", "arias")}
     r |= {
         "median_pga_g": None if middle["pga"] is None else middle["pga"] / GRAVITY,
         "median_pgv_m_s": middle["pgv"],
@@ -346,7 +349,7 @@ def _by_rule(
         return {"collapse_probability_by_rule": {rule: float(share[0]) for rule, share in found.items()}}
     order = np.argsort(job.levels, kind="stable")
     rows = [
-        out.RuleShares(rule=rule, restitution=rivals[rule][0], collapse_probability=share[order])
+        out.RuleShares(rule=rule, restitution=rivals[rule][0], collapse_probability=share[order].tolist())
         for rule, share in found.items()
     ]
     every = np.array(list(found.values()))[:, order]
@@ -479,6 +482,11 @@ def _tables(job: EnsembleJob, swept: Swept, per_motion: int, options: Fragility,
     }
 
 
+def _column(swept: Swept, name: str) -> Iterator[np.ndarray]:
+    """One row of all members, piece by piece."""
+    return (rows[name] for _, rows in swept.pieces(name))
+
+
 def _describe_durations(options: Fragility, base: Rocker, parts: list[tuple[float, Swept]], result: Result) -> None:
     """Mean and deviation of the peak rotation against the duration (Fig. 6-8)."""
     _stopped(parts[-1][1], result)
@@ -487,14 +495,15 @@ def _describe_durations(options: Fragility, base: Rocker, parts: list[tuple[floa
     rows = [shares(s["outcome"], s["peak_ratio"], options.confidence, initial) for _, s in parts]
     durations = np.array([d for d, _ in parts])
     keys = ("mean_peak_rotation_ratio", "deviation_peak_rotation_ratio", "collapse_probability", "uplift_probability")
-    values = {k: np.array([np.nan if row[k] is None else row[k] for row in rows], dtype=float) for k in keys}
+    shared: Keys = {k: [row[k] for row in rows] for k in ("confidence_interval", "count", "collapsed", "uplifted")}
+    values: Keys = {k: np.array([np.nan if row[k] is None else row[k] for row in rows], dtype=float) for k in keys}
     conditions = _conditions(options, base, [s.arrays for _, s in parts])
     result.warnings += told(conditions["conditions"])
     result.results = out.OverDurations(
-        durations_s=durations,
+        durations_s=durations.tolist(),
         **conditions,
         **values,
-        **{k: [row[k] for row in rows] for k in ("confidence_interval", "count", "collapsed", "uplifted")},
+        **shared,
         failed=sum(int((s["outcome"] == FAILED).sum()) for _, s in parts),
         confidence=options.confidence,
         restitution=base.restitution,

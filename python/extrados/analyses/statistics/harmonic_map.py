@@ -47,9 +47,9 @@ def run(context: Context, options: HarmonicMap) -> Result:
     result.results = out.HarmonicMap(
         cycles=options.cycles,
         uplift_acceleration_g=model.uplift,
-        frequencies_Hz=frequency,
-        frequency_ratios=2.0 * np.pi * frequency / p,
-        lowest_overturning_amplitude_g=lowest,
+        frequencies_Hz=frequency.tolist(),
+        frequency_ratios=(2.0 * np.pi * frequency / p).tolist(),
+        lowest_overturning_amplitude_g=lowest.tolist(),
         safe_pocket_cells=pockets,
         restitution=model.restitution,
         **of_many(model, Counted.of([swept.arrays]), "motions of the map"),

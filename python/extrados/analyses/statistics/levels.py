@@ -1,5 +1,6 @@
 """Runs of motions scaled to levels of an intensity: counts and quantiles at each level, and the curves over them."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -139,12 +140,13 @@ def _curves(
     grid = np.geomspace(levels[0] / 1.5, levels[-1] * 1.5, 200)
     curves = {"grid": Array(grid, ("grid",), unit, name)}
     fits: dict[str, Lognormal] = {}
-    for stage, text, make in (
+    stages: tuple[tuple[str, str, Callable[[], Lognormal]], ...] = (
         ("", "collapse", lambda: likelihood.fit_stripes(levels, hits, count)),
         ("first_collapse_", "first collapse", lambda: likelihood.fit_first_collapse(levels, first)),
         ("uplift_", "uplift", lambda: likelihood.fit_stripes(levels, lifted, count)),
         ("overturning_given_uplift_", "collapse after uplift", lambda: likelihood.fit_stripes(levels, hits, lifted)),
-    ):
+    )
+    for stage, text, make in stages:
         try:
             fits[stage] = fit = make()
         except NoFit as error:
@@ -182,7 +184,7 @@ def _curves(
 def _incremental(seen: Stripes, unit: str, r: dict[str, Any], result: Result) -> None:
     """Incremental dynamic analysis: where each motion first brings it down, and levels above that do not."""
     levels, valid, over = seen.levels, seen.valid, seen.over
-    fell = over.any(axis=1)
+    fell = np.asarray(over.any(axis=1))
     index = over.argmax(axis=1)
     risen = (np.arange(len(levels)) > index[:, None]) & fell[:, None] & valid & ~over
     r |= {"motions_that_collapse": int(fell.sum()), "resurrections": int(risen.any(axis=1).sum())}

@@ -322,8 +322,8 @@ def _likelihood(
             np.where(np.isfinite(log_p), np.exp(-0.5 * end**2 - 0.5 * np.log(2.0 * np.pi) - log_p), 0.0) for end in z
         )
         finite = [np.where(np.isfinite(end), end, 0.0) for end in z]
-        bend = (-finite[0] * lower + lower**2, -lower * upper, finite[1] * upper + upper**2)
-    bend = tuple(np.where(seen, weight * v, 0.0) for v in bend)
+        curved = (-finite[0] * lower + lower**2, -lower * upper, finite[1] * upper + upper**2)
+    bend = [np.where(seen, weight * v, 0.0) for v in curved]
     lower, upper = (np.where(seen, weight * v, 0.0) for v in (lower, upper))
     score = np.stack([(lower - upper).sum(axis=1), (x[1] * upper - x[0] * lower).sum(axis=1)], axis=1)
     cross = -(x[0] * bend[0] + (x[0] + x[1]) * bend[1] + x[1] * bend[2]).sum(axis=1)

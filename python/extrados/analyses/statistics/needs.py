@@ -9,6 +9,7 @@ from extrados.analyses.batches import IN_MEMORY
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.needs import SHARE, Need, refuse_memory
 from extrados.analyses.rocking import needs as rocking
+from extrados.analyses.rocking.tables import RockingTable
 from extrados.analyses.statistics import tables
 from extrados.views.building import Building
 
@@ -19,7 +20,7 @@ CELL, CELL_BESIDE_DISK, CELL_ON_DISK = 900, 60, 250
 LONG, TRIED = 100_000, 4
 
 
-def needs(context: Context, options: rocking.tables.RockingTable) -> Iterator[Need]:
+def needs(context: Context, options: RockingTable) -> Iterator[Need]:
     """Steps that raise where the deck is wrong, see `analyses.needs`."""
     yield from rocking.needs(context, options)
     if isinstance(options, tables.RockingSpectrum):

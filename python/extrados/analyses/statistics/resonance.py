@@ -131,7 +131,7 @@ def run(context: Context, options: Resonance) -> Result:
     result = Result("resonance")
     spacing = np.diff(optimum.switches)
     collapse = r.outcome == "collapse"
-    numbers = {
+    numbers: dict[str, Any] = {
         "outcome": r.outcome,
         "cap_g": cap / GRAVITY,
         "cap_ratio": cap / GRAVITY / model.uplift,
@@ -173,8 +173,9 @@ def run(context: Context, options: Resonance) -> Result:
     )
     if isinstance(model.model, BlockModel):
         numbers |= _block_figures(context, options, model, result)
-    result.results = out.Resonance(**numbers)
-    result.warnings += told(result.results.conditions)
+    found = out.Resonance(**numbers)
+    result.results = found
+    result.warnings += told(found.conditions)
     return result
 
 
@@ -192,7 +193,9 @@ def _default_cap(context: Context, options: Resonance, model: Rocker) -> float:
 
 def _block_figures(context: Context, options: Resonance, model: Rocker, result: Result) -> dict[str, Any]:
     """Arrays and tables of Figs 6-3 and 6-4 into `result`, a sentence to its answer; the results of a block alone."""
-    own, linear = model.model, model.model.linear
+    own = model.model
+    assert isinstance(own, BlockModel)
+    linear = own.linear
     table = np.array([
         least_cap(BlockModel(make_block(aspect, 1.0), own.rule, own.energy_ratio, linear), INITIAL)
         / (np.arctan(aspect) if linear else aspect) for aspect in ASPECTS

@@ -17,6 +17,7 @@ from extrados.analyses.rocking.job import RunsJob, runs_job
 from extrados.analyses.statistics.tables import RockingSpectrum
 from extrados.core.rocking import Body
 from extrados.model.properties import Initial
+from extrados.model.structures.arch import Arch
 from extrados.model.structures.block import Block
 from extrados.results import statistics as out
 from extrados.results.model import Array, Result, TableData
@@ -72,7 +73,7 @@ def run(context: Context, options: RockingSpectrum) -> Result:
         family=family,
         overturned=overturned.sum(axis=1),
         longest_overturning_period_s=longest,
-        size_m=sizes,
+        size_m=sizes.tolist(),
         peak_ground_acceleration_g=motion.peak / GRAVITY,
         conditions=_conditions(rockers, swept.arrays, len(periods)),
         **_by_rule(context, rockers, job_of, result),
@@ -156,7 +157,8 @@ def _arches(
     context: Context, options: RockingSpectrum, periods: np.ndarray
 ) -> tuple[list[str], np.ndarray, list[Rocker]]:
     """The deck's arch in the sizes whose natural time is period / 2 pi: it grows with the root of the size (Eq. 5.7)."""
-    structure = context.deck.structure
+    structure = context.building.require_structure()
+    assert isinstance(structure, Arch)
     base = rocker_of(context, options)
     factors = (periods / (2.0 * np.pi * base.time_unit)) ** 2
     rockers = []

@@ -87,19 +87,19 @@ def sensitivity(
     bands = [np.nanquantile(rows, tails, axis=0) if repeats and np.isfinite(rows).any() else np.full((2, 2, d), np.nan)
              for rows in drawn]  # fmt: skip
     table: dict[str, Any] = {"value": values}
-    rows = {value: {} for value in values}
+    of_value: dict[str, dict[str, Any]] = {value: {} for value in values}
     for k, what in enumerate(("rotation", "collapse")):
         for j, order in enumerate(("first", "total")):
             key = f"{what}_{order}"
             table |= {key: found[k][j], f"{key}_lower": bands[k][0, j], f"{key}_upper": bands[k][1, j]}
             for i, value in enumerate(values):
-                rows[value] |= {key: found[k][j, i], f"{key}_interval": bands[k][:, j, i]}
+                of_value[value] |= {key: found[k][j, i], f"{key}_interval": bands[k][:, j, i]}
     result.tables["sensitivity"] = TableData(table)
     result.arrays |= {
         f"sensitivity_{name}": Array(np.asarray(v), ("value",), "", "Sobol index")
         for name, v in table.items() if name != "value"
     }  # fmt: skip
-    return {"sensitivity": {v: out.Sensitivity(**row) for v, row in rows.items()}, "sensitivity_runs": len(points)}
+    return {"sensitivity": {v: out.Sensitivity(**row) for v, row in of_value.items()}, "sensitivity_runs": len(points)}
 
 
 def _indices(rows: np.ndarray, d: int) -> np.ndarray:
@@ -113,9 +113,9 @@ def _indices(rows: np.ndarray, d: int) -> np.ndarray:
 
 def spoken(sensitivity: dict[str, out.Sensitivity]) -> str:
     """Which value the rotation depends on most, in words."""
-    known = {name: row for name, row in sensitivity.items() if row.rotation_total is not None}
+    known = {name: row.rotation_total for name, row in sensitivity.items() if row.rotation_total is not None}
     if not known:
         return "No value matters: the rotation is the same in all runs."
-    order = sorted(known, key=lambda name: -known[name].rotation_total)
-    said = ", ".join(f"{name} {100 * known[name].rotation_total:.0f} %" for name in order)
+    order = sorted(known, key=lambda name: -known[name])
+    said = ", ".join(f"{name} {100 * known[name]:.0f} %" for name in order)
     return f"Of the variance of the greatest rotation these are involved in (total Sobol indices): {said}."

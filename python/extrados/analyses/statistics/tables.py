@@ -47,8 +47,8 @@ class Hazard(Table):
         lists = (self.intensities, self.annual_rates)
         if (self.file is None) == (None in lists) or (self.file is not None and lists != (None, None)):
             raise ValueError("give intensities and annual_rates, or a file, one of the two")
-        if self.file is None:
-            check_hazard(*lists)
+        if self.intensities is not None and self.annual_rates is not None:
+            check_hazard(self.intensities, self.annual_rates)
         return self
 
 

@@ -139,7 +139,7 @@ def refuse_unknown(building: Building, names: list[str]) -> None:
 
 
 def _model(building: Building, options: Fragility, factor: dict[str, float], seeds: dict[str, int]) -> Rocker:
-    structure = building.structure
+    structure = building.require_structure()
     update: dict[str, Any] = {
         name: getattr(structure, name) * value
         for name, value in factor.items()

@@ -91,7 +91,8 @@ def run(context: Context, options: Strengthen, closely: bool = True) -> Result:
     changes = change_alternatives(context, options)
     if met:  # nothing to size
         ties, changes = [], []
-    for done, one in enumerate([*ties, *changes]):
+    alternatives: list[TieAlternative | ChangeAlternative] = [*ties, *changes]
+    for done, one in enumerate(alternatives):
         stop_if_asked()
         context.progress(done, len(ties) + len(changes), "alternatives")
         sized.append(work.tie(one) if isinstance(one, TieAlternative) else work.change(one))
@@ -362,7 +363,7 @@ class _Work:
             return seen[value]
 
         required, worth, curve = self._bracket(at, one.start, one.stop, one.count, self._halvings, one.whole)
-        ranges = []
+        ranges: list[out.GoverningRange] = []
         if isinstance(self.measure, Statics):
             for size, value in zip(*curve, strict=True):
                 told = seen[size].mechanism
@@ -619,7 +620,7 @@ class _Work:
             "levels": sorted(self.options.levels),
             "bootstrap": 0,
         }
-        found = []
+        found: list[OverLevels | None] = []
         for data in (plain_data(self.context), best.data or {}):
             deck = make_deck({**data, "analysis": [asked]}, self.context.deck.folder)
             result = run_one(nested(self.context, deck), deck.analyses[0], deck.buildings[0])

@@ -83,7 +83,9 @@ class Statics:
             limit = limit_of(building, self.options)
         except (BadGeometry, Refused) as error:
             return Worth(None, reason=str(error))
-        values, told, bounds = [], [], []
+        values: list[float] = []
+        told: list[str] = []
+        bounds: list[Bound] = []
         mechanisms: list[Mechanism | None] = []
         for sense in map(int, self.senses):
             try:
@@ -273,7 +275,7 @@ class Runs:
         self.by_probability = options.by == "fragility"
         self.higher_is_safer = not self.by_probability
         self.demand = None if self.by_probability else 1.0
-        self.target = float(options.probability if self.by_probability else options.safety_factor or 1.0)
+        self.target = (options.probability if self.by_probability else options.safety_factor) or 1.0
 
     def of_data(self, data: dict[str, Any], keys: dict[str, Any] | None = None) -> Worth:
         """The value of a deck's data; keys: of the analysis, in place of the options of the table."""

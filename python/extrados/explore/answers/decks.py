@@ -73,7 +73,8 @@ def open_deck(desk: Desk, message: Message) -> Iterator[Reply]:
     elif "path" in source:
         raw, place, name = desk.folder.deck(source["path"])
     else:
-        raw, name = b"", message.get("name") if isinstance(message.get("name"), str) else desk.name
+        own = message.get("name")
+        raw, name = b"", own if isinstance(own, str) else desk.name
         place = desk.drops() if "dropped" in source or message.get("here") == "dropped" else desk.folder.root
     if isinstance(message.get("starter"), str):
         try:

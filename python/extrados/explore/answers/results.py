@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from extrados.explore.answers.decks import saved
 from extrados.explore.desk import Desk
 from extrados.explore.frames import Reply
-from extrados.explore.messages import Message, path
+from extrados.explore.messages import BadMessage, Message, path
 from extrados.show.charts import shown
 
 
@@ -15,6 +15,15 @@ def stored_run(desk: Desk, message: Message) -> Iterator[Reply]:
     name = message.get("analysis") if isinstance(message.get("analysis"), str) else None
     words, arrays = shown(desk.folder.run(place), name)
     yield Reply({"run": {**words, "path": place, "side": message.get("side")}}, arrays, frozenset(("time",)))
+
+
+def figures(desk: Desk, message: Message) -> Iterator[Reply]:
+    """The figures of one analysis of a stored run, as its report has them."""
+    name = message.get("analysis")
+    if not isinstance(name, str):
+        raise BadMessage("expected the name of an analysis")
+    found = desk.folder.figures(path(message), name)
+    yield Reply({"figures": [{"name": name, "svg": svg} for name, svg in found]})
 
 
 def compute(desk: Desk, message: Message) -> Iterator[Reply]:

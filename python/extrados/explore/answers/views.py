@@ -14,7 +14,7 @@ from extrados.explore import bodies, statics
 from extrados.explore.desk import Desk
 from extrados.explore.fall import begin_fall
 from extrados.explore.frames import Reply
-from extrados.explore.handles import Handle, anchor_of, handles_of, load_handles
+from extrados.explore.handles import Handle, anchor_of, handles_of, load_handles, tie_handles
 from extrados.explore.messages import BadMessage, Message, numbers, quantity
 from extrados.model.errors import NoView
 from extrados.model.geometry.assembly import Assembly
@@ -39,7 +39,7 @@ def scene(desk: Desk) -> Reply:
     if desk.view.through is not None and desk.view.through[0] >= len(assembly.a):
         desk.view = replace(desk.view, through=None)
     made = statics.picture(building, options, desk.view, desk.anchor)
-    handles = handles_of(structure, assembly)
+    handles = [*handles_of(structure, assembly), *tie_handles(building.ties, assembly)]
     if name is not None and options.load:
         arrows, more = _loads(options.load, name, assembly, desk.anchor)
         made.words["loads"] = arrows
@@ -69,7 +69,8 @@ def _body(desk: Desk, why: str) -> Reply:
     mesh, building = meshes[0] if meshes else (None, deck.building)
     words, arrays = bodies.seen(building, mesh) or ({}, {})
     desk.anchor = np.zeros(2)
-    handles = handles_of(deck.structure, None) if words.get("sort") == "elements" else []
+    structure = deck.structure
+    handles = handles_of(structure, None) if structure is not None and words.get("sort") == "elements" else []
     return _seen(desk, None, handles, {"empty": why, "seen": words or None, "gamma": 0.0}, arrays)
 
 
@@ -135,7 +136,7 @@ def push(desk: Desk, _: Message) -> Iterator[Reply]:
     if result.status != "ok":
         raise Refused(result.reason)
     wanted = ("mechanism_pose", "rose_direction", "rose_capacity")
-    arrays = {name: result.arrays[name].data for name in wanted if name in result.arrays}
+    arrays = {name: result.arrays[name].numbers for name in wanted if name in result.arrays}
     told = {k: v for k, v in result.results.as_json().items() if isinstance(v, int | float | str)}
     yield Reply({"push": {"answer": result.answer, "numbers": told, "warnings": result.warnings}}, arrays)
 

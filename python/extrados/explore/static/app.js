@@ -9,13 +9,15 @@ import { outMenu } from "./out.js";
 import { classPanel } from "./class.js";
 import { fallPanel } from "./fall.js";
 import { deckOf, fragmentOf } from "./share.js";
+import { sheetPanel } from "./sheet.js";
 import { sidebar } from "./sidebar.js";
 import { choose, language, LANGUAGES, tr } from "./words.js";
 
 const REST = 130; // ms without a change, after which the hand rests
 const BESIDE = 100; // ms between two looks of what stands beside the drawing while a hand moves
+const SAID = 8000; // ms for which words at the foot stay that complain of nothing
 const KEPT = "extrados-kept";
-const CHANGE = new Set(["hello", "open", "drop", "blocks", "analysis", "drag", "set", "show", "rocking"]); // messages that change what is seen
+const CHANGE = new Set(["hello", "open", "draw", "drop", "blocks", "analysis", "drag", "set", "show", "rocking"]); // messages that change what is seen
 const TABS = [["structure", tr`Structure`], ["motion", tr`Motion`], ["results", tr`Results`]];
 
 export function mount(root, transport, film, { embedded = false } = {}) {
@@ -26,7 +28,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     ask, change, show, edit, say, open, rest, on, tellDetail: () => tell("detail"),
     /** True at rest: all that was asked for is seen, and the text is that of it. */
     get still() { return !moved && !unanswered.size; },
-    undo: () => travel(-1), redo: () => travel(1), typed, setTab, remember, dialog,
+    undo: () => (app.sheet.drawing() ? app.sheet.undo() : travel(-1)), redo: () => (app.sheet.drawing() ? app.sheet.redo() : travel(1)), drafted, draft: null, typed, setTab, remember, dialog,
   };
   const listeners = {};
   const waiting = new Map(); // number of a message -> what to do with its replies
@@ -191,6 +193,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       say("");
       rest();
     }
+    if (words.scene && app.draft) drafted(null);
     if (words.detail) { app.detail = words.detail; Object.assign(app.arrays, arrays); drawing.redraw(); tell("detail"); }
     if (words.text !== undefined && words.to === "rest") settled(words);
     for (const key of ["rocking", "domain", "impulse", "push", "run", "computing", "saved", "fall", "frozen"]) if (words[key] !== undefined) tell(key, words[key], arrays, words);
@@ -235,6 +238,12 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     }
     tell("text");
   }
+  /** The text of a drawn deck that has no model yet, with the reasons; null where the deck at hand is shown. */
+  function drafted(draft) {
+    app.draft = draft;
+    undoButton.disabled = redoButton.disabled = false;
+    tell("draft");
+  }
   function rest() {
     moved = true;
     clearTimeout(timer);
@@ -251,8 +260,8 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   function remember() {
     if (!travelling && past.at(-1) !== app.text) { past.push(app.text); future = []; if (past.length > 300) past.shift(); }
     travelling = false;
-    undoButton.disabled = past.length < 2;
-    redoButton.disabled = future.length === 0;
+    undoButton.disabled = past.length < 2 && !app.sheet.drawing();
+    redoButton.disabled = future.length === 0 && !app.sheet.drawing();
     title.textContent = app.deck?.title || app.name || "";
     title.title = app.name;
     try { localStorage.setItem(KEPT, JSON.stringify({ text: app.text, name: app.name, source: app.source })); } catch { /* a browser without storage */ }
@@ -275,11 +284,14 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   }
 
   /** Words at the foot of the page. */
+  let saying = null;
   function say(text, bad = false) {
-    if (status.textContent === text && status.classList.contains("bad") === bad) return;
+    if (status.textContent === text && status.classList.contains("bad") === bad && status.hidden === !text) return;
     status.textContent = text;
     status.classList.toggle("bad", bad);
     status.hidden = !text;
+    clearTimeout(saying);
+    if (text && !bad) saying = setTimeout(() => { status.hidden = true; }, SAID);
   }
 
   function setTab(name) {
@@ -303,6 +315,8 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     tell("theme");
   }
   night.addEventListener("change", dress);
+  addEventListener("beforeprint", () => { root.dataset.theme = "light"; tell("theme"); });
+  addEventListener("afterprint", dress);
   dress();
 
   /** A dialog with what it holds; it is gone when closed. */
@@ -329,7 +343,8 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       try { kept = JSON.parse(localStorage.getItem(KEPT)); } catch { /* none */ }
       if (kept?.text && app.root.dataset.role !== "pupil" && fits("last", kept.name)) groups.push([tr`Where you left off`, [item(kept.name, tr`the deck of your last page`, { text: kept.text, name: kept.name, ...kept.source })]]);
       if (w.folder) groups.push([tr`Decks in ${w.folder}`, w.decks.filter((d) => fits(d)).map((d) => item(d, "", { path: d }))]);
-      groups.push([tr`New`, w.kinds.structure.filter((k) => fits("new", k)).map((k) => item(tr`new ${k}`, tr`a starter deck`, { starter: k }))]);
+      const blank = h("button", { class: "choice", "data-blank": true, onclick: () => { shown.close(); app.sheet.begin(true); } }, h("b", {}, tr`Blank sheet`), h("span", {}, tr`draw arches, piers, walls and blocks`));
+      groups.push([tr`New`, [...(fits("new blank sheet draw") ? [blank] : []), ...w.kinds.structure.filter((k) => fits("new", k)).map((k) => item(tr`new ${k}`, tr`a starter deck`, { starter: k }))]]);
       groups.push([tr`Decks with known answers`, w.presets.filter((p) => fits(p.name, p.title, p.kind)).map((p) => item(p.title || p.name, `${p.name}${p.kind ? ` · ${p.kind}` : ""}`, { preset: p.name }))]);
       box.replaceChildren(...groups.filter(([, items]) => items.length).flatMap(([name, items]) => [h("h3", {}, name), h("div", { class: "choice-grid" }, items)]));
     }
@@ -380,7 +395,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     if ((e.ctrlKey || e.metaKey) && e.key.toLowerCase() === "s") { e.preventDefault(); app.save?.(); }
     if (e.key === "?" && !writing) help();
     const by = { "+": 1.3, "-": 1 / 1.3, 0: null }[e.key];
-    if (by !== undefined && !writing && !e.ctrlKey && !e.metaKey && app.tab !== "results") drawing.zoom(by);
+    if (by !== undefined && !writing && !e.ctrlKey && !e.metaKey && app.tab !== "results") (app.sheet.drawing() ? app.sheet : drawing).zoom(by);
   });
   function help() {
     dialog(tr`How to use this page`, h("ul", { class: "help" },
@@ -403,7 +418,8 @@ export function mount(root, transport, film, { embedded = false } = {}) {
 
   const LAYERS = [["least", tr`Least thrust`], ["most", tr`Greatest`], ["through", tr`Chosen line`], ["plus", tr`Collapse +x`], ["minus", tr`Collapse −x`], ["central", tr`Central`], ["reactions", tr`Reactions`], ["joints", tr`Joints`]];
   const playButton = h("button", { class: "layer", "aria-pressed": "false", title: tr`Let the mechanism move`, onclick: () => mechanism() }, tr`▶ Mechanism`);
-  layersBar.append(...LAYERS.map(([name, label]) => h("button", { class: `layer ${name}`, "aria-pressed": String(Boolean(app.layers[name])), "data-layer": name, onclick: (e) => {
+  const drawButton = h("button", { class: "layer", "data-draw": true, title: tr`Draw on the blocks of the deck, or on a blank sheet`, onclick: () => app.sheet.begin() }, tr`✎ Draw`);
+  layersBar.append(drawButton, ...LAYERS.map(([name, label]) => h("button", { class: `layer ${name}`, "aria-pressed": String(Boolean(app.layers[name])), "data-layer": name, onclick: (e) => {
     app.layers[name] = !app.layers[name];
     e.currentTarget.setAttribute("aria-pressed", String(app.layers[name]));
     show({ lines: Object.keys(app.layers).filter((key) => app.layers[key]) });
@@ -462,6 +478,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   top.append(outMenu(app), themeButton, h("button", { class: "icon", "aria-label": tr`Help`, title: "Help (?)", onclick: help }, "?"));
   sidebar(app, side);
   structurePanel(app, lower);
+  app.sheet = Object.assign(sheetPanel(app, stageFrame, stageBox), { button: drawButton });
   fallPanel(app, stageFrame);
   motionPanel(app, lower, stageFrame);
   resultsPanel(app, wide);

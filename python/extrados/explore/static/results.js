@@ -1,6 +1,6 @@
 // Stored runs: charts and bodies of one analysis, stepped or played; two runs side by side.
 import { chart } from "./chart.js";
-import { h, number, s, set } from "./dom.js";
+import { download, h, number, s, set } from "./dom.js";
 import { carried, space } from "./space.js";
 import { piecesPath, stonesPath } from "./stage.js";
 import { tr } from "./words.js";
@@ -13,12 +13,23 @@ export function resultsPanel(app, wide) {
   const log = h("pre", { class: "log", hidden: true, "aria-live": "polite" });
   const bar = h("div", { class: "row wrap results-bar" }, compute, second, linked, h("button", { onclick: () => app.ask({ do: "list" }) }, tr`Look again`));
   const pair = h("div", { class: "columns" }, columns.map((c) => c.box));
-  wide.append(bar, log, pair);
+  const apart = h("section", { class: "apart", hidden: true, "aria-label": tr`Differences of the two runs` });
+  wide.append(bar, log, apart, pair);
+  /** Numbers of both runs under the same names that differ: of A, of B, and the ratio. */
+  function compared() {
+    const [a, b] = columns.map((c) => new Map(c.words?.numbers ?? []));
+    const rows = [...a].filter(([key, v]) => b.has(key) && b.get(key) !== v);
+    apart.hidden = columns[1].box.hidden || !a.size || columns[0].words.kind !== columns[1].words?.kind;
+    const said = (v) => (Number.isInteger(v) ? String(v) : typeof v === "number" ? number(v, 4) : v === null ? "–" : String(v));
+    apart.replaceChildren(h("h3", {}, rows.length ? tr`What differs` : tr`No number differs.`), rows.length ? h("table", { class: "numbers" }, h("thead", {}, h("tr", {}, h("th", {}, ""), h("th", { scope: "col" }, "A"), h("th", { scope: "col" }, "B"), h("th", { scope: "col" }, "B / A"))),
+      h("tbody", {}, rows.map(([key, v]) => { const w = b.get(key), both = typeof v === "number" && typeof w === "number" && v !== 0; return h("tr", {}, h("th", { scope: "row" }, key.replaceAll("_", " ")), h("td", {}, said(v)), h("td", {}, said(w)), h("td", {}, both ? number(w / v, 4) : "")); }))) : "");
+  }
   columns[1].box.hidden = true;
   function both(shown) {
     columns[1].box.hidden = !shown; linked.hidden = !shown;
     second.setAttribute("aria-pressed", String(shown));
     for (const c of columns) c.redraw();
+    compared();
   }
   app.results = { columns, both };
 
@@ -70,7 +81,8 @@ export function resultsPanel(app, wide) {
     const player = h("div", { class: "player" }, play, slider, clock, scale);
     const area = h("div", { class: "charts" });
     const numbers = h("table", { class: "numbers" }), tables = h("div", { class: "tables" }), more = h("details", {}, h("summary", {}, tr`Numbers`), numbers);
-    it.box = h("section", { class: "column", "aria-label": tr`Run ${side}` }, h("div", { class: "row" }, runs, kinds), answer, figure, player, area, tables, more);
+    const sheets = h("div", { class: "figures" }), report = h("details", { ontoggle: () => figures() }, h("summary", {}, tr`Figures of the report`), sheets);
+    it.box = h("section", { class: "column", "aria-label": tr`Run ${side}` }, h("div", { class: "row" }, runs, kinds), answer, figure, player, area, tables, more, report);
     const view = space(figure);
     it.drawn = () => (it.words?.body?.sort === "space" ? view.svg : svg);
     figure.hidden = player.hidden = true;
@@ -88,6 +100,23 @@ export function resultsPanel(app, wide) {
         if (first) app.ask({ do: "run", path, analysis: first.name, side });
       } });
     }
+    /** The figures as the report has them, once they are opened. */
+    let pictures = [];
+    function figures() {
+      for (const url of pictures) URL.revokeObjectURL(url);
+      pictures = [];
+      sheets.replaceChildren();
+      const name = it.words?.analysis;
+      if (!report.open || !name) return;
+      app.ask({ do: "figures", path: it.path, analysis: name }, { reply: (words) => {
+        if (!words.figures || it.words?.analysis !== name) return;
+        sheets.replaceChildren(...words.figures.map((one) => {
+          const url = URL.createObjectURL(new Blob([one.svg], { type: "image/svg+xml" })), label = one.name.replaceAll("-", " ");
+          pictures.push(url);
+          return h("figure", {}, h("img", { src: url, alt: `${it.words.title}: ${name}, ${label}` }), h("figcaption", {}, label, " ", h("button", { onclick: () => download(new Blob([one.svg], { type: "image/svg+xml" }), `${name}-${one.name}.svg`) }, tr`Download`)));
+        }), words.figures.length ? "" : h("p", { class: "hint" }, tr`The run has no figures: it was run with --no-figures.`));
+      } });
+    }
     /** Nothing of an earlier run stands below the words of another. */
     function clear() {
       pause();
@@ -103,8 +132,10 @@ export function resultsPanel(app, wide) {
       const outcome = told?.verdict?.outcome;
       const mark = { stands: "good", collapses: "bad", "cannot-stand": "bad" }[outcome] ?? "";
       answer.replaceChildren(...(outcome ? [h("b", { class: mark }, tr`Verdict: ${outcome.replaceAll("-", " ")}. `), ...(told.verdict.violated ?? []).map((w) => h("span", { class: "warning" }, `${w} `))] : []), told ? told.answer || `${told.status}: ${told.reason}` : "");
-      if (words.charts === undefined) { clear(); return; }
+      if (words.charts === undefined) { clear(); compared(); return; }
       it.arrays = arrays;
+      figures();
+      compared();
       numbers.replaceChildren(h("tbody", {}, (words.numbers ?? []).map(([k, v]) => h("tr", {}, h("th", { scope: "row" }, k), h("td", {}, typeof v === "number" ? number(v, 6) : String(v))))));
       const cell = (v) => (Number.isInteger(v) && Math.abs(v) < 1e7 ? String(v).replace("-", "−") : typeof v === "number" ? number(v, 5) : v === null ? "" : String(v));
       tables.replaceChildren(...(words.tables ?? []).map((t) => h("figure", {}, h("figcaption", {}, t.title), h("table", { class: "numbers rows" }, h("thead", {}, h("tr", {}, t.columns.map((c, k) => h("th", { scope: "col", class: typeof t.rows[0]?.[k] === "string" ? "text" : "" }, c.replaceAll("_", " "))))), h("tbody", {}, t.rows.map((row) => h("tr", {}, row.map((v) => h("td", { class: typeof v === "number" ? "" : "text" }, cell(v))))))), t.left_out ? h("p", {}, tr`and ${t.left_out} more, in the folder of the run`) : null)));

@@ -30,6 +30,7 @@ export function sidebar(app, box) {
     if (!scene) return;
     late = pressed;
     if (pressed) return;
+    if (app.draft) { pages.answer.replaceChildren(h("p", { class: "verdict" }, h("b", {}, tr`The drawing is no structure yet. `), app.draft.trouble.join(" "))); return; }
     if (scene.seen) { pages.answer.replaceChildren(...app.solid.page(scene.seen, scene.empty)); return; }
     if (scene.empty) { pages.answer.replaceChildren(h("p", { class: "verdict" }, scene.empty)); return; }
     const parts = [];
@@ -96,7 +97,7 @@ export function sidebar(app, box) {
   function ask(e) {
     e.preventDefault();
     const value = Number(target.trim().replace(/g$/, "").replace(",", "."));
-    if (!(value > 0)) { needed = { mark: mark(), trouble: "Give an acceleration above 0, in g." }; answer(); return; }
+    if (!(value > 0)) { needed = { mark: mark(), trouble: tr`Give an acceleration above 0, in g.` }; answer(); return; }
     asking = true;
     e.target.querySelector("input").blur();
     app.ask({ do: "needed", acceleration: value }, { reply: (words) => {
@@ -107,16 +108,16 @@ export function sidebar(app, box) {
     answer();
   }
   function needs() {
-    const field = h("input", { type: "text", id: "needed-g", value: target, inputmode: "decimal", placeholder: "0.2", "aria-label": "Acceleration that the structure is to carry, in g", oninput: (e) => { target = e.target.value; } });
-    const form = h("form", { class: "row wrap", onsubmit: ask }, h("label", { for: "needed-g" }, "To carry "), field, " g ", h("button", { type: "submit", disabled: asking }, asking ? "Sizing…" : "What is needed"));
-    const parts = [h("h3", {}, "Strengthening"), form];
+    const field = h("input", { type: "text", id: "needed-g", value: target, inputmode: "decimal", placeholder: "0.2", "aria-label": tr`Acceleration that the structure is to carry, in g`, oninput: (e) => { target = e.target.value; } });
+    const form = h("form", { class: "row wrap", onsubmit: ask }, h("label", { for: "needed-g" }, tr`To carry `), field, " g ", h("button", { type: "submit", disabled: asking }, asking ? tr`Sizing…` : tr`What is needed`));
+    const parts = [h("h3", {}, tr`Strengthening`), form];
     if (needed && needed.mark === mark()) {
       if (needed.trouble) parts.push(h("p", { class: "remark" }, needed.trouble));
-      else parts.push(h("p", { class: "answer-text" }, needed.statement), needed.bound ? h("p", { class: "remark" }, "Joints slide: these sizes hold for dilatant friction, an upper bound of the capacity. The analysis strengthen of a deck takes the least state without dilatancy.") : null, h("ul", { class: "plain" }, needed.interventions.map((one) => h("li", { "data-intervention": one.name },
-        h("b", {}, `${capital(one.name)}: `), `${one.met ? one.size : one.reason}.`, one.met && one.next ? ` Afterwards: ${one.next}. ` : " ",
-        one.changes ? h("button", { onclick: () => app.change(one.changes) }, "Put it in") : null))));
+      else parts.push(h("p", { class: "answer-text" }, needed.statement), needed.bound ? h("p", { class: "remark" }, tr`Joints slide: these sizes hold for dilatant friction, an upper bound of the capacity. The analysis strengthen of a deck takes the least state without dilatancy.`) : null, h("ul", { class: "plain" }, needed.interventions.map((one) => h("li", { "data-intervention": one.name },
+        h("b", {}, `${capital(one.name)}: `), `${one.met ? one.size : one.reason}.`, one.met && one.next ? tr` Afterwards: ${one.next}. ` : " ",
+        one.changes ? h("button", { onclick: () => app.change(one.changes) }, tr`Put it in`) : null))));
     }
-    return h("section", { class: "needed", "aria-label": "What is needed" }, parts);
+    return h("section", { class: "needed", "aria-label": tr`What is needed` }, parts);
   }
 
   // Sizes
@@ -142,7 +143,7 @@ export function sidebar(app, box) {
         const value = raw === "" ? null : form.number && /^[-+]?[\d.]+(e[-+]?\d+)?$/i.test(raw) ? (Number.isInteger(Number(raw)) && !raw.includes(".") ? Number(raw) : Number(raw)) : raw;
         put(value);
       };
-      input = h("input", { id, type: "text", value: text, spellcheck: "false", inputmode: form.number ? "decimal" : null, placeholder: form.given ? "" : "default", class: form.given ? "" : "default", onchange: send });
+      input = h("input", { id, type: "text", value: text, spellcheck: "false", inputmode: form.number ? "decimal" : null, placeholder: form.given ? "" : tr`default`, class: form.given ? "" : "default", onchange: send });
     }
     return h("div", { class: "line", title: form.about }, h("label", { for: id }, form.key.replaceAll("_", " ")), input, h("span", { class: "unit" }, typeof form.value === "string" && form.sort === "text" ? "" : form.unit));
   }
@@ -156,10 +157,12 @@ export function sidebar(app, box) {
   text.addEventListener("input", () => { lines(); clearTimeout(timer); timer = setTimeout(() => app.edit(text.value), 450); });
   text.addEventListener("scroll", () => { numbersBox.scrollTop = text.scrollTop; });
   function lines() { numbersBox.textContent = text.value.split("\n").map((_, k) => k + 1).join("\n"); }
+  const shown = () => app.draft?.text ?? app.text;
   const copy = async () => {
-    try { await navigator.clipboard.writeText(app.text); app.say(tr`The deck is copied.`); } catch { text.select(); document.execCommand("copy"); app.say(tr`The deck is copied.`); }
+    try { await navigator.clipboard.writeText(shown()); app.say(tr`The deck is copied.`); } catch { text.select(); document.execCommand("copy"); app.say(tr`The deck is copied.`); }
   };
   app.save = () => {
+    if (app.draft) { app.say(tr`The drawing is no structure yet: download it, or complete it.`, true); return; }
     const field = h("input", { type: "text", value: app.source.path ?? app.name, "aria-label": tr`Path within the folder` });
     const replace = h("input", { type: "checkbox", checked: Boolean(app.source.path) });
     const box = app.dialog(tr`Save the deck`, h("form", { onsubmit: (e) => {
@@ -168,11 +171,11 @@ export function sidebar(app, box) {
     } }, h("p", {}, `In ${app.welcome.folder}, as`), field, h("label", {}, replace, tr` replace what is there`), h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, tr`Save`))));
   };
   const adder = h("select", { "aria-label": tr`Add an analysis`, onchange: (e) => { if (e.target.value) app.ask({ do: "analysis", add: e.target.value }); e.target.value = ""; } });
-  pages.deck.append(h("div", { class: "row wrap" }, h("button", { onclick: copy }, tr`Copy`), h("button", { class: "keeps", onclick: () => app.save() }, tr`Save…`), h("button", { onclick: () => download(new Blob([app.text], { type: "application/toml" }), app.name) }, tr`Download`), h("button", { onclick: () => app.chooser() }, tr`Open…`), adder), complaints, h("div", { class: "editor" }, numbersBox, text));
+  pages.deck.append(h("div", { class: "row wrap" }, h("button", { onclick: copy }, tr`Copy`), h("button", { class: "keeps", onclick: () => app.save() }, tr`Save…`), h("button", { onclick: () => download(new Blob([shown()], { type: "application/toml" }), app.draft ? "drawing.toml" : app.name) }, tr`Download`), h("button", { onclick: () => app.chooser() }, tr`Open…`), adder), complaints, h("div", { class: "editor" }, numbersBox, text));
   function deck() {
     const editing = box.getRootNode().activeElement === text;
-    if (!editing && text.value !== app.text) text.value = app.text;
-    if (!editing) complaints.replaceChildren();
+    if (!editing && text.value !== shown()) text.value = shown();
+    if (!editing) complaints.replaceChildren(...(app.draft?.trouble ?? []).map((c) => h("li", {}, c)));
     lines();
   }
   app.on("welcome", (w) => adder.replaceChildren(h("option", { value: "" }, tr`Add analysis…`), ...w.kinds.analysis.map((k) => h("option", { value: k }, k))));
@@ -184,6 +187,8 @@ export function sidebar(app, box) {
   app.on("detail", () => { if (chosen === "answer") answer(); });
   app.on("layers", () => { if (chosen === "answer") answer(); });
   app.on("text", fill);
+  app.on("draft", fill);
+  addEventListener("beforeprint", answer);
   teachPanel(app, pages.teach);
   choose("answer");
 }

@@ -1,5 +1,6 @@
 // The drawing of a structure: stones, lines of thrust, hinges, loads, reactions, and the handles that hands move.
 import { degrees, number, quantity, s, set, shapes } from "./dom.js";
+import { pinch } from "./gestures.js";
 import { tr } from "./words.js";
 
 const LINES = [
@@ -165,23 +166,10 @@ export function stage(box, hands) {
     const edge = svg.getBoundingClientRect();
     zoom(1.0015 ** -event.deltaY, event.clientX - edge.left, event.clientY - edge.top);
   }, { passive: false });
-  const fingers = new Map(); // places of the fingers on the drawing
-  const middle = () => { const [a, b] = [...fingers.values()]; return { x: (a[0] + b[0]) / 2, y: (a[1] + b[1]) / 2, apart: Math.hypot(a[0] - b[0], a[1] - b[1]) }; };
-  svg.addEventListener("pointerdown", (event) => {
-    if (event.pointerType !== "touch") return;
-    fingers.set(event.pointerId, [event.clientX, event.clientY]);
-    if (fingers.size === 2) { dragging = null; set(loupe, { visibility: "hidden" }); }
-  }, true);
-  svg.addEventListener("pointermove", (event) => {
-    if (!fingers.has(event.pointerId)) return;
-    const was = fingers.size === 2 ? middle() : null;
-    fingers.set(event.pointerId, [event.clientX, event.clientY]);
-    if (!was) return;
-    const now = middle(), edge = svg.getBoundingClientRect();
-    view.cx += now.x - was.x; view.cy += now.y - was.y;
-    zoom(now.apart / (was.apart || 1), now.x - edge.left, now.y - edge.top);
-  }, true);
-  for (const end of ["pointerup", "pointercancel"]) svg.addEventListener(end, (event) => fingers.delete(event.pointerId), true);
+  pinch(svg, {
+    begin: () => { dragging = null; set(loupe, { visibility: "hidden" }); },
+    zoom: (by, x, y, dx, dy) => { view.cx += dx; view.cy += dy; zoom(by, x, y); },
+  });
   function clear() {
     it.bounds = null; shownPose = null;
     for (const part of [stones, ties, dampers, mass, ghost, joints, supports, earth, dynamic, ground, ...Object.values(lines)]) set(part, { d: "" });

@@ -10,6 +10,8 @@ from extrados.model.geometry.assembly import GROUND, Assembly
 
 #: Degrees between neighbouring joints below which a survey tells no voussoirs from courses
 LEAST_STEP = 0.5
+#: Shares of the median turn between neighbouring joints, and the ratio of lengths, with which a joint carries an arch on
+TURN, LIKE = (0.3, 2.5), 1.5
 
 
 def with_chains(assembly: Assembly) -> Assembly:
@@ -101,6 +103,51 @@ def springings(assembly: Assembly, joints: list[int]) -> tuple[int, int]:
     first -= first > 0 and _leans(assembly, joints[first - 1], joints[first], 0.25 * step)
     last += last < len(joints) - 1 and _leans(assembly, joints[last + 1], joints[last], 0.25 * step)
     return first, last
+
+
+def carried_on(assembly: Assembly, joints: list[int]) -> tuple[Assembly, list[int]]:
+    """A chain beyond its ends, through voussoirs that backing or spandrels touch, and the assembly with their joints turned so
+    that p lies on the intrados.
+
+    From joint to joint the direction of an arch turns one way by much the same angle. The next joint of a voussoir is of
+    like length, turns on by TURN times the median of the chain, and its middle lies within LIKE times the greatest distance
+    of the chain; of several the one whose turn is nearest to the median. A stone that is LIKE times as heavy as the heaviest
+    voussoir ends the arch.
+    """
+    p, q = assembly.p.copy(), assembly.q.copy()
+    whole, seen = list(joints), inner_stones(assembly, joints)
+
+    def turn(one: int, two: int) -> float:
+        """Angle [rad] from the direction of one joint to that of another, between -pi/2 and pi/2: of undirected lines."""
+        (ax, ay), (bx, by) = q[one] - p[one], q[two] - p[two]
+        return float(np.arctan((ax * by - ay * bx) / (ax * bx + ay * by or 1e-300)))
+
+    step = float(np.median([turn(one, two) for one, two in itertools.pairwise(joints)]))
+    middle = assembly.middle
+    heavy = LIKE * float(assembly.mass[sorted(seen)].max(initial=0.0))
+    far = LIKE * float(np.hypot(*np.diff(middle[joints], axis=0).T).max())
+    for at, way in ((0, -step), (-1, step)):
+        while way != 0.0:
+            last = whole[at]
+            block = next(
+                (b for b in assembly.ends[last] if b != GROUND and b not in seen and assembly.mass[b] < heavy), None
+            )
+            like = [
+                (abs(turn(last, j) / way - 1.0), j)
+                for j in (() if block is None else assembly.bounds[block])
+                if j not in whole
+                and 1.0 / LIKE < assembly.length[j] / assembly.length[last] < LIKE
+                and np.hypot(*(middle[j] - middle[last])) < far
+                and TURN[0] < turn(last, j) / way < TURN[1]
+            ]
+            if block is None or not like:
+                break
+            _, j = min(like)
+            if (q[j] - p[j]) @ (q[last] - p[last]) < 0.0:
+                p[j], q[j] = q[j].copy(), p[j].copy()
+            seen.add(block)
+            whole = [j, *whole] if at == 0 else [*whole, j]
+    return replace(assembly, p=p, q=q), whole
 
 
 def _leans(assembly: Assembly, low: int, high: int, least: float) -> bool:

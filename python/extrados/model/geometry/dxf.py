@@ -60,7 +60,7 @@ def read_dxf(
 ) -> Drawing:
     """Blocks, ground and marks of a drawing. Needs the extra `dxf` (ezdxf), which reads in a process of its own.
 
-    layers: those to read as stones, all where it is None. meaning: layers that are something else than plain stones;
+    layers: those to read as stones, all where it is None; none where it is empty, for drawings of lines. meaning: layers that are something else than plain stones;
     GROUND is the ground. Ends of loose lines within `join_tolerance` [m] are one point; `sagitta` [m]: how far
     chords may lie from curves. What the drawing does not show is not read: invisible entities, and layers that are frozen or
     off unless `layers` or `meaning` names them. BadGeometry names layer and entity; a drawing without a unit is refused
@@ -119,7 +119,7 @@ def drawing_of(
             found.other_layers[layer] += 1
     for missing in [one for one in (*(layers or []), *(meaning or {})) if one.upper() not in {s.upper() for s in seen}]:
         raise BadGeometry(f"{name}: no layer '{missing}'; there are {', '.join(sorted(seen)) or 'none'}")
-    return _drawing(found, known, name, scale, join_tolerance)
+    return _drawing(found, known, name, scale, join_tolerance, layers != [])
 
 
 class _Hiding:
@@ -376,8 +376,10 @@ def _segments(lines: list[np.ndarray]) -> np.ndarray:
     return np.concatenate(pieces) if pieces else np.empty((0, 4))
 
 
-def _drawing(found: _Read, known: Mapping[str, Layer], name: str, scale: float, tolerance: float) -> Drawing:
-    """Blocks with names, joined where they are loose lines."""
+def _drawing(
+    found: _Read, known: Mapping[str, Layer], name: str, scale: float, tolerance: float, stones: bool
+) -> Drawing:
+    """Blocks with names, joined where they are loose lines. stones: whether there must be any."""
     notes, loose = [], []
     outlines = [(layer, handle, scale * points) for layer, handle, points in found.closed]
     if found.open:
@@ -409,7 +411,7 @@ def _drawing(found: _Read, known: Mapping[str, Layer], name: str, scale: float, 
     if found.hidden:
         told = ", ".join(f"{n} of layer '{layer}' ({why})" for (layer, why), n in sorted(found.hidden.items()))
         notes.append(f"not read, since the drawing does not show it: {told}")
-    if not outlines:
+    if not outlines and stones:
         near = [gap for _, gap in loose if gap is not None]
         hint = f"; ends of lines are {1e3 * min(near):.3g} mm apart and more (see join_tolerance)" if near else ""
         hint += f"; {notes[-1]}" if found.hidden else ""

@@ -21,6 +21,7 @@ from extrados.model.geometry.inspection import Inspection, areas, inspect, refus
 from extrados.model.geometry.linework import MOST_PAIRS
 from extrados.model.geometry.polygons import properties
 from extrados.model.structure import Structure
+from extrados.model.structures.earthwork import Fill, Spandrels, Surfacing, covered, refuse_without_fill
 from extrados.schema.quantities import Density, Length
 from extrados.schema.table import Table, key
 
@@ -175,6 +176,9 @@ class Blocks(Structure):
         gt=0, le=0.1,
     )  # fmt: skip
     depth: Length | None = key(None, "depth out of plane; default that of the file, or 1 m", gt=0)
+    fill: Fill | None = key(None, "soil over the blocks of a bridge, up to a level over the highest block")
+    surfacing: Surfacing | None = key(None, "road or ballast on the fill")
+    spandrels: Spandrels | None = key(None, "spandrel walls on the edges of the arches; their weight counts")
 
     @model_validator(mode="after")
     def _source(self) -> "Blocks":
@@ -186,6 +190,7 @@ class Blocks(Structure):
         for i, block in enumerate(self.block or []):
             if any(len(point) != 2 for point in block.points):
                 raise ValueError(f"block {i + 1}: a vertex is not [x, y]")
+        refuse_without_fill(self.fill, self.surfacing, self.spandrels, self.depth)
         names = [layer.name.upper() for layer in self.layer]
         if len(set(names)) < len(names):
             raise ValueError("layer: one layer has two tables")
@@ -249,7 +254,9 @@ class Blocks(Structure):
 
     def assembly(self, density: float, folder: Path) -> Assembly:
         inspection, depth = self._inspected(folder)
-        return assemble(inspection, density, depth)
+        made = assemble(inspection, density, depth)
+        top = max(float(outline[:, 1].max()) for outline in made.outlines)
+        return covered(made, top, density, self.fill, self.surfacing, self.spandrels)
 
     def weighed(self, made: Assembly, density: float, densities: Mapping[str, float]) -> Assembly:
         mass, inertia = made.mass.copy(), made.inertia.copy()

@@ -12,9 +12,9 @@ from pydantic import model_validator
 from extrados.model.errors import BadGeometry
 from extrados.model.geometry.assembly import GROUND, Assembly
 from extrados.model.geometry.builder import Builder
-from extrados.model.geometry.earth import Earth, skyline
 from extrados.model.structure import Crossed, Structure
-from extrados.schema.quantities import Angle, Density, Length, Stress
+from extrados.model.structures.earthwork import Fill, Spandrels, Surfacing, covered, refuse_without_fill
+from extrados.schema.quantities import Density, Length
 from extrados.schema.table import Table, key
 
 FINE = 20001  # points by which curves that are no arcs are measured
@@ -117,35 +117,6 @@ class Backing(Table):
 
     height: Length = key(about="height of its level top above the springings", gt=0)
     density: Density | None = key(None, "density; default that of [material]", gt=0, le=30000)
-
-
-class Fill(Table):
-    """Soil over the arches up to a level formation: weight, dispersal of loads, passive pressure."""
-
-    cover: Length = key(about="its depth over the highest extrados", ge=0)
-    density: Density = key(2000.0, "density of the soil", gt=0, le=30000)
-    friction_angle: Angle = key(30.0, "angle of friction of the soil", ge=0, le=60)
-    cohesion: Stress = key(0.0, "cohesion of the soil; it adds to the passive pressure", ge=0)
-    passive: float = key(
-        0.0,
-        "share of Rankine's passive pressure that resists stones moving into the fill; programs for arch bridges take 0.5",
-        source="Gilbert and Melbourne 1994",
-        ge=0,
-        le=1,
-    )
-    dispersal: Literal["boussinesq", "even"] = key(
-        "boussinesq", "how a load spreads to the stones: by Boussinesq's stresses, or evenly, within dispersal_angle"
-    )
-    dispersal_angle: Angle = key(
-        30.0, "angle to the vertical beyond which a load does not spread; 26.6 is 1 in 2", ge=0, le=70
-    )
-
-
-class Surfacing(Table):
-    """Road or ballast on the fill."""
-
-    thickness: Length = key(about="thickness", ge=0)
-    density: Density = key(2300.0, "density", gt=0, le=30000)
 
 
 def intrados(span: Span) -> tuple[np.ndarray, np.ndarray]:
@@ -433,19 +404,8 @@ def make_bridge(bridge: "Bridge", density: float = 2000.0) -> Assembly:
         ratio = np.ones(len(assembly.mass))
         ratio[made.backing] = bridge.backing.density / density
         assembly = replace(assembly, mass=assembly.mass * ratio, inertia=assembly.inertia * ratio)
-    soil, paved = bridge.fill, bridge.surfacing or Surfacing(thickness=0.0)
-    if soil is None:
-        return assembly
     crown = max(float(arch.extrados[:, 1].max()) for arch in made.arches)
-    earth = Earth(
-        skyline(assembly.outlines), crown + soil.cover, soil.density, paved.thickness, paved.density,
-        soil.friction_angle, soil.cohesion, soil.passive, soil.dispersal, soil.dispersal_angle,
-    )  # fmt: skip
-    fill, surfacing = earth.masses(len(assembly.mass), bridge.depth)
-    total = fill[:, :1] + surfacing[:, :1]
-    place = (fill[:, :1] * fill[:, 1:] + surfacing[:, :1] * surfacing[:, 1:]) / np.maximum(total, 1e-300)
-    resting = np.concatenate([total, np.where(total > 0.0, place, assembly.centroid)], axis=1)
-    return replace(assembly, fill=resting, earth=earth)
+    return covered(assembly, crown, density, bridge.fill, bridge.surfacing, bridge.spandrels)
 
 
 class Bridge(Structure):
@@ -469,6 +429,7 @@ class Bridge(Structure):
     backing: Backing | None = key(None, "masonry over the haunches")
     fill: Fill | None = key(None, "soil over the arches")
     surfacing: Surfacing | None = key(None, "road or ballast on the fill")
+    spandrels: Spandrels | None = key(None, "spandrel walls on the edges of the arches; their weight counts")
     depth: Length = key(1.0, "width across that acts together, such as between the spandrel walls", gt=0)
 
     @model_validator(mode="after")
@@ -478,8 +439,7 @@ class Bridge(Structure):
             wanted = "1 pier" if need == 1 else f"{need} piers, or one for all"
             spans = "1 span needs no piers" if need == 0 else f"{need + 1} spans need {wanted}"
             raise ValueError(f"piers: {spans}; there {'is 1' if len(self.piers) == 1 else f'are {len(self.piers)}'}")
-        if self.surfacing is not None and self.fill is None:
-            raise ValueError("surfacing lies on fill: give fill, with a cover of 0 if there is none over the crown")
+        refuse_without_fill(self.fill, self.surfacing, self.spandrels, self.depth)
         return self
 
     @property

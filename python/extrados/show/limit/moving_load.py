@@ -20,7 +20,7 @@ EVEN = "#c98a2b"  # loads
 
 def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """The worst place with its thrust line, the mechanism, and the capacity over place."""
-    r = run[name]
+    r = run.results_of(name, MovingLoad)
     blocks, centroid = outlines(run, name), run.array(name, "centroid")
     place, size = run.array(name, "place"), float(np.ptp(np.concatenate(blocks)[:, 0]))
     road = _road_of(run, name, blocks)
@@ -117,9 +117,16 @@ def _load_marks(ax: Axes, run: Stored, name: str, blocks: list[np.ndarray], size
         ax.annotate("", (x, y), (x, y + 0.12 * size), arrowprops={"arrowstyle": "-|>", "color": style.THRUST}, zorder=6)
     for i, (start, stop) in enumerate(run.array(name, "even_load")):
         x = np.linspace(start, stop, 60)
-        y = np.full(len(x), road) if paved else np.array([_surface(blocks, float(one), road) for one in x])
+        top = np.full(len(x), road) if paved else np.array([_surface(blocks, float(one), road) for one in x])
         ax.fill_between(
-            x, y, y + 0.03 * size, color=EVEN, alpha=0.7, linewidth=0.0, zorder=4, label="even load" if i == 0 else "_"
+            x,
+            top,
+            top + 0.03 * size,
+            color=EVEN,
+            alpha=0.7,
+            linewidth=0.0,
+            zorder=4,
+            label="even load" if i == 0 else "_",
         )
 
 

@@ -58,7 +58,7 @@ def ground(ax: Axes, run: Stored, name: str, joints: list[int]) -> None:
 
 def standing(run: Stored, name: str) -> list[int]:
     """The joints by which the structure stands on the ground."""
-    return [reaction.joint for reaction in run[name].reactions]
+    return [reaction.joint for reaction in run[name]["reactions"]]
 
 
 def earth(ax: Axes, run: Stored, name: str) -> None:

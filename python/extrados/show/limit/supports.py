@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from extrados.results.limit import MovingSupports
 from extrados.results.store import Stored
 from extrados.show import film, style
 from extrados.show.limit import section
@@ -15,7 +16,7 @@ MOST_OPENINGS = 12  # openings that are written beside their joints
 def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """The arch on the way to its fall, and how the thrust changes; of any structure, the joints that open."""
     film_supports(run, name, folder)
-    r = run[name]
+    r = run.results_of(name, MovingSupports)
     blocks, centroid = outlines(run, name), run.array(name, "centroid")
     if "settled_pose" in run.arrays[name]:
         return [_draw_settled(run, name, folder, blocks, centroid)]
@@ -52,9 +53,11 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     return found
 
 
-def _draw_settled(run: Stored, name: str, folder: Path, blocks, centroid) -> tuple[str, str]:
+def _draw_settled(
+    run: Stored, name: str, folder: Path, blocks: list[np.ndarray], centroid: np.ndarray
+) -> tuple[str, str]:
     """The structure before and after its supports gave way, magnified, with the widest openings in mm."""
-    r, pose = run[name], run.array(name, "settled_pose")
+    r, pose = run.results_of(name, MovingSupports), run.array(name, "settled_pose")
     place = np.column_stack([centroid, np.zeros(len(centroid))])
     size = float(np.ptp(np.concatenate(blocks), axis=0).max())
     raw = 0.05 * size / max(float(np.hypot(*(pose - place)[:, :2].T).max()), 1e-300)

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from extrados.results.limit import Imperfections, Sweep
 from extrados.results.store import Stored
 from extrados.show import style
 from extrados.show.limit import section
@@ -13,7 +14,7 @@ MOST_NAMED = 8  # mechanisms in a legend
 
 def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Capacity curve with numbered mechanisms, and one section of each mechanism."""
-    r = run[name]
+    r = run.results_of(name, Sweep)
     value, gamma, number = run.array(name, "value"), run.array(name, "gamma"), run.array(name, "mechanism")
     tilt = np.degrees(np.arctan(gamma))
     with style.figure(7.5, 4.2) as (fig, (ax,)):
@@ -131,7 +132,7 @@ def draw_survey(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
 
 def draw_imperfections(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Capacities of the random surveys: how many bear at most how much, the band, and the survey that is given."""
-    r = run[name]
+    r = run.results_of(name, Imperfections)
     gamma = run.array(name, "gamma")
     lesser = np.sort(np.nan_to_num(gamma.min(axis=1), nan=0.0))
     with style.figure(7.5, 3.8) as (fig, (ax,)):

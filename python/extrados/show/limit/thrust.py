@@ -1,9 +1,11 @@
 """Figures of thrust lines at a given acceleration: lines, force polygons, friction needed."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from extrados.results.limit import Thrust
 from extrados.results.store import Stored
 from extrados.show import style
 from extrados.show.limit import section
@@ -12,7 +14,7 @@ from extrados.show.stones import outlines
 
 def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """The three lines and their force polygons; friction needed along the joints."""
-    r = run[name]
+    r = run.results_of(name, Thrust)
     blocks = outlines(run, name)
     colours = {"least": style.THRUST, "central": "#444444", "most": style.HINGE}
     lines_of = {which: line for which in colours if (line := getattr(r, which)) is not None}
@@ -20,8 +22,8 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         return []
     colours = {which: colours[which] for which in lines_of}
     arched = r.chain is not None
-    sizes = {"width": 12.0, "columns": 2, "width_ratios": [1.4, 1]} if arched else {"width": 6.0}
-    with style.figure(sizes.pop("width"), 4.6, **sizes) as (fig, (ax, *others)):
+    sizes: dict[str, Any] = {"columns": 2, "width_ratios": [1.4, 1]} if arched else {}
+    with style.figure(12.0 if arched else 6.0, 4.6, **sizes) as (fig, (ax, *others)):
         section.earth(ax, run, name)
         section.stone(ax, blocks)
         section.ground(ax, run, name, [reaction.joint for reaction in (r.central or r.least).reactions])
@@ -37,7 +39,7 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ax.set_title(f"{'Thrust lines' if arched else 'Thrust line'} at {r['gamma_g']:g} g{told}")
         style.section_axes(ax)
         for forces in others:
-            polygons = {which: section.paths(run, name, f"{which}_polygon")[r.chain] for which in colours}
+            polygons = {which: section.paths(run, name, f"{which}_polygon")[r["chain"]] for which in colours}
             section.polygon(forces, polygons, tuple(colours.values()))
             forces.set_title(f"Force polygons of the {r['chain']}")
         caption = "Thrust lines of least, greatest and most central thrust, and their force polygons."

@@ -14,7 +14,7 @@ from extrados.show.stones import Stones, outlines, turned, window
 def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Section at collapse, mechanism, force polygon; thrust upright; monolithic beside fractured."""
     film_tilt(run, name, folder)
-    r = run[name]
+    r = run.results_of(name, Tilt)
     blocks, centroid = outlines(run, name), run.array(name, "centroid")
     points = np.concatenate(blocks)
     tall = float(np.ptp(points[:, 1]) / max(np.ptp(points[:, 0]), 1e-9))
@@ -104,8 +104,10 @@ def _title(r: Tilt) -> str:
     return f"Collapse to +x at {r.collapse_acceleration_g:.4f} g at most (dilatant friction){without}"
 
 
-def _draw_fracture(run: Stored, name: str, folder: Path, blocks, centroid, height: float) -> tuple[str, str]:
-    r = run[name]
+def _draw_fracture(
+    run: Stored, name: str, folder: Path, blocks: list[np.ndarray], centroid: np.ndarray, height: float
+) -> tuple[str, str]:
+    r = run.results_of(name, Tilt)
     f = r.fracture
     with style.figure(9.5, height, columns=2) as (fig, (whole, cracked)):
         section.stone(whole, blocks, ghost=True)
@@ -142,7 +144,7 @@ def film_tilt(run: Stored, name: str, folder: Path) -> None:
     centroid = run.array(name, "centroid")
     rest = np.column_stack([centroid, np.zeros(len(centroid))])
     falls = run.array(name, "mechanism_pose")
-    last = np.radians(run[name].tilt_angle_deg)
+    last = np.radians(run.results_of(name, Tilt).tilt_angle_deg)
     lines = "film_tilt" in arrays
     tilt = np.radians(run.array(name, "film_tilt")) if lines else np.linspace(0.0, last, 40)
     moves = len(tilt) // 2

@@ -15,10 +15,10 @@ class FrameOptions(Table):
         "opening and storey)",
         source="Dolce 1991; Lagomarsino and others 2013",
     )
-    shear: Literal["least", "mohr-coulomb", "turnsek-cacovic", "damage", "none"] = key(
+    shear: Literal["least", "mohr-coulomb", "turnsek-cacovic", "reversed", "damage", "none"] = key(
         "least",
-        "shear strength of piers: Mohr-Coulomb on the compressed part, Turnsek-Cacovic, or the lesser of both; damage: friction "
-        "with damage and softening; none: flexure alone",
+        "shear strength of piers: Mohr-Coulomb on the compressed part, Turnsek-Cacovic, or the lesser of both; reversed: that, with "
+        "cohesion on the part alone that opens in neither sense; damage: friction with damage and softening; none: flexure alone",
         source="NTC 2018, 7.8.2.2; Circ. 7/2019, C8.7.1.3.1; Gambarotta and Lagomarsino 1997",
     )
     cohesion: Stress | None = key(

@@ -162,6 +162,11 @@ class _Maker:
                 self.remarks.append(
                     f"Walls '{plan.walls[a].name}' and '{plan.walls[b].name}' end {gap:.3g} m apart and do not meet: nothing joins them."
                 )
+        for k, corner in enumerate(plan.corners):
+            if tuple(sorted(map(self._named, corner.walls))) not in self.junctions:
+                raise BadGeometry(
+                    f"walls '{corner.walls[0]}' and '{corner.walls[1]}' do not meet", ("structure", "corners", k)
+                )
         if plan.beds:
             self.remarks.append("Bed joints of [[structure.beds]] are not modelled: piers slide by their own strength.")
         for w, wall in enumerate(plan.walls):
@@ -176,8 +181,12 @@ class _Maker:
         self.total = 0.0
         for strip in self.strips:
             self._weigh(strip)
+        rings: dict[tuple[int, frozenset[int]], int] = {}
         for k, floor in enumerate(plan.floors):
             with blaming("floors", k):
+                around = frozenset(w for w, _, _ in plan.around(floor))
+                if (first := rings.setdefault((floor.storey, around), k)) != k:
+                    raise BadGeometry(f"floor {first + 1} lies between the same walls on storey {floor.storey}")
                 self._floor(floor)
         for load in plan.prestress:
             w = self._named(load.wall)
@@ -595,10 +604,10 @@ def _law(wanted: str, cohesion: float, tension: float) -> str:
         return "mohr-coulomb"
     if not tension > 0.0:
         raise BadGeometry(
-            "turnsek-cacovic needs diagonal_strength",
+            f"{wanted} needs diagonal_strength",
             ("analysis", "frame", "shear"),
         )
-    return "turnsek-cacovic" if wanted == "turnsek-cacovic" or not cohesion > 0.0 else "least"
+    return "turnsek-cacovic" if wanted == "turnsek-cacovic" or not cohesion > 0.0 else wanted
 
 
 def _between(wall: PlanWall, storey: int, tall: float) -> list[tuple[float, float, Side, Side]]:

@@ -36,6 +36,8 @@ def solids_of_blocks(building: Masonry) -> SolidAssembly:
         raise BadGeometry(
             f"{name}: layers, ground and origin belong to plane drawings; solids rest on foundation_levels"
         )
+    if drawing.fill is not None:
+        raise BadGeometry(f"{name}: fill belongs to plane drawings", ("structure", "fill"))
     meshes = read_meshes(file) if sort in (".obj", ".stl") else read_solids(value, name)
     if drawing.up == "y":
         meshes = [replace(mesh, points=mesh.points @ Y_UP.T) for mesh in meshes]

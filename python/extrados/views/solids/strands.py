@@ -37,6 +37,17 @@ def strands_of(building: "Building") -> tuple[Strand, ...]:
     return tuple(found)
 
 
+def strand_names(building: "Building", strands: tuple[Strand, ...]) -> tuple[str, ...]:
+    """Names of strands: those of their ties, the segments of a bonded chain numbered."""
+    names = []
+    for strand in strands:
+        fellows = [other for other in strands if other.tie == strand.tie]
+        name = building.ties[strand.tie].name or ""
+        number = next(k for k, other in enumerate(fellows, start=1) if other is strand)
+        names.append(f"{name}, segment {number}" if len(fellows) > 1 else name)
+    return tuple(names)
+
+
 def _run(assembly: SolidAssembly, tie: Tie, what: str, key: Key) -> tuple[np.ndarray, tuple[tuple[int, ...], ...]]:
     """Points (k, 3) [m] of a tie or an open chain, and the block at each."""
     points = np.array([tie.start, *tie.via, tie.far], dtype=float)

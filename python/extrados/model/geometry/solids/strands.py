@@ -35,6 +35,11 @@ class Strand:
         count = len(self.point)
         return [(k, (k + 1) % count) for k in range(count if self.closed else count - 1)]
 
+    @property
+    def length(self) -> float:
+        """Length of its line [m]."""
+        return float(sum(np.linalg.norm(self.point[n] - self.point[k]) for k, n in self.segments))
+
     def forces(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Block (n), place (n, 3) [m] and force (n, 3) on it of a tension of one, without the ground."""
         pull = np.zeros_like(self.point)

@@ -1,0 +1,120 @@
+"""Ties, chains and hoops of a building as the discrete elements take them."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from extrados.analyses.context import Refused
+from extrados.core.dem_run import Ties
+from extrados.model.geometry.solids.strands import Strand
+from extrados.results.dem import TieRun
+from extrados.results.model import Array
+from extrados.views.building import Building
+from extrados.views.solids.strands import strand_names
+
+
+@dataclass(frozen=True)
+class ElementTies:
+    """The ties of a model, by their names: of a bonded chain each segment; core None without any."""
+
+    names: tuple[str, ...] = ()
+    core: Ties | None = None
+    strands: tuple[Strand, ...] = ()
+
+
+#: Of a model without any
+NO_TIES = ElementTies()
+
+
+def refuse_rigid_ties(building: Building) -> None:
+    """Refused where a tie has no stiffness: discrete elements follow its elongation."""
+    for k, tie in enumerate(building.ties):
+        if tie.stiffness is None:
+            raise Refused(
+                f"{tie.name}: discrete elements need the stiffness EA/L of a tie (force per change of length)",
+                ("ties", k, "stiffness"),
+            )
+
+
+def section_strands(building: Building) -> tuple[Strand, ...]:
+    """The ties of a plane section as lines of two points [x, y, 0]."""
+    anchored = building.anchored()
+    return tuple(
+        Strand(
+            k, np.column_stack([point, np.zeros(2)]), ((int(block[0]),), (int(block[1]),)), False, tie.least, tie.most
+        )
+        for k, (tie, block, point) in enumerate(zip(building.ties, anchored.block, anchored.point, strict=True))
+    )
+
+
+def element_ties(building: Building, strands: tuple[Strand, ...], body_of_block: np.ndarray) -> ElementTies:
+    """The strands on the bodies of their blocks; Refused where a tie has no stiffness.
+
+    The stiffness of a deck is that of the whole line: a segment of a bonded chain is as much stiffer as it is shorter.
+    """
+    if not strands:
+        return NO_TIES
+    refuse_rigid_ties(building)
+    whole = np.bincount([s.tie for s in strands], [s.length for s in strands])
+    tables = [building.ties[s.tie] for s in strands]
+    anchors = [
+        (point, -1 if block < 0 else int(body_of_block[block]), place)
+        for point, (place, blocks) in enumerate((p, b) for s in strands for p, b in zip(s.point, s.blocks, strict=True))
+        for block in blocks
+    ]
+    point, body, place = zip(*anchors, strict=True)
+    core = Ties(
+        stiffness=np.array(
+            [(t.stiffness or 0.0) * whole[s.tie] / s.length for t, s in zip(tables, strands, strict=True)]
+        ),
+        prestress=np.array([t.prestress for t in tables]),
+        least=np.array([s.low for s in strands]),
+        most=np.array([s.high for s in strands]),
+        first=np.cumsum([0, *(len(s.point) for s in strands)])[:-1],
+        closed=np.array([s.closed for s in strands]),
+        body=np.array(body),
+        point=np.array(point),
+        place=np.array(place),
+    )
+    return ElementTies(strand_names(building, strands), core, strands)
+
+
+def tie_rows(ties: ElementTies, tension: np.ndarray) -> dict[str, list[TieRun]]:
+    """How the ties fared in a run, from their tensions (t, ties) [N], as results have it; nothing without any."""
+    if ties.core is None or not len(tension):
+        return {}
+    found = []
+    for k, name in enumerate(ties.names):
+        force = tension[:, k]
+        peak = float(force[np.abs(force).argmax()])
+        bound = ties.core.most[k] if peak > 0.0 else ties.core.least[k]
+        state: Literal["slack", "elastic", "yielded"] = (
+            "slack" if peak == 0.0 else "yielded" if abs(peak) >= abs(bound) > 0.0 else "elastic"
+        )
+        found.append(TieRun(name=name, peak_force_N=peak, end_force_N=float(force[-1]), state=state))
+    return {"ties": found}
+
+
+def tie_columns(ties: ElementTies, tension: np.ndarray) -> dict[str, np.ndarray]:
+    """Histories of the tensions by the headings of a table."""
+    return {f"force of {name}": tension[:, k] for k, name in enumerate(ties.names)}
+
+
+def tie_arrays(ties: ElementTies, tension: np.ndarray) -> dict[str, Array]:
+    """Histories of the tensions as results store them; nothing without ties."""
+    if ties.core is None:
+        return {}
+    return {"tie_force": Array(tension, ("time", "tie"), "N", "forces of the ties, tension positive")}
+
+
+def section_arrays(ties: ElementTies) -> dict[str, Array]:
+    """Where the ties of a section are, as figures draw them; nothing without any."""
+    if not ties.strands:
+        return {}
+    block = np.array([[blocks[0] for blocks in strand.blocks] for strand in ties.strands])
+    point = np.array([strand.point[:, :2] for strand in ties.strands])
+    return {
+        "tie_block": Array(block, ("tie", "tie_end"), "", "blocks at both ends, -1 the ground"),
+        "tie_point": Array(point, ("tie", "tie_end", "axis"), "m", "both ends as drawn"),
+    }

@@ -1,0 +1,222 @@
+"""Ties, chains and hoops in discrete elements: oscillators and falls in closed form, the ledger, limit analysis, states."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from dem_models import G, block_on_floor, cosine, model, rectangle
+from test_dem3_core import solids
+
+import extrados
+from extrados.core import dem, dem3
+from extrados.core.dem_run import STILL, Ties
+from extrados.core.errors import CoreError
+from extrados.core.ground import as_motion_set
+from extrados.model.geometry.solids.polyhedra import box
+
+LAW = dem.Law(1e9, 1e9, 0.6, damping=1e-4)
+#: Square metre blocks of 2,000 kg far above the floor
+MASS = 2000.0
+
+
+def ties(*lines: list[tuple[int, list[float]]], stiffness: float = 8e5, prestress: float = 0.0, least: float = 0.0,
+         most: float = np.inf, closed: bool = False) -> Ties:  # fmt: skip
+    """Lines of points, each a body (-1 the ground) and a place [m]."""
+    count = len(lines)
+    return Ties(
+        *(np.full(count, value) for value in (stiffness, prestress, least, most)),
+        np.cumsum([0, *map(len, lines)])[:-1], np.full(count, closed),
+        np.array([body for line in lines for body, _ in line]), np.arange(sum(map(len, lines))),
+        np.array([place for line in lines for _, place in line]),
+    )  # fmt: skip
+
+
+def free_block(tie: Ties) -> dem.Bodies:
+    bodies = model([rectangle(-0.5, 0.5, 4.5, 5.5)], [rectangle(-20.0, 20.0, -1.0, 0.0)], LAW)
+    return replace(bodies, ties=tie)
+
+
+TO_THE_SIDE = [(0, [0.0, 5.0]), (-1, [-3.0, 5.0])]
+FLOATING = dem.Options(0.6, 0.01, step=2e-4, gravity=(0.0, 0.0))
+
+
+@pytest.mark.parametrize("rigid", [False, True])
+def test_a_block_on_a_spring_oscillates(rigid: bool) -> None:
+    """x = v / w sin w t with w = sqrt(k / m): 20 rad/s, in the plane and in space."""
+    spring = ties(TO_THE_SIDE, least=-np.inf)
+    start = np.array([[0.5, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    run = dem.run(free_block(spring), replace(FLOATING, rigid=rigid), shift=np.zeros((2, 3)), rate=start)
+    exact = 0.5 / 20.0 * np.sin(20.0 * run.time)
+    assert run.place[:, 0, 0] == pytest.approx(exact, abs=1e-6)
+    assert run.tension[:, 0] == pytest.approx(8e5 * exact, abs=10.0)
+    assert run.residual < 1e-8
+    high = replace(spring, place=np.array([[0.0, 0.0, 5.0], [-3.0, 0.0, 5.0]]))
+    body = replace(solids([box((-0.5, -0.5, 4.5), (0.5, 0.5, 5.5))], LAW), ties=high)
+    space = dem3.Options(0.6, 0.01, step=2e-4, gravity=(0.0, 0.0, 0.0), rigid=rigid)
+    rates = np.zeros((2, 6))
+    rates[0, 0] = 0.5
+    there = dem3.run(body, space, rate=rates)
+    assert there.place[:, 0, 0] == pytest.approx(exact, abs=1e-6)
+    assert there.tension == pytest.approx(run.tension, abs=1e-3)
+    assert there.residual < 1e-8
+
+
+def test_an_eccentric_spring_turns_the_block() -> None:
+    """A spring along x at the arm e: the sum of the spin's momentum about the ground's axis is that of the force."""
+    spring = ties([(0, [0.0, 5.3]), (-1, [-300.0, 5.3])], least=-np.inf)
+    start = np.array([[0.5, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    run = dem.run(free_block(spring), FLOATING, shift=np.zeros((2, 3)), rate=start)
+    impulse = MASS * (run.rate[:, 0, 0] - 0.5)
+    inertia = MASS / 6.0
+    assert inertia * run.rate[:, 0, 2] == pytest.approx(-0.3 * impulse, abs=0.02 * np.abs(impulse).max())
+    assert run.residual < 1e-6
+
+
+def test_a_tie_yields_and_the_ledger_closes() -> None:
+    """Thrown at 1 m/s against 10 kN: stops where the work m v^2 / 2 is F (s - F / 2k), and leaves the plastic part."""
+    yielding = ties(TO_THE_SIDE, most=1e4)
+    start = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    run = dem.run(free_block(yielding), replace(FLOATING, end_time=0.25), shift=np.zeros((2, 3)), rate=start)
+    elastic = 1e4 / 8e5
+    farthest = 0.5 * MASS / 1e4 + 0.5 * elastic
+    assert run.place[:, 0, 0].max() == pytest.approx(farthest, rel=1e-3)  # between two outputs
+    assert run.tension.max() == 1e4
+    assert run.energy["friction"][-1] == pytest.approx(1e4 * (farthest - elastic), rel=1e-3)
+    assert run.residual < 1e-4
+
+
+def test_a_slack_tie_carries_nothing() -> None:
+    """Thrown towards its anchor the block flies on; a strut in the same place pushes it back."""
+    start = np.array([[-0.5, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    slack = dem.run(free_block(ties(TO_THE_SIDE)), FLOATING, shift=np.zeros((2, 3)), rate=start)
+    assert slack.place[:, 0, 0] == pytest.approx(-0.5 * slack.time, abs=1e-12) and not slack.tension.any()
+    strut = dem.run(
+        free_block(ties(TO_THE_SIDE, least=-np.inf, most=0.0)), FLOATING, shift=np.zeros((2, 3)), rate=start
+    )
+    assert strut.place[:, 0, 0].min() == pytest.approx(-0.025, rel=1e-3)
+    assert strut.tension.min() == pytest.approx(-2e4, rel=1e-3)
+
+
+def test_a_chain_runs_over_a_block() -> None:
+    """From the ground over a block and back: the block feels the tension twice, w^2 = 4 k / m."""
+    over = ties([(-1, [-3.0, 5.0]), (0, [0.0, 5.0]), (-1, [-3.0, 5.0 + 1e-9])], least=-np.inf)
+    start = np.array([[0.5, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    run = dem.run(free_block(over), FLOATING, shift=np.zeros((2, 3)), rate=start)
+    assert run.place[:, 0, 0] == pytest.approx(0.5 / 40.0 * np.sin(40.0 * run.time), abs=5e-6)
+
+
+def test_a_hoop_holds_four_blocks_apart() -> None:
+    """Four blocks that fly from the centre stretch the hoop by the change of its perimeter: w^2 = 4 sqrt(2) sqrt(2) k / m / 2."""
+    way = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]], dtype=float)
+    centre = 3.0 * way + [0.0, 10.0]
+    blocks = [rectangle(x - 0.5, x + 0.5, y - 0.5, y + 0.5) for x, y in centre]
+    hoop = ties([(k, list(place)) for k, place in enumerate(centre)], closed=True)
+    bodies = replace(model(blocks, [rectangle(-20.0, 20.0, -1.0, 0.0)], LAW), ties=hoop)
+    start = np.zeros((5, 3))
+    start[:4, :2] = 0.2 * way
+    run = dem.run(bodies, FLOATING, shift=np.zeros((5, 3)), rate=start)
+    # Perimeter 4 sqrt(2) r; each block is pulled by sqrt(2) T.
+    omega = np.sqrt(8.0 * 8e5 / MASS)
+    taut = run.time < np.pi / omega
+    moved = run.place[taut, 0, 0] - 3.0
+    assert moved == pytest.approx(0.2 / omega * np.sin(omega * run.time[taut]), abs=2e-6)
+    assert run.tension[taut, 0] == pytest.approx(8e5 * 4.0 * np.sqrt(2.0) * moved, abs=20.0)
+
+
+@pytest.mark.parametrize(("share", "stable"), [(0.99, True), (1.01, False)])
+def test_the_critical_step_is_that_of_the_tie(share: float, stable: bool) -> None:
+    """2 / w of a block on a spring, exactly: above it the motion grows without bound."""
+    spring = ties(TO_THE_SIDE, least=-np.inf, stiffness=8e9)
+    start = np.array([[1e-6, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    asked = replace(FLOATING, step=share * 2.0 / np.sqrt(8e9 / MASS), rigid=True, residual_limit=1e300)
+    if not stable:
+        assert dem.run(free_block(spring), asked, shift=np.zeros((2, 3)), rate=start).reason == "step"
+        return
+    run = dem.run(free_block(spring), asked, shift=np.zeros((2, 3)), rate=start)
+    assert run.reason == "end" and np.abs(run.place[:, 0, 0]).max() < 1e-4
+
+
+def test_a_moving_base_and_its_body_force_agree() -> None:
+    """The ground end moves with the base: the same response, the ledger closed in both frames."""
+    shaken = replace(
+        block_on_floor(1.0, 3.0, LAW), ties=ties([(0, [0.5, 2.9]), (-1, [-5.0, 2.9])], most=2e4, stiffness=3e6)
+    )
+    options = dem.Options(1.5, 0.02, collapse=2.0)
+    runs = [dem.run(shaken, replace(options, moving_base=moving), cosine(0.45 * G, 5.0)) for moving in (False, True)]
+    assert runs[0].tension.max() == 2e4  # it has yielded
+    assert runs[1].place[:, 0] == pytest.approx(runs[0].place[:, 0], abs=2e-5)
+    assert runs[1].residual == pytest.approx(runs[0].residual, rel=0.01) and runs[0].residual < 0.01
+
+
+@pytest.mark.parametrize("rigid", [False, True])
+def test_a_state_with_ties_goes_on_with_the_same_bits(rigid: bool) -> None:
+    shaken = replace(block_on_floor(1.0, 3.0, LAW), ties=ties([(0, [0.5, 2.9]), (-1, [-5.0, 2.9])], most=2e4))
+    options = dem.Options(1.0, 0.02, rigid=rigid)
+    with dem.Model(shaken, options) as one, as_motion_set([cosine(0.45 * G, 5.0)]) as motions:
+        states: list[np.ndarray] = []
+        whole = one.run(motions, watch=lambda _: states.append(one.state()))
+    with dem.Model(shaken, options) as other, as_motion_set([cosine(0.45 * G, 5.0)]) as motions:
+        again = other.run(motions, state=states[len(states) // 2])
+    assert np.array_equal(again.tension, whole.tension) and np.array_equal(again.place, whole.place)
+    bare = replace(shaken, ties=None)
+    with (
+        dem.Model(bare, options) as third,
+        as_motion_set([STILL]) as motions,
+        pytest.raises(ValueError, match="of a run of another model"),
+    ):
+        third.run(motions, state=states[0])
+
+
+@pytest.mark.parametrize(
+    ("change", "error"),
+    [({"stiffness": np.array([0.0])}, CoreError), ({"prestress": np.array([-1.0])}, CoreError), ({"body": np.array([0, 7])}, IndexError),
+     ({"place": np.full((2, 2), np.nan)}, ValueError)],
+)  # fmt: skip
+def test_wrong_ties_are_refused(change: dict, error: type[Exception]) -> None:
+    with pytest.raises(error):
+        dem.run(free_block(replace(ties(TO_THE_SIDE), **change)), FLOATING)
+
+
+def deck(kind: dict, **tie: Any) -> dict:
+    table = {"start": [0.5, 2.9], "ground": [-6.0, 2.9], "start_stone": "block", **tie}
+    return {
+        "structure": {"kind": "block", "width": 1.0, "height": 3.0}, "material": {"density": 2000.0, "young": 5e9},
+        "joints": {"friction": 0.9}, "ties": [table], "analysis": [kind],
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("solver", ["compliant", "nonsmooth"])
+def test_a_tied_block_collapses_where_limit_analysis_says(solver: str) -> None:
+    """(W b / 2 + F h_t) / (W h / 2), less what the tie lengthens until it yields, at most 1 % with EA/L of 2 MN/m."""
+    weight = 6000.0 * G
+    found = extrados.run(
+        deck({"kind": "dem", "test": "tilt", "solver": solver}, stiffness=2e6, yield_force=1e4)
+    ).results[0]
+    exact = (0.5 * weight + 1e4 * 2.9) / (1.5 * weight)
+    assert exact > found["collapse_acceleration_g"] > 0.99 * exact
+    assert found["collapse_acceleration_opposite_g"] == pytest.approx(1.0 / 3.0, rel=2e-3)
+    assert found["ties"][0]["state"] == "yielded" and found["ties"][0]["peak_force_N"] == 1e4
+    assert "tie 1" in found.answer.lower()
+
+
+def test_a_tie_without_stiffness_is_refused() -> None:
+    found = extrados.run(deck({"kind": "dem", "test": "tilt"}, yield_force=1e4)).results[0]
+    assert found.status == "refused" and "stiffness EA/L" in found.reason
+
+
+@pytest.mark.parametrize("solver", ["compliant", "nonsmooth"])
+def test_a_tied_block_in_space(solver: str) -> None:
+    """Pushed across: (W d / 2 + F h_t) / (W h / 2) with its depth d, by the cone programme and by elements."""
+    asked = {"direction": 90.0}
+    table = {"start": [0.5, 0.0, 2.9], "ground": [0.5, -6.0, 2.9], "start_stone": "block"}
+    tied = deck({"kind": "dem", "test": "tilt", "solver": solver, **asked}, **table, stiffness=2e6, yield_force=1e4)
+    tied["structure"]["depth"] = 0.8
+    tied["analysis"].append({"kind": "tilt", **asked})
+    found, exact = extrados.run(tied).results
+    weight = 2000.0 * 2.4 * G
+    assert exact["collapse_acceleration_g"] == pytest.approx((0.4 * weight + 1e4 * 2.9) / (1.5 * weight), rel=1e-6)
+    assert (
+        exact["collapse_acceleration_g"] > found["collapse_acceleration_g"] > 0.985 * exact["collapse_acceleration_g"]
+    )
+    assert found["ties"][0]["state"] == "yielded"
