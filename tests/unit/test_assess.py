@@ -89,6 +89,18 @@ def test_the_margin_of_rocking_ends_where_hinges_form_elsewhere(whole: Run) -> N
     assert row.margin_at_least is not None and row.margin_below is None
 
 
+def test_a_collapse_under_the_hazard_itself_bounds_the_margin_of_rocking(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where scaled motions leave the assumptions first, the run under the hazard is a factor of 1 that causes collapse."""
+    monkeypatch.setattr(driver, "scaled_margin", lambda found: (0.5, None))
+    block, friction = {"kind": "block", "width": 0.6, "height": 6.0}, {"friction": 0.9}
+    asked = {"kind": "assess", "budget": 5, "strategies": ["rocking"], "advise": False}
+    motion = {**PULSE, "amplitude": "0.6 g", "period": 2.0}
+    (row,) = extrados.run({"structure": block, "joints": friction, "motion": motion, "analysis": [asked]})[
+        "assess"
+    ].verdicts
+    assert row.outcome == "collapses" and (row.margin_at_least, row.margin_below) == (0.5, 1.0)
+
+
 def test_decks_of_the_parts_run_by_themselves(whole: Run, tmp_path: Path) -> None:
     result = whole.results[0]
     for name in ("tilt", "fragility"):

@@ -111,6 +111,10 @@ def test_the_share_under_the_motion_itself_comes_first() -> None:
     assert "Assumptions of rocking do not hold" in found.statement and "sustained load" in found.statement
     alone = estimate_collapse([row("rocking", margin_at_least=1.5)], runs)
     assert alone.probability is None and "19 of 40 runs collapse" in alone.statement
+    none = estimate_collapse(rows, Ensemble.model_construct(count=16, collapsed=0))
+    assert f"at most {percent(z * z / (16 + z * z))}: 0 of 16" in none.statement
+    every = estimate_collapse(rows, Ensemble.model_construct(count=16, collapsed=16))
+    assert f"at least {percent(16 / (16 + z * z))}: 16 of 16" in every.statement
     assert estimate_collapse(rows, Ensemble.model_construct(count=0, collapsed=0)).in_motion is None
 
 

@@ -7,7 +7,7 @@ from extrados import kinds
 from extrados.results.assess import Assess
 from extrados.results.codes import Checked, LocalMechanism
 from extrados.results.store import Stored
-from extrados.results.strengthen import Strengthen
+from extrados.results.strengthen import Strengthen, size_told
 from extrados.results.verdict import OUTCOMES
 from extrados.show.document import Block, Figure, Table, Words
 from extrados.show.language import Language
@@ -45,7 +45,7 @@ def opening(run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | 
     if (picture := governing_figure(run, drawn, building)) is not None:
         found.append(picture)
     found.append(Words(f"{words('Confidence.')} {_confidence(run, lead, words)}"))
-    found.append(Words(f"{words('Next step.')} {_next_step(run, lead, words)}"))
+    found.append(Words(f"{words('Next step.')} {_next_step(run, lead, words)}{_strengthening(run, lead, words)}"))
     return found
 
 
@@ -251,6 +251,23 @@ def _next_step(run: Stored, lead: dict[str, Any], words: Language) -> str:
             "The report gives a capacity without a demand. Give the action of the site, a motion or a load, and run the deck again."
         )
     )
+
+
+def _strengthening(run: Stored, lead: dict[str, Any], words: Language) -> str:
+    """The interventions of an assessment with their least sizes; nothing without advice."""
+    r = run[lead["name"]]
+    if not isinstance(r, Assess) or r.advice is None:
+        return ""
+    met = [one for one in r.advice.interventions if one.meets_target]
+    if not met:
+        return " " + words("No intervention considered carries the peak of the hazard as a sustained load.")
+    told = "; ".join(f"{one.name}, {size_told(one)}" for one in met)
+    text = words("Strengthening for the peak of the hazard as a sustained load: {interventions}.", interventions=told)
+    least = r.advice.by_rocking
+    if least is not None and least.required_N is not None:
+        force = words.quantity(least.required_N, "N")
+        text += " " + words("By rocking under this motion the first tie needs {force}.", force=force)
+    return f" {text}"
 
 
 def _first(words: Language, violated: list[str]) -> str:

@@ -251,7 +251,8 @@ class _Work:
             return
         curve = found.of(OverLevels)
         low, high = scaled_margin(curve)
-        self._bracket("rocking", low, high)
+        down = self.rows["rocking"].outcome == "collapses"  # the run under the hazard itself is a factor of 1
+        self._bracket("rocking", low, 1.0 if high is None and down else high)
         words = f"{self.rows['rocking'].parameters}; its margin from {row.parameters}"
         if high is None and low != curve.levels[-1]:
             words += "; at the next factor blocks slide or hinges form elsewhere, so that rocking bounds the margin from below alone"
@@ -703,9 +704,10 @@ class _Work:
             rows.append(row.model_copy(update={"part": part}))
         judged = facts.judged()
         agreement = {a: {b: facts.relation(a, b) for b in judged if b != a} for a in judged}
+        # a strategy by which the building stands, although its factor is not known from below 1 on, has no least factor
         margins = [(low if row.margin is None else row.margin, row.strategy) for row in rows if row.outcome != "not-applicable"
-                   if (low := row.margin_at_least if row.outcome == "stands" else row.margin_below) is not None
-                   or row.margin is not None]  # fmt: skip
+                   if ((low := row.margin_at_least if row.outcome == "stands" else row.margin_below) is not None
+                   and (row.outcome != "stands" or low >= 1.0)) or row.margin is not None]  # fmt: skip
         least = min(margins, default=(None, None), key=lambda m: m[0] if m[0] is not None else np.inf)
         overall, statement = conclusion(
             facts, reasons, unexplained, self.context.building.require_structure().word, least, rows

@@ -98,10 +98,12 @@ def _in_motion(rows: list[StrategyVerdict], fragility: KindResults | None) -> Co
 
 
 def _motion_told(one: CollapseInMotion) -> str:
-    text = (
-        f"Probability of collapse under the hazard by rocking {percent(one.probability)} (95 % interval {percent(one.low)} to {percent(one.high)}): "
-        f"{one.collapsed} of {one.count} runs collapse."
-    )
+    told = f"{percent(one.probability)} (95 % interval {percent(one.low)} to {percent(one.high)})"
+    if one.collapsed == 0:  # a share of 0 in few runs is no probability
+        told = f"at most {percent(one.high)}"
+    elif one.collapsed == one.count:
+        told = f"at least {percent(one.low)}"
+    text = f"Probability of collapse under the hazard by rocking {told}: {one.collapsed} of {one.count} runs collapse."
     return f"{text} Assumptions of rocking do not hold in these runs." if one.violated else text
 
 
