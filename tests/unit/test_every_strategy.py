@@ -107,7 +107,6 @@ def quick_save(fig, folder: Path, name: str) -> str:
     """As plots.style.save, coarse, without layout and SVG, which take most of the time."""
     fig.set_layout_engine("none")
     fig.set_dpi(40)
-    (folder / "figures").mkdir(exist_ok=True)
     style.FigureCanvasAgg(fig).print_png(folder / "figures" / f"{name}.png")
     return name
 
