@@ -73,7 +73,7 @@ def test_the_order_of_the_ranking() -> None:
     assert orders == sorted(orders) and orders[0] < orders[1] and orders[5] < orders[6]
 
 
-def test_what_cannot_stand_comes_first(folder: Path, tmp_path: Path) -> None:
+def test_what_cannot_stand_comes_first(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A proof of collapse under self-weight is the worst verdict, and the command is done: exit code 0."""
     leaning = '[structure]\nkind = "blocks"\n[[structure.block]]\nname = "leaning"\npoints = [[0, 0], [1, 0], [4, 4], [3, 4]]\n'
     (folder / "z-leaning.toml").write_text(leaning)
@@ -82,6 +82,7 @@ def test_what_cannot_stand_comes_first(folder: Path, tmp_path: Path) -> None:
     assert (rows[0].overall, rows[0].least_margin, rows[0].status) == ("cannot stand", 0.0, "ok")
     deck = tmp_path / "deck.toml"
     deck.write_text(leaning + '[[analysis]]\nkind = "tilt"\n')
+    monkeypatch.undo()  # a report holds its pictures as SVG
     done = CliRunner().invoke(cli.app, ["run", str(deck), "--out", str(tmp_path / "one")])
     assert done.exit_code == 0 and "cannot stand" in done.output
     assert (tmp_path / "one" / "figures" / "tilt-self-weight.png").exists()
