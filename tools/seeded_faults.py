@@ -152,6 +152,10 @@ EQUIVALENT: dict[str, str] = {
 SHARE = "0.06"
 #: Modules of the property suite that all relations share
 SHARED = ("asking", "buildings", "relations")
+#: What a run exits with that could not plant its fault
+BROKE = 2
+#: How much longer a test may take with a fault than without
+SLOWER = 5.0
 #: That with which relations are asked again whose answers change
 MORE = 0.3
 #: Fates of a fault that no relation finds: an answer changes, none does, no relation runs through it, the time is up
@@ -367,29 +371,24 @@ def touched(place: Path) -> list[Row]:
             whole.update(path.read_bytes())
     kept = place / f"touched-{whole.hexdigest()[:12]}.jsonl"
     half = kept.with_suffix(".part")
-    half.unlink(missing_ok=True)
     sources = {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in folder.glob("*.py")}
-    known = [r for r in _read(kept) if r["source"] == sources.get(r["chapter"])]
+
+    def keep() -> list[str]:
+        noted = [r for r in _read(kept) + _read(half) if r["source"] == sources.get(r["chapter"])]
+        kept.write_text("".join(json.dumps(r) + "\n" for r in noted), encoding="utf-8")
+        half.unlink(missing_ok=True)
+        return [r["test"] for r in noted]
+
+    # What an interrupted run has noted is kept
     words = [
-        apart.python(place),
-        "-m",
-        "pytest",
-        "-q",
-        "-n",
-        "2",
-        "--dist",
-        "worksteal",
-        "-p",
-        "no:cacheprovider",
-        "tests/properties",
-    ]
-    words += [f"--deselect={r['test']}" for r in known]
+        apart.python(place), "-m", "pytest", "-q", "-n", "2", "--dist", "worksteal", "-p", "no:cacheprovider", "tests/properties",
+        *(f"--deselect={test}" for test in keep()),
+    ]  # fmt: skip
     environment = environment_of(half, EXTRADOS_LINES="1")
     run = subprocess.run(words, cwd=place, env=environment, capture_output=True, text=True, errors="replace")
-    broken = set(re.findall(r"^(?:FAILED|ERROR) (\S+)", run.stdout, re.M))
-    print("skipped, since they fail without a fault:", *sorted(broken or {"none"}), flush=True)
-    known += [{**r, "source": sources[r["chapter"]]} for r in _read(half) if r["test"] not in broken]
-    kept.write_text("".join(json.dumps(r) + "\n" for r in known), encoding="utf-8")
+    broken = re.findall(r"^(?:FAILED|ERROR) (\S+)", run.stdout, re.M)
+    print("skipped, since they fail without a fault:", *sorted(broken or ["none"]), flush=True)
+    keep()
     return rows_of(kept)
 
 
@@ -421,40 +420,50 @@ def suite(place: Path, build: int) -> subprocess.Popen[str]:
 
 
 def asked_of(
-    place: Path, build: int, fault: Fault, tests: list[str], share: float, patience: int
+    place: Path, build: int, fault: Fault, tests: list[Row], share: float, patience: int
 ) -> tuple[str, list[Row]]:
     """The first of some tests that fails with a fault, or one of the `NOT_CAUGHT`, and what the tests before noted."""
+    limits = {row.test: max(patience, SLOWER * row.seconds * share / float(SHARE)) for row in tests}
     kept, failed, process = place / "answers.jsonl", place / "failed.txt", suite(place, build)
     kept.unlink(missing_ok=True)
     assert process.stdin is not None and process.stdout is not None
     question = {
-        "file": fault.file.removeprefix(f"{PACKAGE}/"), "line": fault.line, "new": fault.new if fault.in_python else "", "tests": tests,
-        "share": share, "patience": patience, "limit": 8 * patience, "kept": str(kept), "failed": str(failed),
+        "file": fault.file.removeprefix(f"{PACKAGE}/"), "line": fault.line, "new": fault.new if fault.in_python else "", "tests": limits,
+        "share": share, "limit": 8 * patience, "kept": str(kept), "failed": str(failed),
     }  # fmt: skip
     process.stdin.write(json.dumps(question) + "\n")
     process.stdin.flush()
     code = next((int(text.split()[1]) for text in process.stdout if text.startswith("ended: ")), None)
-    by = {0: MISSED, 1: failed.read_text(encoding="utf-8") if code == 1 else "", -signal.SIGPROF: "a test that does not end",
-          -signal.SIGXCPU: UNDECIDED, -signal.SIGKILL: UNDECIDED}.get(code, f"exit {code}")  # fmt: skip
-    return by, rows_of(kept)
+    if code is None or code == BROKE:
+        raise RuntimeError(f"the property suite could not be asked about {fault}")
+    by = {
+        0: MISSED,
+        -signal.SIGPROF: "a test that does not end",
+        -signal.SIGXCPU: UNDECIDED,
+        -signal.SIGKILL: UNDECIDED,
+    }
+    if code == 1:
+        return failed.read_text(encoding="utf-8"), rows_of(kept)
+    return by.get(code, f"exit {code}"), rows_of(kept)
 
 
 def failing_relation(place: Path, fault: Fault, patience: int) -> str:
     """The first test of the property suite that fails with a fault planted, the quickest first, then with more cases those
-    whose answers change; else one of the `NOT_CAUGHT`."""
+    whose answers change, or all; else one of the `NOT_CAUGHT`."""
     chosen = relations_of(place, fault)
     if not chosen:
         return NOWHERE
     build = 0 if fault.in_python else time.monotonic_ns()
-    by, seen = asked_of(place, build, fault, [row.test for row in chosen], float(SHARE), patience)
+    by, seen = asked_of(place, build, fault, chosen, float(SHARE), patience)
     before = {row.test: row.answers for row in chosen}
-    changed = [row.test for row in seen if row.answers != before[row.test]]
-    if by == MISSED and changed:
-        by, _ = asked_of(place, build, fault, changed, MORE, patience)
-        by += " with more cases" if by not in NOT_CAUGHT else ""
+    turned = {row.test for row in seen if row.answers != before[row.test]}
+    changed = [row for row in chosen if row.test in turned]
+    if by == MISSED:
+        more, _ = asked_of(place, build, fault, changed or chosen, MORE, patience)
+        by = (MISSED if changed else UNCHANGED) if more in NOT_CAUGHT else f"{more} with more cases"
     if build:
         suite(place, build).kill()
-    return UNCHANGED if by == MISSED and not changed else by
+    return by
 
 
 def failing(place: Path, room: str, patience: int) -> str:

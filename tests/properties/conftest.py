@@ -2,6 +2,7 @@
 
 import gc
 import hashlib
+import importlib
 import json
 import os
 import re
@@ -9,7 +10,7 @@ import resource
 import signal
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from functools import _lru_cache_wrapper
 from pathlib import Path
 from types import CodeType, FrameType, FunctionType
@@ -25,12 +26,15 @@ import trials
 from extrados.results.model import Result
 
 ROOT = str(Path(extrados.__file__).parent)
-#: Seconds of a processor after which a test ends the process by SIGPROF; 0: none
-PATIENCE = [0.0]
+#: Seconds of a processor after which a test ends the process by SIGPROF, by its name; others: none
+PATIENCE: dict[str, float] = {}
+#: Whether the test itself has passed
+PASSED = pytest.StashKey[bool]()
 
 
 def plant(file: str, line: int, new: str) -> None:
-    """Put another line into the functions of a file of the package that is loaded."""
+    """Put another line into the functions of a file of the package, which is loaded first: many are when they are asked for."""
+    importlib.import_module(".".join(["extrados", *Path(file).with_suffix("").parts]))
     path = Path(ROOT) / file
     lines = path.read_text(encoding="utf-8").split("\n")
     lines[line - 1] = new
@@ -43,16 +47,18 @@ def plant(file: str, line: int, new: str) -> None:
                 note(inner)
 
     note(compile("\n".join(lines), str(path), "exec"))
-    for there in gc.get_objects():
-        if isinstance(there, FunctionType) and there.__code__.co_filename == str(path):
-            there.__code__ = made[there.__code__.co_qualname, there.__code__.co_firstlineno]
+    found = [f for f in gc.get_objects() if isinstance(f, FunctionType) and f.__code__.co_filename == str(path)]
+    assert found, f"{file} has no function"
+    for function in found:
+        function.__code__ = made[function.__code__.co_qualname, function.__code__.co_firstlineno]
 
 
 def tried(asked: dict[str, Any], items: dict[str, pytest.Item]) -> int:
     """Run tests with a fault, until one fails, whose name is written to a file: 1; 0 where none does."""
     if asked["new"]:
         plant(asked["file"], asked["line"], asked["new"])
-    PATIENCE[0], trials.SHARE, os.environ["EXTRADOS_TOUCHED"] = asked["patience"], asked["share"], asked["kept"]
+    PATIENCE.update(asked["tests"])
+    trials.SHARE, os.environ["EXTRADOS_TOUCHED"] = asked["share"], asked["kept"]
     resource.setrlimit(resource.RLIMIT_CPU, (asked["limit"], asked["limit"]))
     for name in asked["tests"]:
         if any(report.failed for report in runtestprotocol(items[name], log=False)):
@@ -87,10 +93,21 @@ def answer_of(result: Result) -> bytes:
     return b"".join([held.encode(), *arrays, "".join(columns).encode()])
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(
+    item: pytest.Item, call: pytest.CallInfo
+) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Keeps whether a test itself has passed."""
+    report = yield
+    if call.when == "call":
+        item.stash[PASSED] = report.passed
+    return report
+
+
 @pytest.fixture(autouse=True)
 def _noted(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Where EXTRADOS_TOUCHED names a file, notes of a test there: seconds of a processor, a digest of all answers, and with EXTRADOS_LINES the
-    lines that it runs through."""
+    """Where EXTRADOS_TOUCHED names a file, notes of a test that passes there: the text of its chapter, seconds of a processor, a digest of all
+    answers, and with EXTRADOS_LINES the lines that it runs through."""
     place = os.environ.get("EXTRADOS_TOUCHED")
     if not place:
         yield
@@ -116,16 +133,19 @@ def _noted(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> I
 
     monkeypatch.setattr(extrados, "run", run)
     begin = time.process_time()
-    signal.setitimer(signal.ITIMER_PROF, PATIENCE[0])
+    signal.setitimer(signal.ITIMER_PROF, PATIENCE.get(request.node.nodeid, 0.0))
     if "EXTRADOS_LINES" in os.environ:
         sys.settrace(call)
     yield
     sys.settrace(None)
     signal.setitimer(signal.ITIMER_PROF, 0.0)
+    if not request.node.stash.get(PASSED, False):
+        return
     found = sorted({(os.path.relpath(c.co_filename, ROOT), n) for c, n in lines})
     callspec = getattr(request.node, "callspec", None)
     relation = callspec.params.get("relation") if callspec else None
-    chapter = Path(relation.holds.__code__.co_filename if relation else request.node.path).name
-    row = {"test": request.node.nodeid, "chapter": chapter, "seconds": time.process_time() - begin, "answers": digest.hexdigest(), "lines": found}  # fmt: skip
+    chapter = Path(relation.holds.__code__.co_filename if relation else request.node.path)
+    row = {"test": request.node.nodeid, "chapter": chapter.name, "source": hashlib.sha256(chapter.read_bytes()).hexdigest(),
+           "seconds": time.process_time() - begin, "answers": digest.hexdigest(), "lines": found}  # fmt: skip
     with open(place, "a", encoding="utf-8") as file:
         file.write(json.dumps(row) + "\n")
