@@ -231,7 +231,9 @@ def page_of(strategy: dict[str, Any], rows: list[Found]) -> str:
         parts += [f"![predicted and measured](strategy-{slug(name)}.svg)", ""]
     parts += [f"| {HEAD}", "|---|---|---|---|---|---|---|---|", f"| {agreement(rows)} |", ""]
     if far := worst(rows):
-        reason = far.row.wide or far.row.note or ("one of a series of tests" if far.series else "within its tolerance")
+        reason = far.row.wide or far.row.note or "within its tolerance"
+        if far.series:
+            reason = f"one test of a series ({far.row.note}); strengths are assumed by one rule for the whole series"
         parts += [
             f"**Worst case** ({far.row.kind}): {far.case}, `{far.row.quantity}`, found {shown(far.value)} for {shown(far.row.value)}, "
             f"{percent((far.ratio or 1.0) - 1.0)}. {reason[0].upper()}{reason[1:]}.", "",
