@@ -347,6 +347,7 @@ def draw_strategies(rows: list[Found]) -> None:
     """A plot for each strategy: predicted against measured (or printed, or exact) values on logarithmic axes, and the ratios of the kind
     of comparison that is nearest to reality, with the scatter of the tests themselves."""
     import matplotlib.pyplot as plt
+    from matplotlib.ticker import NullFormatter
 
     for strategy in strategies():
         of = plotted(found for found in rows if strategy_of(found.row) == strategy["name"])
@@ -373,6 +374,8 @@ def draw_strategies(rows: list[Found]) -> None:
         left.set(
             xscale="log", yscale="log", xlabel="expected: measured, printed or exact [SI]", ylabel="predicted [SI]"
         )
+        for axis in (left.xaxis, left.yaxis):  # numbers of minor ticks overlap
+            axis.set_minor_formatter(NullFormatter())
         ends = [min(abs(f.row.value) for f in of), max(abs(f.row.value) for f in of)]
         left.plot(ends, ends, color="0.3", lw=0.8, zorder=0)
         right.axhline(1.0, color="0.3", lw=0.8, zorder=0)
