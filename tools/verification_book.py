@@ -16,6 +16,7 @@ import json
 import math
 import re
 import sys
+import time
 import tomllib
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -54,6 +55,8 @@ COUNTED = ("bound", "inferred", "calibration", "regression")
 HEAD = "exact | other programs and methods | dissertation | experiments | bounds | inferred | calibrated | regression |"
 COLOURS = {"exact": "#0072B2", "peer": "#009E73", "thesis": "#E69F00", "experiment": "#D55E00"}
 MARKS = {"exact": "o", "peer": "s", "thesis": "^", "experiment": "D"}
+#: Seconds from which on the book states the time of a case
+LONG = 60.0
 #: Mark of results found before the program's last change
 OLDER = "*"
 #: Quantity compared by a row of a measured curve
@@ -229,7 +232,9 @@ def page_of(strategy: dict[str, Any], rows: list[Found]) -> str:
         parts += [f"![predicted and measured](strategy-{slug(name)}.svg)", ""]
     parts += [f"| {HEAD}", "|---|---|---|---|---|---|---|---|", f"| {agreement(rows)} |", ""]
     if far := worst(rows):
-        reason = far.row.wide or far.row.note or ("one of a series of tests" if far.series else "within its tolerance")
+        reason = far.row.wide or far.row.note or "within its tolerance"
+        if far.series:
+            reason = f"one test of a series ({far.row.note}); strengths are assumed by one rule for the whole series"
         parts += [
             f"**Worst case** ({far.row.kind}): {far.case}, `{far.row.quantity}`, found {shown(far.value)} for {shown(far.row.value)}, "
             f"{percent((far.ratio or 1.0) - 1.0)}. {reason[0].upper()}{reason[1:]}.", "",
@@ -343,6 +348,7 @@ def draw_strategies(rows: list[Found]) -> None:
     """A plot for each strategy: predicted against measured (or printed, or exact) values on logarithmic axes, and the ratios of the kind
     of comparison that is nearest to reality, with the scatter of the tests themselves."""
     import matplotlib.pyplot as plt
+    from matplotlib.ticker import NullFormatter
 
     for strategy in strategies():
         of = plotted(found for found in rows if strategy_of(found.row) == strategy["name"])
@@ -369,6 +375,8 @@ def draw_strategies(rows: list[Found]) -> None:
         left.set(
             xscale="log", yscale="log", xlabel="expected: measured, printed or exact [SI]", ylabel="predicted [SI]"
         )
+        for axis in (left.xaxis, left.yaxis):  # numbers of minor ticks overlap
+            axis.set_minor_formatter(NullFormatter())
         ends = [min(abs(f.row.value) for f in of), max(abs(f.row.value) for f in of)]
         left.plot(ends, ends, color="0.3", lw=0.8, zorder=0)
         right.axhline(1.0, color="0.3", lw=0.8, zorder=0)
@@ -450,13 +458,28 @@ def relations() -> list[str]:
     ]  # fmt: skip
 
 
+def long_cases(kept: dict[str, Any]) -> list[str]:
+    """Cases that take more than a minute, which `make verify` runs and the quick suite does not."""
+    lines = [
+        (seconds, f"| {name} | {seconds:.0f} |")
+        for name, was in kept.items() if (seconds := was.get("seconds", 0.0)) > LONG
+    ]  # fmt: skip
+    if not lines:
+        return []
+    return [
+        "## Cases of more than a minute", "",
+        f"Time of all changes of the case on two threads of the machine of the last run. {len(lines)} cases.", "",
+        "| case | seconds |", "|---|---|", *(line for _, line in sorted(lines, reverse=True)), "",
+    ]  # fmt: skip
+
+
 def with_trials_alone(book: str) -> str:
     """The book with the section of the trials written anew, and all else as it was."""
     return book.split(f"{TRIALS}\n")[0].rstrip() + "\n\n" + "\n".join(trials(book))
 
 
-def overview(rows: list[Found], book: str) -> str:
-    """docs/verification.md; `book`: its former text."""
+def overview(rows: list[Found], book: str, kept: dict[str, Any]) -> str:
+    """docs/verification.md; `book`: its former text; `kept`: results with their times."""
     parts = ["# Verification book", "", "Written by `make verify` from `cases/`; do not edit.", "", *by_strategy(rows)]
     parts += by_quantity(rows)
     if older := sum(found.older for found in rows):
@@ -470,14 +493,14 @@ def overview(rows: list[Found], book: str) -> str:
             for f in loose
         ), "",
     ]  # fmt: skip
-    return "\n".join([*parts, *who_computed(rows), *relations(), *trials(book)])
+    return "\n".join([*parts, *who_computed(rows), *long_cases(kept), *relations(), *trials(book)])
 
 
-def write_book(rows: list[Found], before: str) -> None:
-    """All pages, plots and the table of model uncertainty; `before`: the former overview."""
+def write_book(rows: list[Found], before: str, kept: dict[str, Any]) -> None:
+    """All pages, plots and the table of model uncertainty; `before`: the former overview; `kept`: results with their times."""
     draw(rows)
     draw_strategies(rows)
-    BOOK.write_text(overview(rows, before), encoding="utf-8")
+    BOOK.write_text(overview(rows, before, kept), encoding="utf-8")
     for old in PLOTS.glob("*.md"):
         old.unlink()
     for strategy in strategies():
@@ -536,11 +559,13 @@ def find(case: Case, kept: dict[str, Any], computed_by: str) -> list[Found]:
     if found is not None and not any(row.older for row in found):
         return found
     values: dict[int, Any] = {}
+    begun = time.perf_counter()
     for change in dict.fromkeys(row.change for row in case.rows):
         results = results_of(case, change)
         values |= {i: pick(results, row.quantity) for i, row in enumerate(case.rows) if row.change == change}
     ordered = [values[i] for i in range(len(case.rows))]
-    kept[case.name] = {"program": computed_by, **asked_of(case), "values": ordered}
+    seconds = round(time.perf_counter() - begun, 1)
+    kept[case.name] = {"program": computed_by, **asked_of(case), "values": ordered, "seconds": seconds}
     KEPT.parent.mkdir(exist_ok=True)
     KEPT.write_text(json.dumps(kept), encoding="utf-8")
     return [Found(case.name, row, value) for row, value in zip(case.rows, ordered, strict=True)]
@@ -599,7 +624,7 @@ def main() -> int:
             print(case.name, flush=True)
     rows += tested_walls(kept, computed_by, not options.pages)
     assert set(TITLES) == set(KINDS)
-    write_book(rows, before)
+    write_book(rows, before, kept)
     wrong = sum(found.wrong for found in rows)
     print(f"docs/verification.md: {len(rows)} rows, {wrong} differ")
     return wrong

@@ -108,3 +108,10 @@ def test_a_series_of_tests_is_judged_by_its_statistics() -> None:
     (line,) = book.statistics_of(series)
     assert (line["count"], line["bias"]) == (2, "1.0000")
     assert "±" not in book.line(series[0]) and "differs" not in book.line(series[0])
+
+
+def test_the_book_states_the_time_of_long_cases() -> None:
+    kept = {"a/quick": {"seconds": 2.0}, "b/long": {"seconds": 75.4}, "c/older": {}}
+    text = "\n".join(book.long_cases(kept))
+    assert "| b/long | 75 |" in text and "a/quick" not in text and "c/older" not in text
+    assert book.long_cases({}) == []
