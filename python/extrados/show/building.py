@@ -233,8 +233,19 @@ def _section(deck: dict[str, Any], drawing: dict[str, Any], folder: Path, words:
     )
 
 
+def heading(deck: dict[str, Any]) -> str:
+    """The title of a deck, else the name of its file, or that of its folder where the file is called after no building."""
+    path = Path(deck["path"])
+    name = path.absolute().parent.name if path.stem.lower() in NAMELESS else path.stem
+    return str(deck.get("title") or name or "extrados run")
+
+
 def _titled(deck: dict[str, Any]) -> str:
-    return printable(str(deck.get("title") or Path(deck["path"]).stem or "extrados"))
+    return printable(heading(deck))
+
+
+#: Names of files that are called after no building
+NAMELESS = ("deck", "common", "summary")
 
 
 def _blocks(words: Language, count: int) -> str:

@@ -16,7 +16,7 @@ from extrados.results.store import STORE, SUMMARY, Stored
 from extrados.results.strengthen import size_told
 from extrados.results.validity import validity_of
 from extrados.results.verdict import outcome_words
-from extrados.show.building import name_of
+from extrados.show.building import heading, name_of
 from extrados.show.document import Block, Code, Document, Figure, Heading, Table, Words
 from extrados.show.language import Language
 from extrados.show.opening import governing_figure, opening, title_of
@@ -130,11 +130,6 @@ def _foreign(words: Language) -> str:
 def _code_of(run: Stored) -> str:
     """The code of the report, where an analysis applies one."""
     return next((r.code for a in run.analyses if isinstance(r := run[a["name"]], Checked) and r.code), "")
-
-
-def heading(deck: dict[str, Any]) -> str:
-    """The title of a deck, else the name of its file."""
-    return str(deck.get("title") or Path(deck["path"]).stem or "extrados run")
 
 
 def kind_of(deck: dict[str, Any]) -> str:
