@@ -14,6 +14,7 @@ from extrados.model.dimensions import dimensions
 from extrados.results import validity
 from extrados.results.store import StoreError
 from extrados.show import html, typeset
+from extrados.show.building import heading
 from extrados.show.document import Code, Document, Heading, Table, Words
 from extrados.show.language import Language
 from extrados.show.report import write_report
@@ -366,3 +367,9 @@ def test_an_arch_is_not_carried_on_into_the_pier_and_the_next_arch() -> None:
     made = read_deck(CASES / "limit/church.toml").structure.assembly(2000.0, CASES / "limit")
     found = {d.name: d.length for d in dimensions(made)}
     assert found["clear span of chain 3"] == pytest.approx(7.2, abs=0.02)
+
+
+def test_a_report_of_a_nameless_deck_is_called_after_its_folder() -> None:
+    assert heading({"path": "bridges/leno/deck.toml"}) == "leno"
+    assert heading({"path": "bridges/leno.toml"}) == "leno" and heading({"path": ""}) == "extrados run"
+    assert heading({"path": "bridges/leno/deck.toml", "title": "The Leno bridge"}) == "The Leno bridge"

@@ -11,7 +11,7 @@ import extrados
 from extrados import kinds
 from extrados.decks.words import LANGUAGES
 from extrados.model.properties import Joints, Material, Supports
-from extrados.model.structures.bridge import Abutment, Backing, Fill, Pier, Span, Surfacing
+from extrados.model.structures.bridge import Abutment, Backing, Fill, Pier, Span, Spandrels, Surfacing
 from extrados.results.validity import validity_of
 from extrados.results.verdict import CHECKED
 from extrados.schema.code import Code
@@ -20,7 +20,7 @@ from extrados.show.building import DIMENSIONS
 from extrados.show.language import NAMES, Language, catalogue
 from extrados.show.opening import OUTCOMES, TITLES
 from extrados.show.report import write_report
-from extrados.show.telling import FACTORS, GROUPS
+from extrados.show.telling import FACTORS, GROUPS, SERVICE
 from extrados.show.template import ENTRIES
 from extrados.show.verification import COLUMNS
 
@@ -42,10 +42,17 @@ def fixed() -> Iterator[str]:
                 )
     for kind in kinds.ANALYSES:
         yield from (TITLES[kind], *validity_of(kind))
-    yield from (*OUTCOMES.values(), *DIMENSIONS, *FACTORS.values(), *ENTRIES.values(), *(label for label, _ in GROUPS))
+    yield from (
+        *OUTCOMES.values(),
+        *DIMENSIONS,
+        *FACTORS.values(),
+        *SERVICE.values(),
+        *ENTRIES.values(),
+        *(label for label, _ in GROUPS),
+    )
     yield from (*CHECKED.values(), *(text for text in COLUMNS if "*" not in text))
     yield from (f"The capacity is {one} bound." for one in ("an upper", "a lower"))
-    for table in (Material, Joints, Supports, Code, Span, Pier, Abutment, Backing, Fill, Surfacing):
+    for table in (Material, Joints, Supports, Code, Span, Pier, Abutment, Backing, Fill, Surfacing, Spandrels):
         yield from (key.replace("_", " ") for key in table.model_fields)
 
 

@@ -39,6 +39,7 @@ def test_even_loads_are_those_of_the_rail_models(train: str) -> None:
     np.testing.assert_allclose(even, [[0.0, length, load], [length + gap, 2.0 * length + gap, load]])
 
 
+CASES = Path(__file__).parents[2] / "cases"
 BRIDGE = {
     "kind": "bridge",
     "depth": 4.0,
@@ -156,3 +157,12 @@ def test_a_drawn_arch_under_fill_carries_what_the_bridge_of_its_sizes_carries() 
     whole, polygons = (extrados.run({**deck, "structure": one})["moving-load"] for one in (deck["structure"], drawn))
     assert polygons.adequacy_factor == pytest.approx(whole.adequacy_factor, rel=1e-6)
     assert polygons.chain is None and not polygons.violated
+
+
+@pytest.mark.verify
+def test_the_report_names_factors_of_the_permissible_limit_state_and_no_keys(tmp_path: Path) -> None:
+    run = extrados.run(CASES / "bridge" / "surveyed.toml", out=tmp_path / "run", figures=True)
+    assert run["moving-load"].permissible_factor > 1.0
+    page = (tmp_path / "run" / "report.html").read_text()
+    assert "permissible stress / compressive strength" in page and "Outcome: open." in page
+    assert "contact_tolerance (6 mm)" not in page and "contact tolerance (6 mm)" in page

@@ -50,9 +50,9 @@ MovingSupports = Validity(
 MovingLoad = Validity(
     "Rigid blocks whose joints carry no tension resist a load that stands still, in the plane of the section. Fill acts by its "
     "weight, its spreading of loads and its passive pressure, as the deck states them.",
-    "Collapse alone is considered: fatigue, permanent damage in service, braking forces and dynamic effects beyond the stated "
-    "factor are not. Skew, spandrel walls and spreading across the bridge are not modelled. A ring without fill and backing is no "
-    "model of a bridge.",
+    "Collapse is considered, and damage in service only by a permissible limit state of the deck. Braking forces and dynamic "
+    "effects beyond the stated factor are not. Skew, the strength of spandrel walls and spreading across the bridge are not modelled. A "
+    "ring without fill and backing is no model of a bridge.",
 )
 Rocking = Validity(
     "The structure moves as one rigid-body mechanism, that of limit analysis, without sliding. Impacts lose energy by the rule of "

@@ -57,8 +57,14 @@ def _drawing(deck: Deck) -> dict[str, Any]:
             "start": _rounded(earth.line.start), "end": _rounded(earth.line.end), "formation": round(earth.formation, 4),
             "road": round(earth.road, 4),
         },
-        "depth_m": float(assembly.depth), "crown_m": None if crown is None else float(crown),
+        "depth_m": float(assembly.depth), "spandrel_m": _spandrel(deck.structure), "crown_m": None if crown is None else float(crown),
     }  # fmt: skip
+
+
+def _spandrel(structure: Any) -> float:
+    """Thickness of a spandrel wall [m], 0 without."""
+    walls = getattr(structure, "spandrels", None)
+    return 0.0 if walls is None else float(walls.thickness)
 
 
 def _rounded(points: Any) -> list[list[float]]:

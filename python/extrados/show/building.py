@@ -198,16 +198,14 @@ def _section(deck: dict[str, Any], drawing: dict[str, Any], folder: Path, words:
         if earth is not None:
             _earth(sheet, section, earth)
             top = max((b for _, b in pieces), default=earth["formation"])
-            for a, b, colour in ((top, earth["formation"], FILL), (earth["formation"], earth["road"], PAVED)):
+            wall = drawing.get("spandrel_m", 0.0)
+            level = earth["formation"]
+            for a, b, colour in ((top, level, FILL), (level, earth["road"], PAVED)):
                 if b > a:
-                    sheet.fill(
-                        across,
-                        [[0, a], [depth, a], [depth, b], [0, b]],
-                        colour,
-                        edgecolor=style.EDGE,
-                        linewidth=0.3,
-                        zorder=1,
-                    )
+                    box = [[0, a], [depth, a], [depth, b], [0, b]]
+                    sheet.fill(across, box, colour, edgecolor=style.EDGE, linewidth=0.3, zorder=1)
+            for left, right in ((0.0, wall), (depth - wall, depth)) if wall else ():
+                sheet.stone(across, [[left, top], [right, top], [right, level], [left, level]], thin)
         for outline in outlines:
             sheet.stone(section, outline, thin)
         for a, b in pieces:
@@ -235,8 +233,19 @@ def _section(deck: dict[str, Any], drawing: dict[str, Any], folder: Path, words:
     )
 
 
+def heading(deck: dict[str, Any]) -> str:
+    """The title of a deck, else the name of its file, or that of its folder where the file is called after no building."""
+    path = Path(deck["path"])
+    name = path.absolute().parent.name if path.stem.lower() in NAMELESS else path.stem
+    return str(deck.get("title") or name or "extrados run")
+
+
 def _titled(deck: dict[str, Any]) -> str:
-    return printable(str(deck.get("title") or Path(deck["path"]).stem or "extrados"))
+    return printable(heading(deck))
+
+
+#: Names of files that are called after no building
+NAMELESS = ("deck", "common", "summary")
 
 
 def _blocks(words: Language, count: int) -> str:

@@ -32,6 +32,8 @@ TITLES = {
 }  # fmt: skip
 #: A safety factor below this is thin
 THIN = 1.5
+#: Analyses that the table of the first page lists
+MOST = 8
 
 
 def opening(run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | None, words: Language) -> list[Block]:
@@ -97,12 +99,11 @@ def _conclusion(run: Stored, lead: dict[str, Any], words: Language) -> str:
         return r.conclusion()
     first, *rest = re.split(r"(?<=\.) (?=[A-Z])", str(v["statement"]))
     # the strategies one by one and their reasons follow in the table and behind the contents
-    least = rest
-    if isinstance(r, Assess):
-        # a static probability beside a dynamic one would be read as that of the earthquake
-        kept = STATIC if r.collapse_probability.in_motion is None else DYNAMIC
-        least = [one for one in rest if one.startswith(kept)]
-    return " ".join([first, *least])
+    if not isinstance(r, Assess):
+        return " ".join([words("Outcome: {outcome}.", outcome=OUTCOMES[v["outcome"]]), first, *rest])
+    # a static probability beside a dynamic one would be read as that of the earthquake
+    kept = STATIC if r.collapse_probability.in_motion is None else DYNAMIC
+    return " ".join([first, *(one for one in rest if one.startswith(kept))])
 
 
 def title_of(words: Language, name: str, kind: str) -> str:
@@ -131,6 +132,18 @@ def _comparison(run: Stored, lead: dict[str, Any], words: Language) -> Table:
     verified = getattr(r, "verification", None)
     if verified is not None and verified.checks:
         return Table(tuple(map(words, COLUMNS)), rows_of(verified), WIDTHS)
+    judged = [a for a in run.analyses if a["verdict"]]
+    if len(judged) > 1 and not isinstance(r, Checked):
+        rows = [
+            (title_of(words, a["name"], a["kind"]), words(OUTCOMES[w["outcome"]]), number(w["demand"], w["unit"]),
+             number(w["capacity"], w["unit"]), number(w["ratio"], ""))
+            for a in [lead, *(a for a in judged if a is not lead)][:MOST] for w in [a["verdict"]]
+        ]  # fmt: skip
+        return Table(
+            tuple(map(words, ("analysis", "verdict", "demand", "capacity", "safety factor"))),
+            rows,
+            (2.6, 1.3, 1.2, 1.2, 1.2),
+        )
     head: tuple[str, ...] = tuple(map(words, ("demand", "capacity", "safety factor")))
     row: tuple[str, ...] = (number(v["demand"], v["unit"]), number(v["capacity"], v["unit"]), number(v["ratio"], ""))
     if isinstance(r, Checked) and r.clause:

@@ -4,8 +4,9 @@ from pathlib import Path
 
 from extrados.results.assess import Assess
 from extrados.results.store import Stored
+from extrados.show.building import heading
 from extrados.show.document import Block, Document, Figure, Heading, Table, Words
-from extrados.show.telling import cell, heading, kind_of
+from extrados.show.telling import cell, kind_of
 
 
 def document(

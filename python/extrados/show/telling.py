@@ -16,7 +16,7 @@ from extrados.results.store import STORE, SUMMARY, Stored
 from extrados.results.strengthen import size_told
 from extrados.results.validity import validity_of
 from extrados.results.verdict import outcome_words
-from extrados.show.building import name_of
+from extrados.show.building import heading, name_of
 from extrados.show.document import Block, Code, Document, Figure, Heading, Table, Words
 from extrados.show.language import Language
 from extrados.show.opening import governing_figure, opening, title_of
@@ -37,6 +37,11 @@ GROUPS = (
 FACTORS = {
     "masonry": "weight of masonry", "fill": "weight of fill", "surfacing": "weight of surfacing", "live": "live load",
     "dynamic": "dynamic factor", "strength": "compressive strength", "friction": "friction",
+}  # fmt: skip
+#: Of moving-load: keys of its permissible limit state
+SERVICE = {
+    "live": "live load, permissible limit state", "strength_share": "permissible stress / compressive strength",
+    "passive_share": "passive pressure, permissible limit state / collapse",
 }  # fmt: skip
 
 
@@ -127,15 +132,12 @@ def _code_of(run: Stored) -> str:
     return next((r.code for a in run.analyses if isinstance(r := run[a["name"]], Checked) and r.code), "")
 
 
-def heading(deck: dict[str, Any]) -> str:
-    """The title of a deck, else the name of its file."""
-    return str(deck.get("title") or Path(deck["path"]).stem or "extrados run")
-
-
 def kind_of(deck: dict[str, Any]) -> str:
     """The kind of structure in words, "" of a deck without one."""
     structure = deck["resolved"].get("structure") or {}
     kind = str(structure.get("kind", "")).replace("-", " ")
+    if kind == "blocks" and structure.get("fill"):
+        return "bridge"
     return "assembly of blocks" if kind == "blocks" else kind
 
 
@@ -313,6 +315,13 @@ def _counts(p: dict[str, Any], used: set[str]) -> bool:
     return bool(p["from"] != "default")
 
 
+def _without_keys(text: str, keys: set[str]) -> str:
+    """A sentence with the keys of the deck in words: "contact tolerance" for contact_tolerance."""
+    return re.sub(
+        r"[a-z]+(?:_[a-z]+)+", lambda found: found[0].replace("_", " ") if found[0] in keys else found[0], text
+    )
+
+
 def _defaults(deck: dict[str, Any], words: Language) -> list[Block]:
     """Properties of the building that the deck leaves at their defaults."""
     rows = [p for p in deck.get("properties", []) if p["from"] == "default" and p["table"] != "motion"]
@@ -342,7 +351,7 @@ def _properties(rows: list[dict[str, Any]], words: Language) -> Table:
 
     english = words.code == "en"
     told = [
-        (label_of(words, p["table"], p["key"]), value(p), *((p["about"],) if english else ()), words(p["from"]))
+        (label_of(words, p["table"], p["key"]), value(p), *((p["about"].replace("`", ""),) if english else ()), words(p["from"]))
         for p in rows
     ]  # fmt: skip
     head = _heads(words, "property", "value", *(("meaning",) if english else ()), "from")
@@ -378,6 +387,7 @@ def _analysis(run: Stored, a: dict[str, Any], figures: Figures, words: Language)
         "",
     ).partition(": ")[2]
     foreign = _foreign(words)
+    keys = {p["key"] for p in run.summary["deck"].get("properties", [])}
     found: list[Block] = [Heading(title_of(words, a["name"], a["kind"]))]
     if how:
         found.append(Words(f"{words('Settings')}: {how}."))
@@ -385,7 +395,7 @@ def _analysis(run: Stored, a: dict[str, Any], figures: Figures, words: Language)
         found.append(Words(f"{a['status']}: {a['reason']}", "bad", foreign))
     if a["answer"] and a["kind"] != "assess":
         found.append(Words(_engineering(a["answer"]), "answer", foreign))
-    found += [Words(f"{words('Warning')}: {w}", "warn", foreign) for w in a["warnings"]]
+    found += [Words(f"{words('Warning')}: {_without_keys(w, keys)}", "warn", foreign) for w in a["warnings"]]
     found += [Figure(f"figures/{name}", caption) for name, caption in figures]
     found += _stresses(run, a, words)
     found += [table for kind, name, table in _own_tables(run, words) if name == a["name"]]
@@ -458,6 +468,9 @@ def _factors(run: Stored, deck: dict[str, Any], words: Language) -> list[Block]:
             if isinstance(found := (keys.get("factors") or {}).get(key), int | float):
                 rows.append((title, words(label), words.given(float(found))))
                 values.append(float(found))
+        for key, label in SERVICE.items():
+            if isinstance(found := (keys.get("serviceability") or {}).get(key), int | float):
+                rows.append((title, words(label), words.given(float(found))))
         for label, found in (
             ("confidence factor", getattr(r, "confidence_factor", None)),
             ("behaviour factor", getattr(r, "behaviour_factor", None)),

@@ -105,13 +105,14 @@ def markup(document: Document, folder: Path) -> str:
 def _set(blocks: list[Block], folder: Path, words: Language) -> list[str]:
     """Blocks in the language of typst."""
     lines = []
-    for block in blocks:
+    for block, after in zip(blocks, [*blocks[1:], None], strict=False):
         if isinstance(block, Heading):
             if block.fresh:
                 lines.append("#pagebreak(weak: true)")
             lines.append(f"#heading(level: {block.level}, {text_of(block.text)})")
         elif isinstance(block, Words):
-            lines.append(_paragraph(block))
+            kept = isinstance(after, Table) and not block.look
+            lines.append(f"#block(sticky: true)[{_paragraph(block)}]" if kept else _paragraph(block))
         elif isinstance(block, Table):
             lines.append(_table(block, words))
         elif isinstance(block, Figure):
