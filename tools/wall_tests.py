@@ -293,7 +293,7 @@ def by_macro_element(wall: Wall) -> dict[str, Predicted]:
 
 
 def _pier(wall: Wall, law: str) -> Predicted:
-    """Strength, and drifts at which 99 % of it is reached and at which it falls below 80 %."""
+    """Strength, and drifts at which 99 % of it is reached and at which it drops below 80 %."""
     from extrados.core.frame import STATE, Frame, MacroElement
 
     double = wall.span < 0.75
