@@ -297,7 +297,7 @@ def by_macro_element(wall: Wall) -> dict[str, Predicted]:
 
 
 def _pier(wall: Wall, law: str) -> Predicted:
-    """Strength, and drifts at which 99 % of it is reached and at which it falls below 80 %. Without an initial shear strength a pier
+    """Strength, and drifts at which 99 % of it is reached and at which it drops below 80 %. Without an initial shear strength a pier
     fails diagonally, whatever the law."""
     from extrados.core.frame import STATE, Frame, MacroElement
 

@@ -129,6 +129,9 @@ class FramePushover(KindResults):
             row.name for row in self.runs if row.stop.startswith("no equilibrium") and row.drop_displacement_m is None
         ]
         text = f"The frame carries a base shear of {self.base_shear_N / 1e3:.3g} kN ({self.governing})."
+        if self.out_of_plane is not None and self.out_of_plane.outcome in ("collapses", "cannot-stand"):
+            factor = "" if self.out_of_plane.factor is None else f" (safety factor {self.out_of_plane.factor:.3g})"
+            text += f" A wall does not satisfy its check out of plane{factor}. {self.out_of_plane.statement}"
         if self.verification is not None and self.verification.decides:
             return self.verification.judged(text)
         if lost:

@@ -154,7 +154,7 @@ Assess = Validity(
 )
 Modes = Validity(
     "Blocks are rigid; their elasticity and that of the joints lies in springs along the joints, which are all closed.",
-    "Frequencies are those of small vibration: joints that open lower them. Soil and neighbouring walls are rigid where they hold the blocks.",
+    "Frequencies are those of small vibration: joints that open lower them. Soil and neighbouring walls are rigid supports.",
 )
 FrameModes = Validity(
     "Piers and spandrels vibrate about the equilibrium under the weight. Walls have no stiffness out of their planes.",

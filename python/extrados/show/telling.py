@@ -473,6 +473,7 @@ def _factors(run: Stored, deck: dict[str, Any], words: Language) -> list[Block]:
                 rows.append((title, words(label), words.given(float(found))))
         for label, found in (
             ("confidence factor", getattr(r, "confidence_factor", None)),
+            ("confidence factor", getattr(getattr(r, "verification", None), "confidence_factor", None)),
             ("behaviour factor", getattr(r, "behaviour_factor", None)),
         ):
             if isinstance(found, int | float):

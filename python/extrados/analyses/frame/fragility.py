@@ -96,7 +96,7 @@ def _moved(frame: EquivalentFrame, options: FrameFragility, motion: Motion, scal
         _, damping = damped(frame, core, options)
         path = core.move(frame.unit(way), scale * motion.sample(time), options.time_step, damping)
     if path.stop == "no equilibrium under the weight":
-        raise Refused("the frame has no equilibrium under its weight")
+        raise Refused("the frame has no equilibrium under its weight", ("structure", "walls"))
     return {
         "exceeded": np.array(exceeded(frame, path, way), np.int8), "drift": float(path.drift[:, frame.piers_at].max()),
         "displacement": float(np.abs(control_of(frame, path, way)).max()), "shear": float(np.abs(path.shear).max()),
@@ -220,7 +220,7 @@ def _by_histories(context: Context, options: FrameFragility, job: Histories, mot
     _tell_lost(rows["reason"], "histories", result)
     good = rows["reason"] == ""
     if not good.any():
-        raise Refused(f"no history has a result; the first: {rows['reason'][0]}")
+        raise Refused(f"no history has a result; the first: {rows['reason'][0]}", ("motion",))
     x, hit, drift = rows["intensity"][good], rows["exceeded"][good].astype(bool), rows["drift"][good]
     states = []
     for k, state in enumerate(STATES):

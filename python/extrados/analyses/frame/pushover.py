@@ -122,7 +122,9 @@ def run(context: Context, options: FramePushover) -> Result:
         result.status, result.reason = "interrupted", "interrupted; the curves up to then are kept"
     result.answer = _answer(result.results)
     if verified is not None and verified.decides:
-        result.answer = f"{verified.judged('').statement.strip()} {result.answer}"
+        walls = result.results.out_of_plane
+        lost = walls is not None and walls.outcome in ("collapses", "cannot-stand")
+        result.answer = f"{verified.judged('').statement.strip()} {f'Out of plane: {walls.statement} ' if lost else ''}{result.answer}"
     return result
 
 
