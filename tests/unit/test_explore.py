@@ -471,7 +471,7 @@ def test_drawn_blocks_are_a_deck_that_keeps_the_rest_of_it(session: Session) -> 
     square = {"name": "pier", "points": [[0, 0], [1, 0], [1, 2], [0, 2]]}
     (first,) = do(session, do="draw", blocks=[square], ground=[], fresh=True)
     assert first.words["scene"]["capacity"]["plus_g"] == pytest.approx(0.5)
-    text = session.document.text.replace('name = "pier"', 'name = "pier"  \ndensity = "1.8 t/m^3"').replace(
+    text = session.document.text.replace('name = "pier"', 'name = "pier"  \ndensity = "1.8 t/m^3"  # weighed').replace(
         "2.0", '"200 cm"'
     )
     do(session, do="open", text=f"# mine\n{text}", here="same")
@@ -481,7 +481,7 @@ def test_drawn_blocks_are_a_deck_that_keeps_the_rest_of_it(session: Session) -> 
     (second,) = do(session, do="draw", blocks=[square, top], ground=[[0, 0, 1, 0]])
     assert second.words["scene"]["capacity"]["plus_g"] == pytest.approx(1 / 3, rel=0.05)
     now = session.document.text
-    assert now.startswith("# mine") and '"200 cm"' in now and '"1.8 t/m^3"' in now and "ground = " in now
+    assert now.startswith("# mine") and '"200 cm"' in now and '"1.8 t/m^3"  # weighed' in now and "ground = " in now
     (apart,) = do(session, do="draw", blocks=[square, {**top, "points": [[5, 2], [6, 2], [6, 3]]}], ground=[])
     assert "block 1" in apart.words["trouble"][0] and "ground" not in apart.words["draft"]
     assert session.document.text == now

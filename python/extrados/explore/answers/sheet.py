@@ -1,9 +1,11 @@
 """The sheet on which blocks are drawn: the blocks of a deck for the page, and drawn blocks as the text of a deck."""
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
 import tomlkit
+from tomlkit.items import Table as TomlTable
 
 from extrados.decks.reader import DeckError
 from extrados.explore.answers.decks import open_deck
@@ -14,6 +16,8 @@ from extrados.model.structures.blocks import Blocks
 
 #: Blocks and vertices of a sheet, supports of it; characters of a name
 MOST_BLOCKS, MOST_VERTICES, MOST_SUPPORTS, LONGEST_NAME = 1000, 8000, 200, 80
+#: Blank lines before a block, which tomlkit adds at each change
+SPACED = re.compile(r"\n{3,}\[\[structure\.block\]\]")
 BLANK = """title = "A drawing"
 
 [structure]
@@ -74,18 +78,25 @@ def _text(desk: Desk, blocks: list[tuple[str, list[list[float]]]], ground: list[
     made = tomlkit.parse(BLANK if fresh else desk.document.text)
     structure: Any = made["structure"]
     table = None if fresh else _drawn(desk)
-    written = list(structure.get("block", []))
-    before = {}
-    for k, (row, raw) in enumerate(zip((table.block if table else None) or [], written, strict=False)):
-        before[row.name or f"block {k + 1}"] = (row.points, raw)
+    before: dict[str, list[tuple[int, Any, Any]]] = {}
+    for k, (row, raw) in enumerate(
+        zip((table.block if table else None) or [], structure.get("block", []), strict=False)
+    ):
+        before.setdefault(row.name or f"block {k + 1}", []).append((k, row.points, raw))
     rows = tomlkit.aot()
-    for name, points in blocks:
-        was, raw = before.get(name, (None, None))
-        row = tomlkit.table()
-        row.update(raw.unwrap() if raw is not None else {"name": name})
+    for k, (name, points) in enumerate(blocks):
+        place, was, raw = before[name].pop(0) if before.get(name) else (None, None, None)
+        if was == points and place == k and isinstance(raw, TomlTable):  # with its comments
+            rows.append(raw)
+            continue
+        made_row = tomlkit.table()
+        made_row.update(raw.unwrap() if raw is not None else {})
+        if place != k:  # a name that followed from the place no longer does
+            made_row["name"] = name
         if was != points:
-            row["points"] = [[round(v, 6) for v in point] for point in points]
-        rows.append(row)
+            made_row["points"] = [[round(v, 6) for v in point] for point in points]
+        made_row.add(tomlkit.nl())
+        rows.append(made_row)
     if ground != ((table.ground if table else None) or []):
         structure.pop("ground", None)
         if ground:
@@ -93,4 +104,4 @@ def _text(desk: Desk, blocks: list[tuple[str, list[list[float]]]], ground: list[
     structure.pop("block", None)
     if blocks:
         structure["block"] = rows
-    return tomlkit.dumps(made)
+    return SPACED.sub("\n\n[[structure.block]]", tomlkit.dumps(made))
