@@ -39,7 +39,7 @@ class Trial:
         """Keep the numbers of a whole trial; AssertionError where something did not hold or too little was tried.
 
         keep: whether this one is whole, where that is not a question of the share."""
-        if SHARE > 0.0 if keep is None else keep:
+        if SHARE >= 1.0 if keep is None else keep:
             NOTES.mkdir(parents=True, exist_ok=True)
             row = {"what": self.what, "tried": self.tried, "failures": len(self.failures), "notes": self.notes}
             (NOTES / f"{self.name}.json").write_text(json.dumps(row, indent=1), encoding="utf-8")
