@@ -44,7 +44,7 @@ EFFECTS: tuple[tuple[Deck, str, Deck, Deck], ...] = (
     (ARCH, "moving-load", {"count": 9, "axles": [0.0, 0.5]}, {"force": 1e4, "shares": [1.0, 3.0]}),
     (ARCH, "supports", {"steps": 20, "settle": 0.3}, {"spread": 0.5, "settle": -0.3, "steps": 30}),
     (FRAMED, "supports", {"settle": 0.3}, {"spread": 0.5, "settle": -0.3, "movement": 0.01}),
-    (ARCH, "failure-domain", {"durations": [0.5, 1.0], "amplitudes": 5, "accuracy": 1e-3}, {
+    (ARCH, "failure-domain", {"durations": [0.5, 1.0], "amplitudes": 5, "accuracy": 1e-3, "hand_over_cells": 0}, {
         "pulse": "sine", "amplitudes": 7, "durations": [0.6, 1.1], "max_amplitude": "1.2 g", "at_amplitudes": ["1.3 g"], "accuracy": 0.02}),
     ({**BLOCK, "motion": SET}, "fragility", {"count": 5, "bootstrap": 0}, {
         "form": "linear", "count": 6, "seed": 9, "cloud": True, "histories": 2, "confidence": 0.8, "bins": 9, "tolerance": 1e-4, "durations": [1.0, 2.0],
