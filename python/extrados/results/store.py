@@ -385,7 +385,7 @@ class Stored:
         return self._typed[name]
 
     def results_of(self, name: str, model: type[Model]) -> Model:
-        """The results of an analysis as a model of its kind; TypeError where it gave others."""
+        """The results of an analysis by its name as a model of its kind; TypeError if it gave others."""
         return as_model(self[name], model)
 
     def analysis(self, name: str) -> dict[str, Any]:

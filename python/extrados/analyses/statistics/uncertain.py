@@ -147,8 +147,12 @@ def _model(building: Building, options: Fragility, factor: dict[str, float], see
     }
     base = {name: getattr(building.supports, name) * factor[name] for name in BASE if name in factor}
     if "corners" in factor:
-        factor_of_joints: float = getattr(structure, "thickness_factor", 1.0)
-        left = 1.0 - (1.0 - factor_of_joints) * factor["corners"]
+        given: float | None = getattr(structure, "thickness_factor", None)
+        if given is None:
+            raise NoView(
+                f"a structure of kind '{structure.kind}' has no worn corners", ("analysis", "uncertain", "corners")
+            )
+        left = 1.0 - (1.0 - given) * factor["corners"]
         if left <= 0.0:
             raise NoView("its corners are worn away", ("analysis", "uncertain", "corners"))
         update["thickness_factor"] = left
