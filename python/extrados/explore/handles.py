@@ -499,7 +499,7 @@ def tie_handles(ties: list[Tie], assembly: Assembly) -> Iterator[Handle]:
                 return put(point, tie.far) if which == "start" else put(tie.start, point)
 
             yield Handle(
-                f"tie-{i}-{which}", f"{which.capitalize()} of {name}", "m", *place, list(place), lambda x, y: [x, y], led, "both",
+                f"tie-{i}-{which}", f"{which.capitalize()} of {name}", "m", place[0], place[1], list(place), lambda x, y: [x, y], led, "both",
                 least=-math.inf,
             )  # fmt: skip
 

@@ -66,10 +66,8 @@ class Scene:
         self.centroid, self.place, self.rate = (get[k].numbers for k in ("centroid", "place", "rate"))
         self.p, self.q, self.hinge = (get[k].numbers for k in ("joint_p", "joint_q", "hinge"))
         self.owner = _block_of_joint(run, name)
-        ties = ("tie_block", "tie_point") if "tie_block" in get else ()
-        self.tie_block, self.tie_point = (
-            (get[k].numbers for k in ties) if ties else (np.empty((0, 2), int), np.empty((0, 2, 2)))
-        )
+        self.tie_block: np.ndarray = get["tie_block"].numbers if "tie_block" in get else np.empty((0, 2), int)
+        self.tie_point: np.ndarray = get["tie_point"].numbers if "tie_point" in get else np.empty((0, 2, 2))
         self.window = _window(run, name, picks)
 
     @property

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.patches import Patch, Rectangle
 
-from extrados.results.frame import FrameModes, FramePushover
+from extrados.results.frame import FrameFragility, FrameModes, FramePushover
 from extrados.results.store import Stored
 from extrados.show import style
 from extrados.show.verification import draw_verification
@@ -161,7 +161,7 @@ def draw_history(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
 
 def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Curves of the limit states over the intensity; of histories the runs: drift over intensity."""
-    r, grid = run[name], run.array(name, "grid")
+    r, grid = run.results_of(name, FrameFragility), run.array(name, "grid")
     history = r.method == "history"
     made = 1 + int(history)
     with style.figure(3.6 * made, 3.0, 1, made) as (fig, axes):

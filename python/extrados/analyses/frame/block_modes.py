@@ -66,7 +66,7 @@ def run(context: Context, options: Modes) -> Result:
     moving = unit.T @ mass @ unit
     shares = (unit.T @ mass @ shapes) ** 2 / np.diag(moving)[:, None]
     rows = [
-        {"frequency_Hz": float(f), "period_s": 1.0 / float(f), "mass_ratio_x": float(x), "mass_ratio_y": float(y)}
+        out.FrameMode(frequency_Hz=float(f), period_s=1.0 / float(f), mass_ratio_x=float(x), mass_ratio_y=float(y))
         for f, x, y in zip(np.sqrt(values) / (2.0 * np.pi), *shares, strict=True)
     ]
     result.results = out.Modes(modes=rows, moving_mass_kg=float(moving[0, 0]), blocks=len(blocks.mass))

@@ -22,6 +22,7 @@ from extrados.analyses.frame.sampled import Sample, sample_of
 from extrados.analyses.frame.tables import FrameFragility, FramePushover
 from extrados.analyses.frame.verified import capacity_curve_of
 from extrados.analyses.motion_source import Source, measures, source_of
+from extrados.analyses.sla.curve import Bilinear
 from extrados.analyses.statistics import likelihood
 from extrados.analyses.statistics.likelihood import NoFit
 from extrados.analyses.statistics.summaries import wilson
@@ -353,7 +354,7 @@ def _carried(ground: Ground, options: FrameFragility, rows: dict[str, np.ndarray
     ):
         if not np.isfinite(period):
             continue
-        oscillator = cc.Oscillator(1.0, gamma, cc.Bilinear(strength / start, strength, start, capacity[2] / gamma))
+        oscillator = cc.Oscillator(1.0, gamma, Bilinear(strength / start, strength, start, capacity[2] / gamma))
         factors.append([cc.n2_factor(oscillator, spectrum, corner, d / gamma) for d in capacity])
     least = np.min(factors, axis=0) if factors else np.full(3, np.nan)
     return np.asarray(intensity_of(ground, options)[0] * least)

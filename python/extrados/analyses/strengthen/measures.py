@@ -130,7 +130,7 @@ class Statics:
         except (NoEquilibrium, NoAnswer) as error:
             carried = f"no load: {error}"
         return (
-            f"The target is sought for a load to {_word(self.senses[0])} alone. To {_word(sense)} the existing building carries {carried}. "
+            f"The target is sought for a load to {_word(int(self.senses[0]))} alone. To {_word(sense)} the existing building carries {carried}. "
             'An earthquake acts both ways: take direction = "both", unless something else holds that side.'
         )
 
