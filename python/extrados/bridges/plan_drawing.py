@@ -7,13 +7,16 @@ Ends of axes are extended to the axes of the walls that they meet.
 import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 
+from extrados.decks.reader import DeckError
 from extrados.model.errors import BadGeometry
+from extrados.model.files import LARGEST_FILE
 from extrados.model.geometry.drawing import Layer
 from extrados.model.geometry.dxf import read_dxf
-from extrados.schema.files import File
+from extrados.schema.files import File, read
 
 #: Thickness that two parallel faces may have between them, and the widest gap that is an opening [m]
 THIN, THICK, WIDEST = 0.08, 1.5, 3.5
@@ -44,14 +47,29 @@ class DrawnWall:
         return np.asarray((self.b - self.a) / self.length)
 
 
+def deck_of_file(
+    drawing: Path,
+    walls: Sequence[str],
+    openings: Sequence[str],
+    thickness: float | None,
+    storeys: Sequence[float],
+    unit: str | None = None,
+) -> str:
+    """`deck_of_plan` of a file; DeckError says what cannot be read."""
+    try:
+        return deck_of_plan(read(drawing, LARGEST_FILE), walls, openings, thickness, storeys, unit)
+    except BadGeometry as error:
+        raise DeckError([str(error)]) from None
+
+
 def deck_of_plan(
     file: File, walls: Sequence[str], openings: Sequence[str], thickness: float | None, storeys: Sequence[float],
     unit: str | None = None,
 ) -> str:  # fmt: skip
     """The text of a deck. walls, openings: layers of the drawing; thickness [m]: of walls that are drawn by their axes, None for
     walls drawn by their faces; storeys: heights [m]. BadGeometry says what cannot be read."""
-    read = read_dxf(file, unit, [], {name: Layer("joints") for name in (*walls, *openings)})
-    lines = _lines(read.marks, walls)
+    drawn = read_dxf(file, unit, [], {name: Layer("joints") for name in (*walls, *openings)})
+    lines = _lines(drawn.marks, walls)
     if not len(lines):
         raise BadGeometry(f"{file.path.name}: the layers {', '.join(walls)} hold no lines")
     found = joined(walls_of(lines, thickness))
@@ -61,7 +79,7 @@ def deck_of_plan(
         )
     if len(found) > MOST_WALLS:
         raise BadGeometry(f"{file.path.name}: {len(found)} walls, at most {MOST_WALLS}")
-    marks = _lines(read.marks, openings)
+    marks = _lines(drawn.marks, openings)
     return _written([_opened(wall, marks) for wall in found], bool(openings), file.path.name, storeys)
 
 

@@ -105,15 +105,11 @@ def import_plan(
     ] = None,
     storeys: Annotated[str, typer.Option("--storeys", help="heights [m] of the storeys, from the ground")] = "3.0",
     unit: Annotated[
-        str | None, typer.Option("--unit", help="of the drawing, where it has none: m, cm, mm, in, ft")
+        str | None, typer.Option("--unit", help="unit of a drawing that states none: m, cm, mm, in, ft")
     ] = None,
 ) -> None:
     """Print a deck of a building from the plan of a drawing: walls by their faces or axes, doors and windows by gaps or a layer."""
-    from extrados.bridges.plan_drawing import deck_of_plan
-    from extrados.decks.reader import DeckError
-    from extrados.model.errors import BadGeometry
-    from extrados.model.files import LARGEST_FILE
-    from extrados.schema import files
+    from extrados.bridges.plan_drawing import deck_of_file
 
     try:
         heights = [float(part) for part in storeys.split(",")]
@@ -124,9 +120,4 @@ def import_plan(
     if thickness is not None and not 0.0 < thickness < 5.0:
         raise typer.BadParameter(f"{thickness:g}: expected metres above 0 and below 5", param_hint="--thickness")
     with errors():
-        try:
-            print(
-                deck_of_plan(files.read(drawing, LARGEST_FILE), walls, openings or [], thickness, heights, unit), end=""
-            )
-        except BadGeometry as error:
-            raise DeckError([str(error)]) from None
+        print(deck_of_file(drawing, walls, openings or [], thickness, heights, unit), end="")
