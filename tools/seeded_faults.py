@@ -7,8 +7,8 @@ In Fortran and C a fault is a changed sign or operator, constant, comparison or 
 the joins of strategies alone, a changed sign, a dropped key or filter, another set of blocks, a unit factor or an outcome. Its place
 is drawn from the seed; every package gets its share. A fault counts as caught if the build, a quick test of its package or a case
 fails; with `--suite properties` if the build or the property suite alone fails (tests/properties): of Python the relations that
-run through the changed line, of the kernels those that call the changed module, the quickest first, and those whose answers change again with
-more cases. A fault that changes no answer of the suite, one that no relation runs through and one that exceeds its processor time are named. Tests that fail
+run through the changed line, of the kernels those that call the changed module, the quickest first, and those whose results change again with
+more cases. A fault that changes no result of the suite, one that no relation runs through and one that exceeds its processor time are named. Tests that fail
 without a fault are found first, and skipped. The fate of each fault is kept in the place, and an interrupted run
 continues from there; `--again` tries those anew that were not caught, after tests were written. Those that are not caught
 are printed with their place, and all are noted for the verification book. equivalent_faults.toml names faults that change
@@ -156,10 +156,10 @@ SHARED = ("asking", "buildings", "relations")
 BROKE = 2
 #: How much longer a test may take with a fault than without
 SLOWER = 5.0
-#: That with which relations are asked again whose answers change
+#: Share of the cases with which relations whose results change are repeated
 MORE = 0.3
-#: Fates of a fault that no relation finds: an answer changes, none does, no relation runs through it, the time is up
-MISSED, UNCHANGED, NOWHERE, UNDECIDED = "", "no answer of the suite changes", "no relation runs through it", "undecided"
+#: Fates of a fault that no relation finds: a result changes, none does, no relation runs through it, the time is up
+MISSED, UNCHANGED, NOWHERE, UNDECIDED = "", "no result of the suite changes", "no relation runs through it", "undecided"
 NOT_CAUGHT = (MISSED, UNCHANGED, NOWHERE, UNDECIDED)
 
 
@@ -329,11 +329,11 @@ def commands(place: Path, room: str) -> list[tuple[list[str], str]]:
 
 @dataclass(frozen=True)
 class Row:
-    """A test of the property suite without a fault: seconds of a processor, digest of its answers, the lines of Python that it runs through."""
+    """A test of the property suite without a fault: seconds of a processor, digest of its results, the lines of Python that it runs through."""
 
     test: str
     seconds: float
-    answers: str
+    results: str
     lines: frozenset[tuple[str, int]]
 
 
@@ -344,7 +344,7 @@ def _read(kept: Path) -> list[dict[str, Any]]:
 def rows_of(kept: Path) -> list[Row]:
     """The tests noted in a file, the quickest first."""
     found = [
-        Row(r["test"], r["seconds"], r["answers"], frozenset((file, n) for file, n in r["lines"])) for r in _read(kept)
+        Row(r["test"], r["seconds"], r["results"], frozenset((file, n) for file, n in r["lines"])) for r in _read(kept)
     ]
     return sorted(found, key=lambda row: row.seconds)
 
@@ -413,7 +413,7 @@ def relations_of(place: Path, fault: Fault) -> list[Row]:
 
 @cache
 def suite(place: Path, build: int) -> subprocess.Popen[str]:
-    """The property suite, loaded with a build, which waits for the faults of Python and the tests that it is asked for."""
+    """The property suite, loaded with a build, which waits for the faults of Python and the tests to run."""
     words = [apart.python(place), "-m", "pytest", "-q", "-s", "-n", "0", "-p", "no:cacheprovider", "tests/properties"]
     environment = environment_of(place / "unused", EXTRADOS_FAULTS="1")
     return subprocess.Popen(words, cwd=place, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, errors="replace")  # fmt: skip
@@ -422,9 +422,9 @@ def suite(place: Path, build: int) -> subprocess.Popen[str]:
 def asked_of(
     place: Path, build: int, fault: Fault, tests: list[Row], share: float, patience: int
 ) -> tuple[str, list[Row]]:
-    """The first of some tests that fails with a fault, or one of the `NOT_CAUGHT`, and what the tests before noted."""
+    """The first of some tests that fails with a fault, or one of the `NOT_CAUGHT`, and the notes of the tests before."""
     limits = {row.test: max(patience, SLOWER * row.seconds * share / float(SHARE)) for row in tests}
-    kept, failed, process = place / "answers.jsonl", place / "failed.txt", suite(place, build)
+    kept, failed, process = place / "results.jsonl", place / "failed.txt", suite(place, build)
     kept.unlink(missing_ok=True)
     assert process.stdin is not None and process.stdout is not None
     question = {
@@ -435,7 +435,7 @@ def asked_of(
     process.stdin.flush()
     code = next((int(text.split()[1]) for text in process.stdout if text.startswith("ended: ")), None)
     if code is None or code == BROKE:
-        raise RuntimeError(f"the property suite could not be asked about {fault}")
+        raise RuntimeError(f"the property suite did not run with {fault}")
     by = {
         0: MISSED,
         -signal.SIGPROF: "a test that does not end",
@@ -449,14 +449,14 @@ def asked_of(
 
 def failing_relation(place: Path, fault: Fault, patience: int) -> str:
     """The first test of the property suite that fails with a fault planted, the quickest first, then with more cases those
-    whose answers change, or all; else one of the `NOT_CAUGHT`."""
+    whose results change, or all; else one of the `NOT_CAUGHT`."""
     chosen = relations_of(place, fault)
     if not chosen:
         return NOWHERE
     build = 0 if fault.in_python else time.monotonic_ns()
     by, seen = asked_of(place, build, fault, chosen, float(SHARE), patience)
-    before = {row.test: row.answers for row in chosen}
-    turned = {row.test for row in seen if row.answers != before[row.test]}
+    before = {row.test: row.results for row in chosen}
+    turned = {row.test for row in seen if row.results != before[row.test]}
     changed = [row for row in chosen if row.test in turned]
     if by == MISSED:
         more, _ = asked_of(place, build, fault, changed or chosen, MORE, patience)

@@ -61,7 +61,9 @@ QUANTITIES: dict[str, tuple[str, ...]] = {
     ),
     "movement of supports": (r"movement_at_fall", r"openings\."),
     "angle of tilt": (r"tilt_angle",),
-    "capacity under live load": (r"moving-load\S*\.(?:safety_factor|adequacy_factor|collapse_load_N|status)",),
+    "capacity under live load": (
+        r"moving-load\S*\.(?:safety_factor|adequacy_factor|collapse_load_N|permissible_factor|status)",
+    ),
     "assessment": (r"^assess", r"cross_check", r"agreement$"),
     "failing amplitude or duration of a pulse": (
         r"durations_s",

@@ -1,6 +1,7 @@
 !> Runs of discrete elements, of the plane (built by api_dem) or of space (api_dem3).
 !>
-!> laws, options, rigid and ties; then start and run, as often as wanted; then summary, effort and history of the last run.
+!> laws, options, rigid and ties; then start and run, as often as wanted; then summary, effort, history and tensions of
+!> the last run.
 !> A run that pauses continues where run is called again; its state can be kept, and given to resume instead of start.
 module api_dem_run
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t

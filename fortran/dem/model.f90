@@ -273,7 +273,7 @@ contains
       call end_step(model%model_clock)
    end subroutine finish_step
 
-   !> A step that is stable for all contacts that may close, and for the ties: 2 / omega, with omega^2 below the greatest
+   !> A step that is stable for all contacts that may close, and for ties: 2 / omega, with omega^2 below the greatest
    !> eigenvalue of any body on its springs, twice as stiff where the neighbour moves too [s]
    subroutine critical_step(model, step, status)
       type(block_model), intent(inout) :: model

@@ -223,7 +223,8 @@ contains
       if (.not. gone) gone = turned > options%collapse_turn .or. dropped > options%collapse_drop
    end function slides_not
 
-   !> Greatest stable step, or any_step where neither contacts nor ties have springs, and the one to take where the options name none
+   !> Greatest stable step, or any_step where neither contacts nor ties have springs, and the one to take where the
+   !> options name none
    subroutine find_stable_step(run, stable, suitable, status)
       class(simulation), intent(inout), target :: run
       real(wp), intent(out) :: stable                !! [s]

@@ -1,5 +1,6 @@
 !> Ties, chains and hoops between blocks, in the plane and in space: one tension along a line through points that the
-!> blocks carry. The line runs over its points without friction, so that a chain or hoop has the same tension everywhere.
+!> blocks carry. The line runs over its points without friction, so that a chain or hoop has the same tension
+!> everywhere.
 !>
 !> With the length L of the line and L_0 at the start, the tension is that of an elastic, perfectly plastic tie,
 !>

@@ -530,7 +530,8 @@ contains
             end do
          end associate
       end do
-      do k = 1, merge(0, size(model%set%parts), model%rigid%setting%used)   ! what touches nothing yet will land, on its largest face at the worst
+      ! What touches nothing yet will land, on its largest face at the worst.
+      do k = 1, merge(0, size(model%set%parts), model%rigid%setting%used)
          who = model%set%parts(k)%owner
          associate (b => model%set%item(who), one => model%set%parts(k))
             if (b%fixed .or. any(abs(stiffness(:, :, who)) > 0.0_wp)) cycle

@@ -2,8 +2,8 @@
 module frame_handle
    use common_handles, only : handle_new, handle_take
    use common_kinds, only : wp
-   use common_lists, only : handle_frame, frame_shear_count, frame_shear_diagonal, frame_shear_least, frame_shear_damage, &
-      frame_shear_reversed
+   use common_lists, only : handle_frame, frame_shear_count, frame_shear_diagonal, frame_shear_least, &
+      frame_shear_damage, frame_shear_reversed
    use common_status, only : status_ok, status_bad_index, status_invalid_argument, status_not_finite, &
       status_not_ready, status_out_of_memory
    use frame_element, only : macro_element

@@ -166,8 +166,8 @@ contains
    !> Resistance R to sliding of a pier, its derivatives by the normal force and by the greatest end moment.
    !>
    !> friction: c t L' + mu N on the compressed length L' = 3 (L/2 - M/N), at most L. diagonal: L t f_t/b
-   !> sqrt(1 + N/(L t f_t)). least: the lesser of both. reversed: the same, with cohesion on the part 2 L' - L alone that opens
-   !> in neither sense of a reversed load. damage: mu N, beside `back_stress`. Nothing without pressure.
+   !> sqrt(1 + N/(L t f_t)). least: the lesser of both. reversed: the same, with cohesion on the part 2 L' - L alone,
+   !> which opens in neither sense of a reversed load. damage: mu N, beside `back_stress`. Nothing without pressure.
    pure subroutine shear_resistance(law, normal, moment, resistance, by)
       type(shear_law), intent(in) :: law
       real(wp), intent(in) :: normal          !! N [N]

@@ -199,12 +199,13 @@ def blocks(centroid, mass, inertia, part, owner, outer, depth, joint, law, end_t
 
 def solids(centroid, mass, inertia, vertices, faces, owner, joint, law, end_time, output_step, step, fraction, settle, gravity, rigid,
            quasi, rebound, way, rate, times, scale, number, samples, dt, threads, doweled, place, axis, stiffness, strength,
-           reach) -> Any:  # fmt: skip
-    """A cube on a support in space, shaken; on springs with a dowel."""
+           reach, stretched, bounds, first, closed, anchored, point, spot) -> Any:  # fmt: skip
+    """A cube on a support in space, shaken, with a tie; on springs with a dowel."""
     dowels = None if rigid else dem3.Dowels(doweled, place, axis, stiffness, strength, reach, 1e-3)
+    tied = dem_run.Ties(stretched, np.zeros_like(stretched), -bounds, bounds, first, closed, anchored, point, spot)
     bodies = dem3.Solids(
         centroid, mass, inertia, [vertices, vertices - [0.0, 0.0, 1.0]], [faces, faces], owner, [dem3.Law(1e8, 1e8, 0.6, damping=1e-3)],
-        {joint: law}, dowels,
+        {joint: law}, dowels, tied,
     )  # fmt: skip
     options = dem3.Options(
         end_time, output_step, step, fraction, settle, gravity=gravity, way=way, threads=threads, rigid=rigid,
@@ -215,7 +216,7 @@ def solids(centroid, mass, inertia, vertices, faces, owner, joint, law, end_time
         states = []
         paused = model.run(motions, number, scale=scale, times=times, watch=lambda _: states.append(model.state()))
         again = model.run(motions, number, scale=scale, times=times, state=states[0]) if states else paused
-        return run.reason, run.place, run.turn, run.energy, again.rate, run.dowel_slip, run.dowel_out
+        return run.reason, run.place, run.turn, run.energy, again.rate, run.tension, run.dowel_slip, run.dowel_out
 
 
 def rockers(mass, inertia, height, toe, restitution, linear, kind, parameters, samples, dt, start, breaks, wave, body, shake, scale,
@@ -460,6 +461,8 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
             settle=5000, gravity=(0.0, 0.0, -9.8), rigid=rigid, quasi=False, rebound=0.1, way=(0.6, 0.8, 0.0), rate=np.full((2, 6), 1e-3), times=np.array([0.0, 0.01]), scale=1.0,
             number=0, samples=np.ones((1, 5)), dt=0.01, threads=2, doweled=np.array([[1, 0]]), place=np.array([[0.5, 0.5, 0.0]]),
             axis=np.array([[0.0, 0.0, 1.0]]), stiffness=np.array([1e8]), strength=np.array([1e3]), reach=np.array([0.1]),
+            stretched=np.array([1e6]), bounds=np.array([1e4]), first=np.array([0]), closed=np.array([False]), anchored=np.array([0, -1]),
+            point=np.array([0, 1]), spot=np.array([[0.5, 0.5, 0.9], [-3.0, 0.5, 0.9]]),
         )) for rigid in (False, True)),
         (rockers, dict(
             mass=1000.0, inertia=1500.0, height=2.0, toe=0.5, restitution=(0.9, 0.9), linear=False, kind=rocking.block_body(

@@ -34,6 +34,7 @@ from extrados.views.building import Building
 COLUMN = {"kind": "column", "width": 1.2, "height": 6.0, "drums": 3}
 PULSE = {"kind": "sine-pulse", "amplitude": "0.3 g", "period": 0.6}
 TIE = {"start": [-0.6, 5.0], "ground": [-4.6, 5.0], "stiffness": "8 MN/m", "yield_force": "6 kN"}
+DAMPER = {"start": [-0.6, 5.0], "ground": [-4.6, 5.0], "damping": "20 kN*s/m"}
 
 
 def deck(**more) -> dict:
@@ -129,23 +130,39 @@ def test_first_table_comes_before_the_costly_strategies(monkeypatch: pytest.Monk
 
 
 def test_what_a_strategy_does_not_reckon_with_is_left_out_and_told() -> None:
-    r = extrados.run(deck(ties=[TIE], assess={"strategies": ["tilt", "rocking", "sla", "dem"]}))["assess"]
+    r = extrados.run(deck(dampers=[DAMPER], assess={"strategies": ["rocking", "dem"]}))["assess"]
     rows = {v.strategy: v for v in r.verdicts}
-    assert "without [[ties]]" in rows["dem"].parameters and "without" not in rows["tilt"].parameters
+    assert "without [[dampers]]" in rows["dem"].parameters and "without" not in rows["rocking"].parameters
     assert rows["dem"].status == "ok"
 
 
-def test_a_collapse_without_the_tie_of_the_deck_decides_nothing() -> None:
-    """Elements take no tie: what they say of the column alone is no verdict on the column with its tie."""
-    strong = {**TIE, "yield_force": "60 kN"}
+def test_a_collapse_without_the_damper_of_the_deck_decides_nothing() -> None:
+    """Elements take no damper: their result for the column alone is no verdict on the column with its damper."""
     shaken = {**PULSE, "amplitude": "1 g", "period": 1.5}
-    asked = {"motion": shaken, "assess": {"strategies": ["tilt", "dem"]}}
+    asked = {"motion": shaken, "assess": {"strategies": ["rocking", "dem"]}}
     bare, held = (
         {v.strategy: v for v in extrados.run(deck(**asked, **more))["assess"].verdicts}["dem"]
-        for more in ({}, {"ties": [strong]})
+        for more in ({}, {"dampers": [DAMPER]})
     )
     assert bare.outcome == "collapses"
-    assert held.outcome == "open" and "neglects [[ties]]" in held.statement
+    assert held.outcome == "open" and "neglects [[dampers]]" in held.statement
+
+
+def test_elements_carry_the_tie_of_the_deck() -> None:
+    """With the tie the column stands under a motion that overturns it without; a rigid tie is for limit analysis alone."""
+    shaken = {**PULSE, "amplitude": "0.5 g", "period": 1.0}
+    asked = {"motion": shaken, "assess": {"strategies": ["tilt", "dem"]}}
+    rows = [
+        {v.strategy: v for v in extrados.run(deck(**asked, ties=ties))["assess"].verdicts}["dem"]
+        for ties in (
+            [],
+            [{**TIE, "works_in": "both", "yield_force": "60 kN"}],
+            [{key: value for key, value in TIE.items() if key != "stiffness"}],
+        )
+    ]
+    assert [row.status for row in rows] == ["ok", "ok", "refused"] and "EA/L" in rows[2].reason
+    assert rows[0].outcome == "collapses" and rows[1].outcome != "collapses"
+    assert "without" not in rows[1].parameters
 
 
 def test_a_wrong_key_of_options_refuses_the_strategy_alone() -> None:

@@ -245,7 +245,7 @@ def test_friction_that_falls_to_what_is_asked(monkeypatch) -> None:
     assert not direct.warnings and not falling.warnings
     assert falling.results["peak_acceleration_g"] == pytest.approx(direct.results["peak_acceleration_g"], rel=1e-4)
     monkeypatch.setattr("extrados.analyses.sla.contact.MORE_FRICTION", ())
-    assert any("was not found" in text for text in capacity(STRUCTURES["arch"], 0.25, "sla", events=5).warnings)
+    assert any("no set of dry joints" in text for text in capacity(STRUCTURES["arch"], 0.25, "sla", events=5).warnings)
 
 
 @pytest.mark.parametrize(("friction", "events"), [("no-sliding", 150), (0.7, 150)])

@@ -161,7 +161,7 @@ def test_a_stage_without_an_end_ends_the_run() -> None:
 @pytest.mark.parametrize(
     ("stage", "words"),
     [
-        ({"reference": []}, "what grows"),
+        ({"reference": []}, "a load that grows"),
         ({"free": [TOP], "reference": middle_force(1.0)}, "take two stages"),
         ({"free": [TOP]}, "is not held"),
         ({"reference": [{"kind": "spread", "edge": "bottom", "fx": 1.0}]}, "held nodes only"),

@@ -227,7 +227,7 @@ def test_supports_that_give_way_stretch_ties() -> None:
     assert spread.results.movement_at_fall_m is None and spread.results.ties[0].state == "yields"
 
 
-@pytest.mark.parametrize("kind", ["dem", "assessment", "dem-domain"])
+@pytest.mark.parametrize("kind", ["assessment", "rocking-spectrum"])
 def test_who_does_not_reckon_with_ties_says_so(kind: str) -> None:
     more = {
         "dem-domain": {"durations": [0.1, 0.2], "amplitudes": ["0.5 g"]},

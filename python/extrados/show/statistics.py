@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from extrados.results.codes import CodeChecks
+from extrados.results.codes import CodeChecks, LocalMechanism
 from extrados.results.rocking import COLLAPSE, RECOVERY
 from extrados.results.statistics import (
     Ensemble,
@@ -475,10 +475,12 @@ def draw_harmonic_map(run: Stored, name: str, folder: Path) -> list[tuple[str, s
 
 
 def draw_code_checks(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """Demand over capacity of each rule."""
+    """Demand over capacity of each rule of `code-checks` or of a local mechanism."""
+    found = run[name]
+    checks = found.checks if isinstance(found, LocalMechanism) else run.results_of(name, CodeChecks).checks
     rows = [
         (rule, c.demand / c.capacity, c.code)
-        for rule, c in run.results_of(name, CodeChecks).checks.items()
+        for rule, c in checks.items()
         if c.verdict in ("holds", "fails") and c.demand is not None and c.capacity is not None and c.capacity > 0.0
     ]
     if not rows:
