@@ -323,19 +323,23 @@ contains
       call handle_leave(handle)
    end subroutine history
 
-   !> Tensions in the ties that the last run recorded
-   subroutine tensions(handle, ntie, nt, tension, status)
+   !> Tensions in the ties that the last run recorded, and of all its steps the extremes
+   subroutine tensions(handle, ntie, nt, tension, extreme, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok, status_invalid_argument
       use dem_handle, only : run_take
+      use dem_jointed, only : jointed_model
       use dem_simulation, only : simulation
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: ntie
       integer(c_int), intent(in) :: nt                        !! points, see summary
       real(c_double), intent(out) :: tension(ntie, nt)        !! [N]
+      real(c_double), intent(out) :: extreme(3, ntie)         !! least, greatest [N], plastic elongation at the end [m]
       integer(c_int), intent(out) :: status
       class(simulation), pointer :: run
+      class(jointed_model), pointer :: model
       tension = 0.0_c_double
+      extreme = 0.0_c_double
       call run_take(handle, run, status)
       if (status /= status_ok) return
       associate (record => run%record)
@@ -343,6 +347,10 @@ contains
          if (ntie == size(record%tension, 1) .and. nt <= record%points) then
             status = status_ok
             tension = record%tension(:, 1:nt)
+            model => run%get_model()
+            extreme(1, :) = model%ties%item%lowest
+            extreme(2, :) = model%ties%item%highest
+            extreme(3, :) = model%ties%item%plastic
          end if
       end associate
       call handle_leave(handle)

@@ -7,7 +7,8 @@ module dem_handle
    use common_kinds, only : wp
    use common_lists, only : handle_dem
    use common_signal, only : signal
-   use common_status, only : status_ok, status_invalid_argument, status_not_ready, status_out_of_memory
+   use common_status, only : status_ok, status_bad_index, status_invalid_argument, status_not_ready, &
+      status_out_of_memory
    use common_threads, only : threads_available
    use dem_joint, only : joint_law
    use dem_jointed, only : jointed_model
@@ -239,6 +240,7 @@ contains
       class(jointed_model), pointer :: model
       model => built%run%get_model()
       call tie_set_copy(built%ties, model%ties, status)
+      if (any(model%ties%anchor%body > size(built%run%record%place, 2))) status = status_bad_index
       if (status /= status_ok) deallocate (built%run)
    end subroutine put_ties
 

@@ -340,10 +340,12 @@ contains
       do k = 1, size(model%ties%anchor)
          associate (one => model%ties%anchor(k))
             one%answer = 0.0_wp
+            one%mobility = 0.0_wp
             if (one%body == 0) cycle
             associate (b => model%set%item(one%body), pull => one%share * model%ties%pull(:, one%point))
                one%answer = sqrt(b%inverse_mass * (pull(1)**2 + pull(2)**2) &
                   + b%inverse_inertia * ((one%at(1) - b%x) * pull(2) - (one%at(2) - b%y) * pull(1))**2)
+               one%mobility = b%inverse_mass + b%inverse_inertia * ((one%at(1) - b%x)**2 + (one%at(2) - b%y)**2)
             end associate
          end associate
       end do

@@ -32,6 +32,8 @@ module dem_ties
       real(wp) :: length = 0.0_wp              !! L [m]
       real(wp) :: plastic = 0.0_wp             !! e_p [m]
       real(wp) :: tension = 0.0_wp             !! at the last forces [N]
+      real(wp) :: lowest = 0.0_wp              !! least and greatest tension of any step since the settling [N]
+      real(wp) :: highest = 0.0_wp
       real(wp) :: loss = 0.0_wp                !! by yielding [J]
    end type tie
 
@@ -45,6 +47,7 @@ module dem_ties
       real(wp) :: force(3) = 0.0_wp            !! on the body [N]
       real(wp) :: before(3) = 0.0_wp           !! the same a step before [N]
       real(wp) :: answer = 0.0_wp              !! see add_tie_stiffness
+      real(wp) :: mobility = 0.0_wp            !! acceleration by a force of one, in any direction at most [1/kg]
    end type tie_anchor
 
    type :: tie_set
@@ -52,6 +55,7 @@ module dem_ties
       type(tie_anchor), allocatable :: anchor(:)
       real(wp), allocatable :: at(:, :)        !! (3, points): means of their anchors [m]
       real(wp), allocatable :: pull(:, :)      !! (3, points) force of a tension of one: sums of unit vectors
+      real(wp), allocatable :: near(:)         !! (points) sums of 1 / length of the segments that meet there [1/m]
       real(wp) :: support_work = 0.0_wp        !! done on the ties by the ground and by supports [J]
    end type tie_set
 
@@ -78,8 +82,12 @@ contains
       if (first(1) /= 1 .or. any(first(2:) - first(:size(first) - 1) < 2)) return
       status = status_bad_index
       if (any(body < 0) .or. any(body > bodies) .or. any(point < 1) .or. any(point > points)) return
+      do k = 1, points
+         if (.not. any(point == k)) return
+      end do
       status = status_out_of_memory
-      allocate (ties%item(size(closed)), ties%anchor(size(body)), ties%at(3, points), ties%pull(3, points), stat=failed)
+      allocate (ties%item(size(closed)), ties%anchor(size(body)), ties%at(3, points), ties%pull(3, points), &
+         ties%near(points), stat=failed)
       if (failed /= 0) return
       do k = 1, size(closed)
          ties%item(k) = tie(first=int(first(k)), last=int(first(k + 1)) - 1, closed=closed(k) /= 0, &
@@ -107,7 +115,8 @@ contains
          anchors = size(from%anchor)
          points = size(from%at, 2)
       end if
-      allocate (to%item(ties), to%anchor(anchors), to%at(3, points), to%pull(3, points), stat=failed)
+      allocate (to%item(ties), to%anchor(anchors), to%at(3, points), to%pull(3, points), to%near(points), &
+         stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
       if (failed /= 0 .or. ties == 0) return
       to%item(:) = from%item
@@ -121,6 +130,7 @@ contains
       integer :: k, n, next
       ties%at = 0.0_wp
       ties%pull = 0.0_wp
+      ties%near = 0.0_wp
       do k = 1, size(ties%anchor)
          associate (one => ties%anchor(k))
             ties%at(:, one%point) = ties%at(:, one%point) + one%share * one%at
@@ -137,6 +147,7 @@ contains
                if (.not. part > 0.0_wp) cycle
                ties%pull(:, k) = ties%pull(:, k) + along / part
                ties%pull(:, next) = ties%pull(:, next) - along / part
+               ties%near([k, next]) = ties%near([k, next]) + 1.0_wp / part
             end do
          end associate
       end do
@@ -172,23 +183,29 @@ contains
          one%loss = one%loss + 0.5_wp * (one%tension + new) * (trial - new) / one%stiffness
       end if
       one%tension = new
+      one%lowest = min(one%lowest, new)
+      one%highest = max(one%highest, new)
    end subroutine load_tie
 
    !> Add a bound of what the ties contribute to the greatest eigenvalue of each body's stiffness scaled by its masses.
    !> With g_i the pull at an anchor of body i, scaled so, the stiffness of a tie is k g g^T, and by Cauchy's inequality
-   !> at most that of separate bodies with k |g_i| (sum of all |g_j|).
+   !> at most that of separate bodies with k |g_i| (sum of all |g_j|). A tension T across a segment of length l adds the
+   !> geometric stiffness T / l, at most twice that at each of its ends; T is that of yielding where the tie yields.
    pure subroutine add_tie_stiffness(ties, square)
       type(tie_set), intent(inout) :: ties          !! answer: |g_i| of a pull of one, 0 of supports and of the ground
       real(wp), intent(inout) :: square(:)          !! (bodies) squares of frequencies [1/s^2]
-      real(wp) :: total
+      real(wp) :: total, tension
       integer :: k, n
       do k = 1, size(ties%item)
          associate (one => ties%item(k))
+            tension = max(one%tension, one%prestress)
+            if (one%most < 0.5_wp * huge(tension)) tension = one%most
             total = sum(ties%anchor%answer, mask=ties%anchor%point >= one%first .and. ties%anchor%point <= one%last)
             do n = 1, size(ties%anchor)
                associate (anchor => ties%anchor(n))
                   if (anchor%body == 0 .or. anchor%point < one%first .or. anchor%point > one%last) cycle
-                  square(anchor%body) = square(anchor%body) + one%stiffness * anchor%answer * total
+                  square(anchor%body) = square(anchor%body) + one%stiffness * anchor%answer * total &
+                     + 2.0_wp * max(tension, 0.0_wp) * ties%near(anchor%point) * anchor%share * anchor%mobility
                end associate
             end do
          end associate
@@ -209,10 +226,12 @@ contains
       energy = sum(ties%item%loss)
    end function tie_loss
 
-   !> Losses and work so far count no more
+   !> Losses, work and extremes so far count no more
    pure subroutine forget_tie_losses(ties)
       type(tie_set), intent(inout) :: ties
       ties%item%loss = 0.0_wp
+      ties%item%lowest = ties%item%tension
+      ties%item%highest = ties%item%tension
       ties%support_work = 0.0_wp
    end subroutine forget_tie_losses
 

@@ -573,12 +573,14 @@ contains
       do k = 1, size(model%ties%anchor)
          associate (one => model%ties%anchor(k))
             one%answer = 0.0_wp
+            one%mobility = 0.0_wp
             if (one%body == 0) cycle
             associate (b => model%set%item(one%body))
                if (b%fixed) cycle
                pull = one%share * model%ties%pull(:, one%point)
                swing = matmul(cross(one%at - b%x, pull), b%turn)
                one%answer = sqrt(b%inverse_mass * dot_product(pull, pull) + sum(swing**2 / b%inertia))
+               one%mobility = b%inverse_mass + sum((one%at - b%x)**2) / minval(b%inertia)
             end associate
          end associate
       end do

@@ -176,10 +176,19 @@ def joints(connect, normal, area, stiffness, shear, friction, cohesion, energy, 
 
 
 def blocks(centroid, mass, inertia, part, owner, outer, depth, joint, law, end_time, output_step, step, fraction, settle, domain,
-           gravity, rigid, quasi, rebound, shift, rate, mover, travel, begin, lasts, times, scale, number, samples, dt, threads) -> Any:  # fmt: skip
-    """A block on a support that moves, shaken."""
+           gravity, rigid, quasi, rebound, shift, rate, mover, travel, begin, lasts, times, scale, number, samples, dt, threads, stretched, bounds, first, closed, anchored, point, spot) -> Any:  # fmt: skip
+    """A block on a support that moves, shaken, with a tie."""
     bodies = dem.Bodies(
-        centroid, mass, inertia, [part, BOX - [0.0, 1.0]], owner, [outer, np.ones(4, bool)], depth, [LAW], {joint: law}
+        centroid,
+        mass,
+        inertia,
+        [part, BOX - [0.0, 1.0]],
+        owner,
+        [outer, np.ones(4, bool)],
+        depth,
+        [LAW],
+        {joint: law},
+        dem_run.Ties(stretched, np.zeros_like(stretched), -bounds, bounds, first, closed, anchored, point, spot),
     )
     options = dem.Options(
         end_time, output_step, step, fraction, settle, domain=domain, gravity=gravity, threads=threads,
@@ -194,7 +203,7 @@ def blocks(centroid, mass, inertia, part, owner, outer, depth, joint, law, end_t
         states = []
         paused = model.run(motions, number, scale=scale, times=times, watch=lambda _: states.append(model.state()))
         again = model.run(motions, number, scale=scale, times=times, state=states[0]) if states else paused
-        return run.reason, run.place, run.energy, run.contacts.force, again.rate
+        return run.reason, run.place, run.energy, run.contacts.force, again.rate, run.tension, run.extreme
 
 
 def solids(centroid, mass, inertia, vertices, faces, owner, joint, law, end_time, output_step, step, fraction, settle, gravity, rigid,
@@ -454,6 +463,8 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
             owner=[0, 1], outer=np.ones(4, bool), depth=1.0, joint=(0, 1), law=0, end_time=0.02, output_step=0.01, step=0.0, fraction=0.3,
             settle=5000, domain=(-9.0, 9.0, -9.0, 9.0), gravity=(0.0, -9.8), rigid=rigid, quasi=False, rebound=0.1, shift=np.zeros((2, 3)), rate=np.full((2, 3), 1e-3), mover=1, travel=0.001, begin=0.0,
             lasts=0.01, times=np.array([0.0, 0.01]), scale=1.0, number=0, samples=np.ones((1, 5)), dt=0.01, threads=2,
+            stretched=np.array([1e6]), bounds=np.array([1e4]), first=np.array([0]), closed=np.array([False]), anchored=np.array([0, -1]),
+            point=np.array([0, 1]), spot=np.array([[0.5, 0.9], [-3.0, 0.9]]),
         )) for rigid in (False, True)),
         *((solids, dict(
             centroid=np.array([[0.5, 0.5, 0.5], [0.5, 0.5, -0.5]]), mass=np.array([2000.0, 0.0]), inertia=np.tile(300.0 * np.eye(3), (2, 1, 1)),

@@ -81,7 +81,8 @@ def test_a_tie_yields_and_the_ledger_closes() -> None:
     elastic = 1e4 / 8e5
     farthest = 0.5 * MASS / 1e4 + 0.5 * elastic
     assert run.place[:, 0, 0].max() == pytest.approx(farthest, rel=1e-3)  # between two outputs
-    assert run.tension.max() == 1e4
+    assert run.tension.max() == 1e4 == run.extreme[0, 1]
+    assert run.extreme[0, 2] == pytest.approx(farthest - elastic, rel=1e-3)
     assert run.energy["friction"][-1] == pytest.approx(1e4 * (farthest - elastic), rel=1e-3)
     assert run.residual < 1e-4
 
@@ -122,6 +123,17 @@ def test_a_hoop_holds_four_blocks_apart() -> None:
     moved = run.place[taut, 0, 0] - 3.0
     assert moved == pytest.approx(0.2 / omega * np.sin(omega * run.time[taut]), abs=2e-6)
     assert run.tension[taut, 0] == pytest.approx(8e5 * 4.0 * np.sqrt(2.0) * moved, abs=20.0)
+
+
+def test_a_short_prestressed_tie_shortens_the_step() -> None:
+    """Across a tie of tension T and length l its geometric stiffness T / l acts: a block oscillates with sqrt(T / (l m))."""
+    short = ties([(0, [0.0, 4.5]), (-1, [0.0, 4.3])], stiffness=1.0, prestress=1e5)
+    start = np.array([[0.01, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    asked = replace(FLOATING, step=0.0, rigid=True, fraction=0.3)
+    bodies = free_block(short)
+    run = dem.run(replace(bodies, inertia=bodies.inertia * 1e6), asked, shift=np.zeros((2, 3)), rate=start)
+    assert run.critical_step <= 2.0 / np.sqrt(1e5 / 0.2 / MASS)
+    assert run.reason == "end"
 
 
 @pytest.mark.parametrize(("share", "stable"), [(0.99, True), (1.01, False)])
@@ -171,7 +183,7 @@ def test_a_state_with_ties_goes_on_with_the_same_bits(rigid: bool) -> None:
 @pytest.mark.parametrize(
     ("change", "error"),
     [({"stiffness": np.array([0.0])}, CoreError), ({"prestress": np.array([-1.0])}, CoreError), ({"body": np.array([0, 7])}, IndexError),
-     ({"place": np.full((2, 2), np.nan)}, ValueError)],
+     ({"place": np.full((2, 2), np.nan)}, ValueError), ({"point": np.array([0, 2])}, ValueError)],
 )  # fmt: skip
 def test_wrong_ties_are_refused(change: dict, error: type[Exception]) -> None:
     with pytest.raises(error):

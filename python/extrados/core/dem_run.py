@@ -143,8 +143,8 @@ class FoundRun:
 
     time (t) [s]; place (t, n, 3): x, y [m] and rotation [rad] relative to the ground, or in space the centroids [m]; rate
     (t, n, 3 or 6); energy: see ENERGIES, each (t) [J]; settled (n, 3): place after settling; residual: greatest energy from
-    nowhere over the energy that went round; bounces and airborne time [s] of each body; tension (t, ties) [N]; effort: of rigid
-    contacts.
+    nowhere over the energy that went round; bounces and airborne time [s] of each body; tension (t, ties) [N]; extreme (ties, 3):
+    least and greatest tension of any step after settling [N], plastic elongation at the end [m]; effort: of rigid contacts.
     """
 
     reason: str
@@ -165,6 +165,7 @@ class FoundRun:
     bounces: np.ndarray
     airborne: np.ndarray
     tension: np.ndarray
+    extreme: np.ndarray
     effort: Effort
     interrupted: bool = False
 
@@ -193,6 +194,8 @@ class BodyModel(Owner, ABC, Generic[Found]):
         bodies = integers("bodies of ties", np.asarray(ties.body) + 1, anchors)
         if np.any(bodies < 0) or np.any(bodies > self.count):
             raise IndexError(f"a tie names a body that is not there; there are {self.count}")
+        if not np.bincount(integers("points of ties", ties.point, anchors)).all():
+            raise ValueError("a point of a tie has no anchor")
         on = np.flatnonzero(ties.body >= 0)
         own = np.zeros((anchors, 3))
         own[:, : ties.place.shape[1]] = ties.place
@@ -330,7 +333,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
         when, place, rate, energy, status = _core.api_dem_run.history(self.handle, self.count, self.rates, points)
         check(status, "history of the run")
         least_step, critical_step, stop_time, residual = (float(value) for value in measures)
-        tension, status = _core.api_dem_run.tensions(self.handle, self._ties, points)
+        tension, extreme, status = _core.api_dem_run.tensions(self.handle, self._ties, points)
         check(status, "tensions of the ties")
         took, measures, status = _core.api_dem_run.effort(self.handle)
         check(status, "effort of the run")
@@ -338,7 +341,7 @@ class BodyModel(Owner, ABC, Generic[Found]):
             "reason": REASONS[reason], "blamed": [k - 1 for k in (first, second) if k > 0], "time": when, "place": place.T,
             "rate": rate.T, "energy": dict(zip(ENERGIES, energy, strict=True)), "stop_time": stop_time, "steps": steps,
             "settling_steps": settling, "searches": searches, "most_pairs": pairs, "step": least_step,
-            "critical_step": critical_step, "residual": residual, "interrupted": interrupted, "tension": tension.T,
+            "critical_step": critical_step, "residual": residual, "interrupted": interrupted, "tension": tension.T, "extreme": extreme.T,
             "effort": Effort(*(int(n) for n in took), *(float(value) for value in measures)),
         }  # fmt: skip
 

@@ -24,7 +24,7 @@ KEEP_SECONDS, ENDED = 10.0, 999_999_999_999
 NUMBERS = ("stop_time", "step", "critical_step", "residual")
 COUNTS = ("steps", "settling_steps", "searches", "most_pairs")
 HISTORIES = ("time", "place", "rate", "tension")
-OF_BODIES = ("settled", "bounces", "airborne")
+OF_BODIES = ("settled", "bounces", "airborne", "extreme")
 NO_CONTACTS = dem.Contacts(*(np.zeros(shape) for shape in ((0, 2), (0, 2), (0, 2), 0, 0)))
 
 Found = TypeVar("Found", bound=dem_run.FoundRun)

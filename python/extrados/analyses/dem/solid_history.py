@@ -140,7 +140,7 @@ def _numbers(options: Dem, seen: SolidsSeen) -> dict[str, Any]:
         "energy_residual_ratio": found.residual,
         "bounces": int(found.bounces[mobile].sum()),
         "airborne_time_s": float(found.airborne[mobile].max(initial=0.0)),
-        **tie_rows(model.ties, found.tension),
+        **tie_rows(model.ties, found),
         "solver": options.solver,
         "convergence": measures.convergence(found.effort) if options.rigid else None,
         **measures.springs(options, model.values, found),

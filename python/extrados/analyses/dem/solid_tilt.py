@@ -53,7 +53,7 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
         energy_residual_ratio=max(last.residual, back_run.residual),
         time_step_s=last.step,
         steps=last.steps,
-        **tie_rows(model.ties, last.tension),
+        **tie_rows(model.ties, last),
         solver=options.solver,
         convergence=measures.convergence(effort) if options.rigid else None,
         beta_s=None if options.rigid else model.values.beta,

@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 
 from extrados.analyses.context import Refused
-from extrados.core.dem_run import Ties
+from extrados.core.dem_run import FoundRun, Ties
 from extrados.model.geometry.solids.strands import Strand
 from extrados.results.dem import TieRun
 from extrados.results.model import Array
@@ -80,19 +80,24 @@ def element_ties(building: Building, strands: tuple[Strand, ...], body_of_block:
     return ElementTies(strand_names(building, strands), core, strands)
 
 
-def tie_rows(ties: ElementTies, tension: np.ndarray) -> dict[str, list[TieRun]]:
-    """How the ties fared in a run, from their tensions (t, ties) [N], as results have it; nothing without any."""
-    if ties.core is None or not len(tension):
+def tie_rows(ties: ElementTies, run: FoundRun) -> dict[str, list[TieRun]]:
+    """Forces and states of the ties in a run, as results have them; nothing without any."""
+    if ties.core is None or not len(run.tension):
         return {}
     found = []
     for k, name in enumerate(ties.names):
-        force = tension[:, k]
-        peak = float(force[np.abs(force).argmax()])
-        bound = ties.core.most[k] if peak > 0.0 else ties.core.least[k]
-        state: Literal["slack", "elastic", "yielded"] = (
-            "slack" if peak == 0.0 else "yielded" if abs(peak) >= abs(bound) > 0.0 else "elastic"
+        lowest, highest, plastic = run.extreme[k].tolist()
+        peak = highest if highest >= -lowest else lowest
+        state: Literal["slack", "elastic", "yielded"] = "yielded" if plastic else "elastic" if peak else "slack"
+        found.append(
+            TieRun(
+                name=name,
+                peak_force_N=peak,
+                end_force_N=float(run.tension[-1, k]),
+                plastic_elongation_m=plastic,
+                state=state,
+            )
         )
-        found.append(TieRun(name=name, peak_force_N=peak, end_force_N=float(force[-1]), state=state))
     return {"ties": found}
 
 

@@ -76,7 +76,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         energy_residual_ratio=max(last.residual, back_run.residual),
         time_step_s=last.step,
         steps=last.steps,
-        **tie_rows(model.ties, last.tension),
+        **tie_rows(model.ties, last),
         solver=options.solver,
         beta_s=None if options.rigid else model.values.beta,
         convergence=measures.convergence(last.effort.with_(back_run.effort)) if options.rigid else None,
