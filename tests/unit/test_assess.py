@@ -201,7 +201,10 @@ def test_an_unexplained_contradiction_is_checked_finer(monkeypatch: pytest.Monke
     assert r.overall == "depends" and r.unexplained == [["tilt", "dem"]]
     changed = {p.changed for p in r.probes}
     assert {"rigid contacts", "half the time step", "the motion times 0.999", "the motion times 1.001"} <= changed
-    assert "Finer checks of the contradiction ran for discrete elements with rigid contacts (" in r.statement
+    assert (
+        "Strategies that contradict each other were run again with finer settings: discrete elements with rigid contacts ("
+        in r.statement
+    )
 
 
 def test_a_finer_check_with_another_outcome_opens_the_verdict(monkeypatch: pytest.MonkeyPatch) -> None:

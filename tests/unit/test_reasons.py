@@ -450,7 +450,7 @@ def test_the_codes_are_held_against_the_sense_that_no_wall_stops() -> None:
     found, _ = explained(facts(rows, {"tilt": tilt(0.2, 0.07), "code-checks": checked(0.36)}, building=held))
     (one,) = found
     assert one.numbers["static_capacity"] == 0.2 and one.numbers["factor"] == pytest.approx(1.8)
-    assert "0.2 g of statics, times 1.8" in one.text
+    assert "by statics, 0.2 g, multiplied by 1.8" in one.text
 
 
 def test_elements_that_slide_explain_the_stones_of_statics_and_of_the_mesh_alike() -> None:

@@ -15,7 +15,7 @@ def explore(
     ] = None,
     browser: Annotated[bool, typer.Option(help="open the page in a browser")] = True,
     classroom: Annotated[
-        bool, typer.Option("--class", help="also hold a class: prints a link and a QR code for the pupils")
+        bool, typer.Option("--class", help="also start a classroom session; prints a link and a QR code for the pupils")
     ] = False,
     address: Annotated[
         str, typer.Option(help="address of this machine on the local network, for --class; default: this machine alone")
@@ -26,7 +26,7 @@ def explore(
     ] = None,
     pupils: Annotated[int, typer.Option(min=1, max=60, help="most pupils at a time, for --class")] = 30,
 ) -> None:
-    """Open the interactive page: drag the blocks, see the thrust. It is served to this machine alone, unless a class is held."""
+    """Open the interactive page: drag the blocks, see the thrust. Only this machine can open it, unless --class is given."""
     from extrados.decks.reader import read_deck
 
     folder, first = Path.cwd().resolve(), None

@@ -11,7 +11,7 @@ WORDS = {
     "revision": "revision of the report, in its title block",
     "language": "language of the report: en, it, es, fr or de; default en",
     "author": "person responsible for the deck, in the title block of the report",
-    "date": "date of the deck, in the title block of the report, in any form",
+    "date": "date of the deck, shown in the title block of the report; free text in any date format",
 }
 
 #: Languages of reports by their codes

@@ -88,7 +88,9 @@ class FaceLaw:
             distance += DAMPED * (mean_distance(*pressed.T) - distance)
         low, high = min(found[-LAST:]), max(found[-LAST:])
         if high - low > SETTLED * abs(low):
-            raise NoAnswer(f"the face law does not settle: {low:.4f} to {high:.4f} g")
+            raise NoAnswer(
+                f"the iteration of the face law did not converge: its last values vary from {low:.4f} to {high:.4f} g"
+            )
         return FaceLoad(low, high - low)
 
     def _solve(

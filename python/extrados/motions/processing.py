@@ -46,7 +46,7 @@ def drift(acceleration: np.ndarray, step: float) -> tuple[str, str]:
         )
     if abs(d) > 0.5 * np.abs(displacement).max(initial=1e-300):
         return (
-            f"the ground ends {d:.3g} m from its start",
+            f"the ground ends displaced by {d:.3g} m from its position at the start",
             "This is a permanent displacement, or an error of the baseline that hardly acts on a structure.",
         )
     return "", ""

@@ -30,9 +30,12 @@ class Variation(ResultModel):
     stiffness_Pa_per_m: float = fact("greatest normal stiffness of the joints", "Pa/m")
     friction: float = fact("greatest coefficient of friction of the joints")
     damping_ratio_rotation: float = fact(
-        "least fraction of critical damping at rotational impact", source="thesis Eq. 7.13"
+        "damping ratio (fraction of critical damping) at rotational impact, least of all joints",
+        source="thesis Eq. 7.13",
     )
-    damping_ratio_edge: float = fact("least fraction of critical damping at edge impact", source="thesis Eq. 7.9")
+    damping_ratio_edge: float = fact(
+        "damping ratio (fraction of critical damping) at edge impact, least of all joints", source="thesis Eq. 7.9"
+    )
     outcome: str = fact("at-rest, slid, rocked or collapse, or why the run is not to be trusted")
     peak_rotation_rad: float = fact("greatest rotation of any block", "rad")
     bounces: int = fact("times that blocks left the ground or each other")
@@ -119,11 +122,14 @@ class DemRun(KindResults):
     joint_stiffness_max_Pa_per_m: float | None = fact("greatest normal stiffness of the joints", "Pa/m")
     beta_s: float | None = fact("stiffness-proportional damping", "s")
     damping_ratio_rotation: float | None = fact(
-        "least fraction of critical damping at rotational impact", source="thesis Eq. 7.13"
+        "damping ratio (fraction of critical damping) at rotational impact, least of all joints",
+        source="thesis Eq. 7.13",
     )
-    damping_ratio_corner: float | None = fact("least fraction of critical damping at corner impact")
+    damping_ratio_corner: float | None = fact(
+        "damping ratio (fraction of critical damping) at corner impact, least of all joints"
+    )
     damping_ratio_edge: float | None = fact(
-        "least fraction of critical damping at edge impact", source="thesis Eq. 7.9"
+        "damping ratio (fraction of critical damping) at edge impact, least of all joints", source="thesis Eq. 7.9"
     )
     steps: int = fact("time steps")
     settling_steps: int = fact("time steps until it had settled under its weight")
@@ -243,11 +249,14 @@ class SolidDemRun(KindResults):
     joint_stiffness_max_Pa_per_m: float | None = fact("greatest normal stiffness of the contacts", "Pa/m")
     beta_s: float | None = fact("stiffness-proportional damping", "s")
     damping_ratio_rotation: float | None = fact(
-        "least fraction of critical damping at rotational impact", source="thesis Eq. 7.13"
+        "damping ratio (fraction of critical damping) at rotational impact, least of all joints",
+        source="thesis Eq. 7.13",
     )
-    damping_ratio_corner: float | None = fact("least fraction of critical damping at corner impact")
+    damping_ratio_corner: float | None = fact(
+        "damping ratio (fraction of critical damping) at corner impact, least of all joints"
+    )
     damping_ratio_edge: float | None = fact(
-        "least fraction of critical damping at edge impact", source="thesis Eq. 7.9"
+        "damping ratio (fraction of critical damping) at edge impact, least of all joints", source="thesis Eq. 7.9"
     )
     steps: int = fact("time steps")
     settling_steps: int = fact("time steps until it had settled under its weight")
@@ -334,9 +343,15 @@ class DemCurve(ResultModel):
     beta_s: float | None = fact("stiffness-proportional damping", "s")
     stiffness_Pa_per_m: float | None = fact("greatest normal stiffness of the joints", "Pa/m")
     friction: float = fact("greatest coefficient of friction of the joints")
-    damping_ratio_rotation: float | None = fact("least fraction of critical damping at rotational impact")
-    damping_ratio_corner: float | None = fact("least fraction of critical damping at corner impact")
-    damping_ratio_edge: float | None = fact("least fraction of critical damping at edge impact")
+    damping_ratio_rotation: float | None = fact(
+        "damping ratio (fraction of critical damping) at rotational impact, least of all joints"
+    )
+    damping_ratio_corner: float | None = fact(
+        "damping ratio (fraction of critical damping) at corner impact, least of all joints"
+    )
+    damping_ratio_edge: float | None = fact(
+        "damping ratio (fraction of critical damping) at edge impact, least of all joints"
+    )
     shortest_durations_s: list[float | None] = fact("at each amplitude; null if no tried value causes collapse", "s")
 
 
@@ -416,9 +431,13 @@ class DemParameters(KindResults):
     critical_beta_edge_s: float = fact("damping that is critical at edge impact", "s", source="thesis Eq. 7.17")
     beta_s: float = fact("stiffness-proportional damping in use", "s")
     mass_damping_per_s: float = fact("mass-proportional damping in use", "1/s")
-    damping_ratio_rotation: float = fact("least fraction of critical damping at rotational impact")
-    damping_ratio_corner: float = fact("least fraction of critical damping at corner impact")
-    damping_ratio_edge: float = fact("least fraction of critical damping at edge impact")
+    damping_ratio_rotation: float = fact(
+        "damping ratio (fraction of critical damping) at rotational impact, least of all joints"
+    )
+    damping_ratio_corner: float = fact(
+        "damping ratio (fraction of critical damping) at corner impact, least of all joints"
+    )
+    damping_ratio_edge: float = fact("damping ratio (fraction of critical damping) at edge impact, least of all joints")
     convention: Literal["consistent", "thesis"] = fact("rule of the default stiffness")
 
     def judged(self, demand: Demand) -> Verdict:

@@ -391,8 +391,8 @@ class FailureCurves(KindResults):
         "share of verdicts by the curves that the whole motions confirm; null: none to compare"
     )
     scaling_misfit: float | None = fact(
-        "greatest difference between curves over their natural times, as a share of the amplitude over uplift; null: their "
-        "pulses or trains differ", source="thesis Eq. 5.7",
+        "greatest relative difference of amplitude between two curves, with durations divided by the natural time and "
+        "amplitudes by the uplift acceleration; null: one curve only, or curves of different trains", source="thesis Eq. 5.7",
     )  # fmt: skip
 
     def judged(self, demand: Demand) -> Verdict:

@@ -152,7 +152,7 @@ def _cloud(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 grid,
                 curve.numbers,
                 ("--", "-.", ":")[k % 3],
-                label=f"rotation beyond {limit.rotation_ratio:g} of the critical: median {limit.median:.3g}",
+                label=f"rotation beyond {limit.rotation_ratio:g} of the critical rotation: median intensity {limit.median:.3g}",
             )[0]
             right.fill_between(grid, low.numbers, high.numbers, color=line.get_color(), alpha=0.12, linewidth=0)
         right.set_xscale("log")

@@ -353,9 +353,9 @@ class _Work:
         if names:
             ran = [f"{self.rows[n].label} with {', '.join(told)}" for n, told in self.finer.items()]
             self.finer_told = (
-                f"Finer checks of the contradiction ran for {' and for '.join(ran)}."
+                f"Strategies that contradict each other were run again with finer settings: {' and '.join(ran)}."
                 if ran
-                else f"No finer check ran for {' and '.join(sorted(self.rows[n].label for n in names))}."
+                else f"No finer check ran for strategies that contradict each other: {' and '.join(sorted(self.rows[n].label for n in names))}."
             )
 
     def _check_run(self, name: str) -> None:

@@ -547,12 +547,16 @@ def code_factors(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if abs(check.capacity * part * fc / (q * least) - 1.0) > 0.02:
         return None  # another mechanism, or a weight that these factors do not hold
     other = [p for p in mine if "tilt" in p or "sla" in p] or mine
-    taking = "" if abs(part - 1.0) < 0.005 else f" over e* = {part:.3g}, the part of the moving weight that takes part"
+    taking = (
+        ""
+        if abs(part - 1.0) < 0.005
+        else f", divided by e* = {part:.3g}, the part of the moving weight that takes part"
+    )
     reserve = " The factor q is the reserve of rocking beyond uplift." if q != 1.0 else ""
     return reason(
         "code-factors", other,
-        f"{name} of the code compares a demand of {check.demand:.3g} g with {check.capacity:.3g} g: the {least:.3g} g of statics{taking}, "
-        f"times {q / fc:.3g}, {'one' if q == 1.0 else f'the behaviour factor q = {q:g}'} over the confidence factor FC = {fc:g}.{reserve}",
+        f"{name} of the code compares a demand of {check.demand:.3g} g with a capacity of {check.capacity:.3g} g. This capacity is the collapse "
+        f"acceleration by statics, {least:.3g} g{taking}, multiplied by {q / fc:.3g}, which is {'one' if q == 1.0 else f'the behaviour factor q = {q:g}'} over the confidence factor FC = {fc:g}.{reserve}",
         code_capacity=check.capacity, static_capacity=least, demand=check.demand, factor=q / fc, participating_part=part,
     )  # fmt: skip
 

@@ -280,7 +280,7 @@ def _dem(asked: Asked) -> Choice:
         critical = STEP_RULE * 2.0 / frequency * (np.sqrt(1.0 + damped**2) - damped)
         return rate * end / (0.3 * critical)
 
-    words = f"until {100 * STRONG:g} % of the motion's Arias intensity are over and {AFTER:g} sqrt(size/g) after, {end:.3g} s"
+    words = f"the run ends at {end:.3g} s, {AFTER:g} sqrt(size/g) after {100 * STRONG:g} % of the Arias intensity of the motion"
     keys: dict[str, Any] = {"end_time": round(end, 3), "output_step": max(0.01, end / 1500.0)}
     share = asked.share("dem")
     given = building.joints.normal_stiffness is not None or any(t.normal_stiffness for t in building.joints.types)

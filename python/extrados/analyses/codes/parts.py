@@ -164,7 +164,8 @@ def _nz_parapet(part: Part, spectrum: Callable[[float, float], float] | None, st
             demand = None if felt is None else 1.5 / slope * felt * (period / (2.0 * np.pi)) ** 2
     return Line(
         "NZSEE C8 parapet", "displacement", capacity, demand, "m",
-        "NZSEE/MBIE 2017 C8: %NBS = 30 D_i/D_ph, D_i = t, T_p = sqrt(0.65 h (1 + (t/h)^2)), gamma = 1.5/(1 + (t/h)^2) (verify clause); "
+        "NZSEE/MBIE 2017 C8: %NBS = 30 D_i/D_ph; displacement of instability D_i = t; displacement demand D_ph; period "
+        "T_p = sqrt(0.65 h (1 + (t/h)^2)); participation factor gamma = 1.5/(1 + (t/h)^2); height h, thickness t (verify clause); "
         "NZS 1170.5 section 8: C_p = C(0) C_Hi C_i", note, "NZSEE", scope="parapet; cantilever; on a building, at z > 0", state=state,
         barred=barred,
     )  # fmt: skip

@@ -185,7 +185,7 @@ def _further(context: Context, options: Dem, trial: Trial, result: Result, numbe
             numbers["friction_threshold"] = friction_threshold(context, trial, options.slip)
     except Unfinished as error:
         result.status = "interrupted" if error.interrupted else "failed"
-        result.reason = f"in the variations or the friction search: {error}; the run before them is complete"
+        result.reason = f"the variations or the friction search stopped: {error}. The main run is complete"
     except Refused as error:
         numbers["friction_threshold"] = None
         result.warnings.append(f"the least friction was not found: {error}")

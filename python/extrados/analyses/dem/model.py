@@ -163,7 +163,8 @@ def adjusted(model: Model) -> list[str]:
     rigid, tolerance, found = model.rigid, model.assembly.tolerance, []
     if rigid.moved > 1e-6 * model.size:
         found.append(
-            f"faces of blocks are moved by up to {1e3 * rigid.moved:.2g} mm to the joints in them (contact_tolerance {1e3 * tolerance:g} mm)"
+            f"the calculation moved faces of blocks by up to {1e3 * rigid.moved:.2g} mm onto their joints "
+            f"(contact_tolerance {1e3 * tolerance:g} mm)"
         )
     if rigid.cut > 0.0:
         why = f"contact_tolerance {1e3 * tolerance:g} mm" if tolerance else "arcs are drawn by chords"

@@ -100,6 +100,7 @@ def refuse_fracture(building: Building, options: tables.LimitAnalysisTable) -> N
     leeward = assembly.buttresses[-1]
     if building.ties and (building.anchored().block == leeward).any():
         raise Refused(
-            f"a tie is anchored in {assembly.block_names[leeward]}; whether its wedge holds the anchor is not known",
+            f"a tie is anchored in {assembly.block_names[leeward]}, and the analysis does not decide whether the crack separates "
+            "the anchor from the rest of this buttress; remove fracture or anchor the tie elsewhere",
             key,
         )

@@ -347,7 +347,7 @@ def _answer(r: out.FailureCurves) -> str:
             above = sum(v == "fails" for v in c.curve_verdicts)
             static = sum(v == "fails" for v in c.static_verdicts)
             told.append(
-                f"{c.label}: {static} by a static check, {above} by the curve, {falls} run through"
+                f"{c.label}: {static} by a static check, {above} by the failure curve, {falls} in a run of the whole motion"
             )  # fmt: skip
         text += f" Of {len(r.impulses)} motions these cause collapse: {'; '.join(told)}."
     return text

@@ -141,7 +141,9 @@ class FailureCurves(RockingTable):
         if self.pulse != "sine" and self.cycles != [1]:
             raise ValueError(f"cycles make trains of sines; a pulse of shape '{self.pulse}' comes once")
         if self.fits and (self.pulse != "sine" or self.cycles != [1]):
-            raise ValueError('fits are of curves of single sines: expected pulse = "sine" and cycles = [1]')
+            raise ValueError(
+                'fits requires curves of single sines: set pulse = "sine" and cycles = [1], or remove fits'
+            )
         if len(set(self.cycles)) < len(self.cycles):
             raise ValueError("cycles holds a number twice")
         if max(1, len(self.variants)) * len(self.cycles) > 24:

@@ -69,10 +69,12 @@ def _run(context: Context, options: Pushover) -> Result:
         context.warnings.append("nothing of it can crack: [material] has no tensile_strength, or no fracture_energy")
     elastic = _elastic(model, options)
     if model.mesh.walls and not sliding_limits(model, context.building, options, elastic["under"]):
-        why = "the shear on a level is not known where displacements drive the walls"
+        why = "the shear force at these heights is not known if imposed displacements load the walls"
         if context.building.joints.coefficient is None:
             why = "[joints] friction excludes it"
-        context.warnings.append(f"Sliding of the building on its levels is not checked: {why}.")
+        context.warnings.append(
+            f"Sliding of the whole building on a bed joint or on the base of a storey is not checked: {why}."
+        )
     numbers: dict[str, Any] = {}
     if options.stages:
         curves, numbers = _stages(context, result, model, options, elastic)

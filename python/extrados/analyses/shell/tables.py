@@ -68,8 +68,8 @@ class PushStage(Table):
     sense: Literal["+", "-"] = key("+", "of the push")
     base_shear: Force | None = key(
         None,
-        "the stage ends at this base shear in its direction and sense, with the loads that stages before have left: 0 removes a "
-        "push to the other side",
+        "base shear at which the stage ends, in its direction and sense; the loads that earlier stages left are included, so "
+        "that 0 unloads an earlier push to the other side",
     )
     target_displacement: Length | None = key(
         None, "the stage ends where the control displacement has this value, counted from the building without loads"

@@ -227,7 +227,10 @@ class HarmonicMap(RockingTable):
     soft_base: ClassVar = True
     starter: ClassVar = {"amplitudes": "24"}
     frequencies: list[Frequency] | None = key(
-        None, "in Hz; default 40 values from omega/p = 1 to 12", min_length=1, max_length=1000
+        None,
+        "in Hz; default 40 values of omega/p from 1 to 12, p: frequency parameter of rocking, omega: 2 pi times the frequency",
+        min_length=1,
+        max_length=1000,
     )
     max_amplitude: Acceleration | None = key(None, "default 6 times uplift", gt=0)
     amplitudes: int = key(48, "number of amplitudes", ge=2, le=1000)

@@ -122,7 +122,9 @@ def refuse_unknown(building: Building, names: list[str]) -> None:
     for name in names:
         key = ("analysis", "uncertain", name)
         if name == "density" and what == "block" and name not in known:
-            raise Refused("one rigid block has no stones whose densities differ", key)
+            raise Refused(
+                "densities of stones cannot vary: the structure is modelled as one rigid block; remove density", key
+            )
         sized = name not in (*STONES, *BASE, "corners")
         if name not in known or (sized and getattr(structure, name) is None):
             raise Refused(f"does not belong to this {structure.word}; it has {', '.join(known) or 'none'}", key)

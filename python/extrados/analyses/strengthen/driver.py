@@ -715,7 +715,7 @@ def _arrays(context: Context, before: Worth, sized: list[_Sized]) -> dict[str, A
             "range",
             places,
             3,
-            "x, y of the middle [m] and required force [N] (infinite: none) at the places of each tie",
+            "each possible place of each tie: x, y of its middle [m] and required force [N]; infinite: no force is sufficient there",
         ),
         **packed(
             "stones", rest, "m", "blocks of the existing building (0/block) and of the alternatives (number/block)"

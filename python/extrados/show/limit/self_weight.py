@@ -41,7 +41,7 @@ def draw_self_weight(run: Stored, name: str, folder: Path) -> list[tuple[str, st
     return [
         (
             f"{name}-self-weight",
-            f"{title}, scale arbitrary: the loads do work and no joint takes any. Dotted: geometry of the deck. The arrow marks "
-            f"the block with the greatest velocity, {names[fastest]}.",
+            f"{title}. The scale is arbitrary. In this mechanism the loads do work, and the joints do not resist it. "
+            f"Dotted: geometry of the deck. The arrow marks the block with the greatest velocity, {names[fastest]}.",
         )
     ]

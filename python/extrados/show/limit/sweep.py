@@ -155,4 +155,9 @@ def draw_imperfections(run: Stored, name: str, folder: Path) -> list[tuple[str, 
         ax.set_ylim(0.0, 1.0)
         ax.set_title("Capacity within the tolerance of the survey")
         style.legend_below(fig, ax)
-        return [(style.save(fig, folder, name), "Capacities of random surveys of the same stones.")]
+        return [
+            (
+                style.save(fig, folder, name),
+                "Capacities of random surveys: the stones are the same, their corners and joints are displaced within the deviation.",
+            )
+        ]

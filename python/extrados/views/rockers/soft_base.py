@@ -101,7 +101,7 @@ class SoftBaseModel:
             / (self._stiffness_at_rest + self.weight * self.core.height)
         )
         return (
-            f"{self.core.stiffness / self.block.depth:.4g} N/m^3: on a base below about "
+            f"the stiffness of the base, {self.core.stiffness / self.block.depth:.4g} N/m^3, is too low: below about "
             f"{least / self.block.depth:.3g} N/m^3 the block overturns under its own weight"
         )
 
