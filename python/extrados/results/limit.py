@@ -160,8 +160,8 @@ class Tilt(KindResults):
     sliding_joints: list[int] = fact("joints that slide or part in the mechanism")
     hinges_opposite: list[Hinge] = fact("hinges of the mechanism to -x")
     dilating_joints: list[int] = maybe(
-        "associated friction: pressed joints that slide in the mechanism to +x; the collapse acceleration is then an upper "
-        "bound (dilatant friction)"
+        "joints in compression that slide in the collapse mechanism to +x; the collapse acceleration is then an upper "
+        "bound, because friction is dilatant in the analysis (associated friction)"
     )
     dilating_joints_opposite: list[int] = maybe("the same in the mechanism to -x")
     collapse_acceleration_non_associated_g: float = maybe(
@@ -395,8 +395,8 @@ class MovingLoad(KindResults):
     hinges: list[NamedHinge] = fact("hinges of the mechanism there")
     sliding_joints: list[int] = fact("joints that slide or part in the mechanism there")
     dilating_joints: list[int] = maybe(
-        "associated friction: pressed joints that slide in the mechanism there; the collapse load is then an upper bound "
-        "(dilatant friction)"
+        "joints in compression that slide in the collapse mechanism; the collapse load is then an upper bound, because "
+        "friction is dilatant in the analysis (associated friction)"
     )
     greatest_compression_N: float = fact("greatest compression across a joint there at collapse", "N")
     places_without_limit: int = fact("places at which no load of the kind causes collapse")

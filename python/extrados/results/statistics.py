@@ -75,9 +75,13 @@ class Ensemble(Annual):
     uplifted: int = fact("runs that rock")
     uplift_probability: float | None = fact("share of the runs that rock")
     uplift_confidence_interval: list[float] = fact("its score interval", source="Wilson 1927")
-    mean_peak_rotation_ratio: float | None = fact("mean of the greatest rotation over the critical one; collapse is 1")
-    deviation_peak_rotation_ratio: float | None = fact("standard deviation of that ratio")
-    median_peak_rotation_ratio: float | None = fact("median of that ratio")
+    mean_peak_rotation_ratio: float | None = fact(
+        "mean of the peak rotation over the critical rotation; a run that collapses counts as 1"
+    )
+    deviation_peak_rotation_ratio: float | None = fact(
+        "standard deviation of the peak rotation over the critical rotation"
+    )
+    median_peak_rotation_ratio: float | None = fact("median of the peak rotation over the critical rotation")
     confidence: float = fact("level of all intervals")
     restitution: float | None = fact(
         "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
@@ -154,14 +158,18 @@ class OverLevels(Annual):
     collapsed: list[int] = fact("motions that cause collapse, at each level")
     collapse_probability: list[float | None] = fact("their share, at each level")
     confidence_interval: list[list[float]] = fact("score intervals of that share", source="Wilson 1927")
-    uplifted: list[int] = fact("motions that make it rock, at each level")
+    uplifted: list[int] = fact("number of motions that make the structure rock, at each intensity level")
     uplift_probability: list[float | None] = fact("their share, at each level")
     uplift_confidence_interval: list[list[float]] = fact("score intervals of that share", source="Wilson 1927")
     mean_peak_rotation_ratio: list[float | None] = fact(
-        "mean of the greatest rotation over the critical one, at each level; collapse is 1"
+        "mean of the peak rotation over the critical rotation, at each level; a motion that causes collapse counts as 1"
     )
-    deviation_peak_rotation_ratio: list[float | None] = fact("standard deviation of that ratio, at each level")
-    median_peak_rotation_ratio: list[float | None] = fact("median of that ratio, at each level; collapse is 1")
+    deviation_peak_rotation_ratio: list[float | None] = fact(
+        "standard deviation of the peak rotation over the critical rotation, at each level"
+    )
+    median_peak_rotation_ratio: list[float | None] = fact(
+        "median of the peak rotation over the critical rotation, at each level; a motion that causes collapse counts as 1"
+    )
     peak_rotation_ratio_16: list[float | None] = fact(
         "ratio that 16 % of the motions stay within, at each level; null: collapse",
         source="Vamvatsikos and Cornell 2002",
@@ -250,16 +258,20 @@ class OverDurations(KindResults):
     """fragility: generated motions of several durations; lists hold one value a duration."""
 
     durations_s: list[float] = fact("durations of the motions", "s")
-    mean_peak_rotation_ratio: list[float | None] = fact("mean of the greatest rotation over the critical one, at each")
-    deviation_peak_rotation_ratio: list[float | None] = fact("standard deviation of that ratio")
-    collapse_probability: list[float | None] = fact("share of the motions that cause collapse, at each")
-    uplift_probability: list[float | None] = fact("share of the motions that make it rock, at each")
+    mean_peak_rotation_ratio: list[float | None] = fact(
+        "mean of the peak rotation over the critical rotation, at each duration"
+    )
+    deviation_peak_rotation_ratio: list[float | None] = fact(
+        "standard deviation of the peak rotation over the critical rotation, at each duration"
+    )
+    collapse_probability: list[float | None] = fact("share of the motions that cause collapse, at each duration")
+    uplift_probability: list[float | None] = fact("share of the motions that make the structure rock, at each duration")
     confidence_interval: list[list[float]] = fact("score intervals of the collapse probability", source="Wilson 1927")
     confidence: float = fact("level of these intervals")
     count: list[int] = fact("motions with a result, at each")
     failed: int = fact("runs without a result")
     collapsed: list[int] = fact("motions that cause collapse, at each")
-    uplifted: list[int] = fact("motions that make it rock, at each")
+    uplifted: list[int] = fact("number of motions that make the structure rock, at each duration")
     restitution: float | None = fact(
         "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
     )

@@ -65,7 +65,7 @@ def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> R
         )
     if found.residual > 0.01:
         result.warnings.append(
-            f"the energy ledger is off by {100 * found.residual:.2g} % of the energy that went round"
+            f"the error of the energy balance is {100 * found.residual:.2g} % of the total energy exchanged"
         )
     result.warnings += dem_model.unconverged(found.effort) + chaos["violated"]
     if numbers["still_moving"]:

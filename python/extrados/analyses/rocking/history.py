@@ -205,7 +205,7 @@ def rocking_result(
             response.ledger,
             ("time",),
             "J",
-            "work of the ground less the energy lost at impacts and taken by restraints",
+            "work done by the ground motion, minus the energy lost at impacts, minus the energy absorbed by restraints",
         ),
         "impact_time": Array(np.array([t for t, _ in impacts]), ("impact",), "s"),
         "required_friction": Array(friction, ("time", "joint"), "", "coefficient of friction needed"),

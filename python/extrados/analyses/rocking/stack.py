@@ -127,7 +127,7 @@ def _result(
         "vertical": Array(r.vertical, ("time",), "m/s^2", "vertical ground acceleration"),
         "kinetic": Array(r.kinetic, ("time",), "J"),
         "potential": Array(r.potential, ("time",), "J"),
-        "ledger": Array(r.ledger, ("time",), "J", "work of the ground less the energy lost at impacts"),
+        "ledger": Array(r.ledger, ("time",), "J", "work done by the ground motion, minus the energy lost at impacts"),
         "impact_time": Array(np.array(impacts), ("impact",), "s"),
         "required_friction": Array(needed, ("time", "joint"), "", "coefficient of friction needed"),
         **geometry_arrays(model.assembly),

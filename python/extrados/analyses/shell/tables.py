@@ -187,7 +187,7 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     probes: list[Length] = key([], "report the envelope's load at these displacements", max_length=100)
     frame: FrameRules | None = key(None, "strengths of its piers by formulas of codes, [analysis.frame]")
     verification: Verification = key(
-        Verification(), "verification by displacement, of a building of walls on a plan, [analysis.verification]"
+        Verification(), "displacement-based verification of a building that is given in plan, [analysis.verification]"
     )
     variants: list[Variant] = key(
         [], "the first sense again with other assumptions: a band of curves, [[analysis.variants]]", max_length=50
