@@ -387,18 +387,24 @@ class MovingLoad(KindResults):
     """moving-load: collapse load, or adequacy factor of a train, at every place along an arch or a bridge."""
 
     chain: str | None = fact("arch that the load crosses; null if it crosses the whole top")
-    collapse_load_N: float = fact("least collapse load; of a train, the load then on the structure", "N")
+    collapse_load_N: float = fact(
+        "least collapse load over all positions; for a train, the load on the structure at collapse", "N"
+    )
     collapse_load_kN_per_m: float = fact("least load per metre of depth", "kN/m")
-    worst_place_m: float = fact("x of the first axle at that position", "m")
-    worst_place_over_span: float = fact("x of the first axle at that position, from the left springing, over the span")
-    worst_way: Literal["+x", "-x"] = fact("heading of the train there")
-    hinges: list[NamedHinge] = fact("hinges of the mechanism there")
-    sliding_joints: list[int] = fact("joints that slide or part in the mechanism there")
+    worst_place_m: float = fact("x of the first axle at the governing position", "m")
+    worst_place_over_span: float = fact(
+        "x of the first axle at the governing position, from the left springing, over the span"
+    )
+    worst_way: Literal["+x", "-x"] = fact("direction in which the train runs at the governing position")
+    hinges: list[NamedHinge] = fact("hinges of the mechanism at the governing position")
+    sliding_joints: list[int] = fact("joints that slide or open in the mechanism at the governing position")
     dilating_joints: list[int] = maybe(
         "joints in compression that slide in the collapse mechanism; the collapse load is then an upper bound, because "
         "friction is dilatant in the analysis (associated friction)"
     )
-    greatest_compression_N: float = fact("greatest compression across a joint there at collapse", "N")
+    greatest_compression_N: float = fact(
+        "greatest compression across a joint at collapse, with the load at the governing position", "N"
+    )
     places_without_limit: int = fact("places at which no load of the kind causes collapse")
     ties: list[TieForce] = maybe("forces of the ties there at collapse")
     duality_gap: float = fact("greatest difference between the bounds, in multiples of the weight")

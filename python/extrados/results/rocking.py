@@ -260,7 +260,7 @@ class FailureDomain(KindResults):
         "pulse; null: at no duration does collapse follow from two rules"
     )
     pulse: Pulse = fact("shape of the pulses")
-    mode_I: ModeCurve = fact("lowest amplitudes that cause collapse in either mode, Mode I after an impact")
+    mode_I: ModeCurve = fact("lowest amplitudes that cause collapse, with or without an impact")
     mode_II: ModeCurve = fact("lowest amplitudes that cause collapse in the first half cycle, without an impact")
     pocket_begins_g: list[float | None] = fact(
         "amplitude at which the first safe region above the curve begins; null: none", "g"

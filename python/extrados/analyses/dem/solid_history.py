@@ -89,7 +89,9 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
         )
     result.warnings += dem_model.unconverged(found.effort) + chaos["violated"]
     if r.still_moving:
-        result.warnings.append("it still moves at the end of the run: a longer end_time may show another outcome")
+        result.warnings.append(
+            "the structure still moves at the end of the run: a longer end_time may give another outcome"
+        )
     if moved is None:
         result.warnings.append("nothing moves it: add [motion]")
     result.answer = solid_answer(r, moved is None)

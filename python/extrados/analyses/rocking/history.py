@@ -138,7 +138,7 @@ def rocking_result(
     settled = response.settled if over is None else not over.contacts.still_moving
     if not settled and not response.interrupted:
         result.warnings.append(
-            f"it still rocks at the end time of {response.stop_time:g} s: the outcome is open, give a longer end_time"
+            f"the structure still rocks at the end time of {response.stop_time:g} s: the outcome is open, set a longer end_time"
         )
     r = out.Rocking(
         rotation_of=of,

@@ -132,7 +132,7 @@ def _result(
     result.warnings += violated
     if not settled and not r.interrupted:
         result.warnings.append(
-            f"it still moves enough to overturn at the end time of {r.stop_time:g} s: the outcome is open, give a longer end_time"
+            f"the block still moves enough to overturn at the end time of {r.stop_time:g} s: the outcome is open, set a longer end_time"
         )
     if rigid is not None and rigid[0] != r.outcome:
         result.warnings.append(f"on a rigid base, with Housner's impact, the outcome is another one: {rigid[0]}")

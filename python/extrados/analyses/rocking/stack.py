@@ -103,7 +103,7 @@ def _result(
     result.warnings += violated
     if not r.settled and not r.interrupted:
         result.warnings.append(
-            f"it still rocks at the end time of {r.stop_time:g} s: the outcome is open, give a longer end_time"
+            f"the blocks still rock at the end time of {r.stop_time:g} s: the outcome is open, set a longer end_time"
         )
     index = drawn_times(r.time, r.rotation.T, options)
     result.tables["rocking"] = TableData(

@@ -290,7 +290,8 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         max_length=50,
     )
     main_stage: str | None = key(
-        None, "name of the stage whose numbers and figures are those of the analysis; default the last"
+        None,
+        "name of the stage whose results and figures are reported as those of the analysis; default the last stage",
     )
     control: list[Watch] = key(
         [], "displacement of the curve, a sum of terms; default the mean displacement under B", max_length=50
