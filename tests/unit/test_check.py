@@ -127,7 +127,7 @@ WRONG = {
     ),
     "record of dem": ("none.at2", BLOCK + '[motion] # here\nkind = "record"\nfile = "none.at2"\n' + DEM),
     "curve that is not there": ("none.csv", PANEL + SLA + 'measured = "none.csv" # here\n'),
-    "seeds that change nothing": ("seeds ask for", PANEL + SLA + "seeds = [1, 2] # here\n"),
+    "seeds that change nothing": ("seeds need", PANEL + SLA + "seeds = [1, 2] # here\n"),
     "run that is not there": ("results", PANEL + SLA + 'resume_from = "results" # here\n'),
     "load beside the wall": (
         "no node lies", PANEL + SLA + '[[analysis.reference]] # here\nkind = "point"\nx = 7.0\nfx = 1.0\n',

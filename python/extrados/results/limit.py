@@ -406,10 +406,10 @@ class MovingLoad(KindResults):
         "greatest compression across a joint at collapse, with the load at the governing position", "N"
     )
     places_without_limit: int = fact("places at which no load of the kind causes collapse")
-    ties: list[TieForce] = maybe("forces of the ties there at collapse")
+    ties: list[TieForce] = maybe("forces of the ties at collapse, with the load at the governing position")
     duality_gap: float = fact("greatest difference between the bounds, in multiples of the weight")
     load_N: float = maybe("the load that the deck gives", "N")
-    safety_factor: float = maybe("collapse load over that load")
+    safety_factor: float = maybe("collapse load over the load that the deck gives")
     train: str = maybe("name of the train; load for axles that share a force, train for the axle loads of the deck")
     adequacy_factor: float = maybe("multiple of the factored train, or load, that causes collapse")
     live_load_factor: float = maybe("partial factor times dynamic factor by which the train is multiplied before")
@@ -417,7 +417,7 @@ class MovingLoad(KindResults):
         "permissible limit state: multiple of the unfactored train, times its serviceability factor, up to which a thrust line "
         "exists with stresses below the permissible one and the passive pressure of service"
     )
-    permissible_place_m: float = maybe("x of the first axle at which that multiple is least", "m")
+    permissible_place_m: float = maybe("x of the first axle at which the permissible factor is least", "m")
     permissible_stress_Pa: float = maybe("permissible compressive stress under service loads", "Pa")
     characteristic: bool = maybe("whether all partial factors are 1.0: loads and strengths are characteristic")
     violated: list[str] = maybe("assumptions of a load on a bridge that the structure does not meet")
