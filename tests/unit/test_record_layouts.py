@@ -222,7 +222,7 @@ REFUSED = {
     "time last": ("".join(f"{v:.2f} {0.01 * k:.2f}\n" for k, v in enumerate(N)), {"channel": 2}, "put the time first"),
     "fewer than stated": ("402 points in cm/s2\n" + COLUMN, {}, "400 values follow where the header says 402"),
     "two steps": ("dt = 0.02 s\n" + TIMED, {}, "says a step of 0.02 s, the times 0.01 s"),
-    "factor": ("scale factor: 0.01\n" + COLUMN, {}, "no factor of a header is applied"),
+    "factor": ("scale factor: 0.01\n" + COLUMN, {}, "applies no factor from a header"),
     "two quantities": ("acceleration and velocity\n" + COLUMN, {}, "acceleration and velocity"),
     "sample numbers": ("".join(f"{k + 1} {v:.2f}\n" for k, v in enumerate(N)), {}, "column of sample numbers"),
     "cut": (THREE.rstrip("\n").rpartition(" ")[0], {"columns": "components"}, "cut off"),

@@ -56,7 +56,7 @@ class RunOptions:
     """How to run. step [s]: 0 takes `fraction` of the critical step. settle_steps 0 starts without settling under gravity;
     settlement: displacement by which a body falls instead of settling [m], 0 none; settle_damping: beta of the joints until
     then, where their own is less [s]. collapse: displacement that counts as collapse [m], 0 none, of a body that also turned
-    by more than `collapse_turn` [rad] or is lower by more than `collapse_drop` [m]; both 0: the displacement alone counts. residual_limit: of the energy that went round, above it the run is stopped. stop_at_rest: end once
+    by more than `collapse_turn` [rad] or is lower by more than `collapse_drop` [m]; both 0: the displacement alone counts. residual_limit: of the total energy exchanged, above it the run is stopped. stop_at_rest: end once
     all rests and the ground is still. rigid: contacts without springs (the joints' stiffness and damping play no part, `step` 0
     takes one that suits the smallest block), with Newton's coefficient `rebound` at each point; quasi_static: without inertia."""
 
@@ -143,7 +143,7 @@ class FoundRun:
 
     time (t) [s]; place (t, n, 3): x, y [m] and rotation [rad] relative to the ground, or in space the centroids [m]; rate
     (t, n, 3 or 6); energy: see ENERGIES, each (t) [J]; settled (n, 3): place after settling; residual: greatest energy from
-    nowhere over the energy that went round; bounces and airborne time [s] of each body; tension (t, ties) [N]; extreme (ties, 3):
+    nowhere over the total energy exchanged; bounces and airborne time [s] of each body; tension (t, ties) [N]; extreme (ties, 3):
     least and greatest tension of any step after settling [N], plastic elongation at the end [m]; effort: of rigid contacts.
     """
 

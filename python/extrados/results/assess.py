@@ -153,7 +153,9 @@ class CollapseProbability(ResultModel):
     high: float | None = fact(
         "greatest upper end of the contributions' 90 % confidence intervals; null: no contribution"
     )
-    contributions: list[Contribution] = fact("strategies with tests in the verification book")
+    contributions: list[Contribution] = fact(
+        "strategies whose capacity the verification book compares with known results"
+    )
     without: dict[str, str] = fact("strategies that contribute nothing, with the reason")
     statement: str = fact("the probability in words")
     method: str = fact("derivation of the probability in words")

@@ -41,7 +41,7 @@ class Variation(ResultModel):
     bounces: int = fact("times that blocks left the ground or each other")
     airborne_time_s: float = fact("longest time that a block was without contact", "s")
     peak_slip_m: float = fact("greatest slip of joints that still touch", "m")
-    energy_residual_ratio: float = fact("error of the energy ledger over the energy that went round")
+    energy_residual_ratio: float = fact("error of the energy balance over the total energy exchanged")
 
 
 class Convergence(ResultModel):
@@ -108,7 +108,7 @@ class DemRun(KindResults):
     peak_kinetic_energy_J: float = fact("greatest kinetic energy", "J")
     friction_loss_J: float = fact("energy lost in friction", "J")
     damping_loss_J: float = fact("energy lost in damping", "J")
-    energy_residual_ratio: float = fact("error of the energy ledger over the energy that went round")
+    energy_residual_ratio: float = fact("error of the energy balance over the total energy exchanged")
     restitution_measured: float | None = fact("of a single block: median rate after over before its impacts")
     restitution_housner: float | None = fact("of a block: the momentum balance", source="Housner 1963")
     bounces: int = fact("times that blocks left the ground or each other")
@@ -176,7 +176,7 @@ class DemTilt(KindResults):
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block, positive to +x", "rad")
     peak_slip_m: float = fact("greatest slip in the mechanism", "m")
     interval: bool = fact(INTERVAL)
-    energy_residual_ratio: float = fact("error of the energy ledger over the energy that went round")
+    energy_residual_ratio: float = fact("error of the energy balance over the total energy exchanged")
     time_step_s: float = fact("time step", "s")
     steps: int = fact("time steps of the last run")
     solver: Literal["compliant", "nonsmooth"] = fact("springs at the joints, or rigid contacts")
@@ -239,7 +239,7 @@ class SolidDemRun(KindResults):
     peak_kinetic_energy_J: float = fact("greatest kinetic energy", "J")
     friction_loss_J: float = fact("energy lost in friction", "J")
     damping_loss_J: float = fact("energy lost in damping", "J")
-    energy_residual_ratio: float = fact("error of the energy ledger over the energy that went round")
+    energy_residual_ratio: float = fact("error of the energy balance over the total energy exchanged")
     bounces: int = fact("times that blocks left the ground or each other")
     airborne_time_s: float = fact("longest time that a block was without contact", "s")
     solver: Literal["compliant", "nonsmooth"] = fact("springs at the contacts, or rigid ones; these have no stiffness")
@@ -287,7 +287,7 @@ class SolidDemTilt(KindResults):
     opening_contacts: list[str] = fact("contacts that gape or slide as it begins to go, at most 20, the widest first")
     opening_contacts_opposite: list[str] = fact("the same, pushed the opposite way")
     interval: bool = fact(INTERVAL)
-    energy_residual_ratio: float = fact("error of the energy ledger over the energy that went round")
+    energy_residual_ratio: float = fact("error of the energy balance over the total energy exchanged")
     time_step_s: float = fact("time step", "s")
     steps: int = fact("time steps of the last run")
     solver: Literal["compliant", "nonsmooth"] = fact("springs at the contacts, or rigid ones")
@@ -386,7 +386,7 @@ class DemDomain(KindResults):
     )
     convergence: Convergence | None = maybe("of rigid contacts, in all runs")
     cross_check: CrossCheck | None = maybe("by both solvers")
-    energy_residual_ratio: float = fact("greatest error of the energy ledgers over the energy that went round")
+    energy_residual_ratio: float = fact("greatest error of the energy balances over the total energy exchanged")
     steps: int = fact("time steps of all runs")
     four_hinge_mode_I_durations_s: list[float | None] = maybe(
         "of an arch: shortest failing durations by the four-hinge mechanism, either mode", "s"

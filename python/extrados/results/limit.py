@@ -160,8 +160,8 @@ class Tilt(KindResults):
     sliding_joints: list[int] = fact("joints that slide or part in the mechanism")
     hinges_opposite: list[Hinge] = fact("hinges of the mechanism to -x")
     dilating_joints: list[int] = maybe(
-        "associated friction: pressed joints that slide in the mechanism to +x; the collapse acceleration is then an upper "
-        "bound (dilatant friction)"
+        "joints in compression that slide in the collapse mechanism to +x; the collapse acceleration is then an upper "
+        "bound, because friction is dilatant in the analysis (associated friction)"
     )
     dilating_joints_opposite: list[int] = maybe("the same in the mechanism to -x")
     collapse_acceleration_non_associated_g: float = maybe(
@@ -387,23 +387,29 @@ class MovingLoad(KindResults):
     """moving-load: collapse load, or adequacy factor of a train, at every place along an arch or a bridge."""
 
     chain: str | None = fact("arch that the load crosses; null if it crosses the whole top")
-    collapse_load_N: float = fact("least collapse load; of a train, the load then on the structure", "N")
-    collapse_load_kN_per_m: float = fact("least load per metre of depth", "kN/m")
-    worst_place_m: float = fact("x of the first axle at that position", "m")
-    worst_place_over_span: float = fact("x of the first axle at that position, from the left springing, over the span")
-    worst_way: Literal["+x", "-x"] = fact("heading of the train there")
-    hinges: list[NamedHinge] = fact("hinges of the mechanism there")
-    sliding_joints: list[int] = fact("joints that slide or part in the mechanism there")
-    dilating_joints: list[int] = maybe(
-        "associated friction: pressed joints that slide in the mechanism there; the collapse load is then an upper bound "
-        "(dilatant friction)"
+    collapse_load_N: float = fact(
+        "least collapse load over all positions; for a train, the load on the structure at collapse", "N"
     )
-    greatest_compression_N: float = fact("greatest compression across a joint there at collapse", "N")
+    collapse_load_kN_per_m: float = fact("least load per metre of depth", "kN/m")
+    worst_place_m: float = fact("x of the first axle at the governing position", "m")
+    worst_place_over_span: float = fact(
+        "x of the first axle at the governing position, from the left springing, over the span"
+    )
+    worst_way: Literal["+x", "-x"] = fact("direction in which the train runs at the governing position")
+    hinges: list[NamedHinge] = fact("hinges of the mechanism at the governing position")
+    sliding_joints: list[int] = fact("joints that slide or open in the mechanism at the governing position")
+    dilating_joints: list[int] = maybe(
+        "joints in compression that slide in the collapse mechanism; the collapse load is then an upper bound, because "
+        "friction is dilatant in the analysis (associated friction)"
+    )
+    greatest_compression_N: float = fact(
+        "greatest compression across a joint at collapse, with the load at the governing position", "N"
+    )
     places_without_limit: int = fact("places at which no load of the kind causes collapse")
-    ties: list[TieForce] = maybe("forces of the ties there at collapse")
+    ties: list[TieForce] = maybe("forces of the ties at collapse, with the load at the governing position")
     duality_gap: float = fact("greatest difference between the bounds, in multiples of the weight")
     load_N: float = maybe("the load that the deck gives", "N")
-    safety_factor: float = maybe("collapse load over that load")
+    safety_factor: float = maybe("collapse load over the load that the deck gives")
     train: str = maybe("name of the train; load for axles that share a force, train for the axle loads of the deck")
     adequacy_factor: float = maybe("multiple of the factored train, or load, that causes collapse")
     live_load_factor: float = maybe("partial factor times dynamic factor by which the train is multiplied before")
@@ -411,7 +417,7 @@ class MovingLoad(KindResults):
         "permissible limit state: multiple of the unfactored train, times its serviceability factor, up to which a thrust line "
         "exists with stresses below the permissible one and the passive pressure of service"
     )
-    permissible_place_m: float = maybe("x of the first axle at which that multiple is least", "m")
+    permissible_place_m: float = maybe("x of the first axle at which the permissible factor is least", "m")
     permissible_stress_Pa: float = maybe("permissible compressive stress under service loads", "Pa")
     characteristic: bool = maybe("whether all partial factors are 1.0: loads and strengths are characteristic")
     violated: list[str] = maybe("assumptions of a load on a bridge that the structure does not meet")

@@ -256,10 +256,11 @@ class FailureDomain(KindResults):
         "failure curve by each impact rule, where their c_v differ by more than 1.3"
     )
     rule_ratio: float | None = maybe(
-        "greatest ratio of the failing amplitudes of two impact rules at one duration; null: no duration at which two fail"
+        "greatest ratio between the lowest amplitudes that cause collapse by two impact rules, at the same duration of the "
+        "pulse; null: at no duration does collapse follow from two rules"
     )
     pulse: Pulse = fact("shape of the pulses")
-    mode_I: ModeCurve = fact("lowest amplitudes that cause collapse in either mode, Mode I after an impact")
+    mode_I: ModeCurve = fact("lowest amplitudes that cause collapse, with or without an impact")
     mode_II: ModeCurve = fact("lowest amplitudes that cause collapse in the first half cycle, without an impact")
     pocket_begins_g: list[float | None] = fact(
         "amplitude at which the first safe region above the curve begins; null: none", "g"
@@ -373,7 +374,8 @@ class FailureCurve(ResultModel):
         "the curve by each impact rule, where their c_v differ by more than 1.3"
     )
     rule_ratio: float | None = maybe(
-        "greatest ratio of the failing amplitudes of two impact rules at one duration; null: no duration at which two fail"
+        "greatest ratio between the lowest amplitudes that cause collapse by two impact rules, at the same duration of the "
+        "pulse; null: at no duration does collapse follow from two rules"
     )
     fit: CurveFit = maybe(
         "Eq. 5.5 fitted to this curve (radius not scaled); omitted with fewer than four points to fit"

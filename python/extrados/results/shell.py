@@ -145,7 +145,7 @@ class Pushover(PushCurve, KindResults):
     stages: list[StageOfPush] = maybe("of a run in stages, each; without a name, the numbers are those of the main one")
     frame: list[FrameCapacity] = maybe("strengths of its piers by the formulas of codes, in the direction of the push")
     variants: list[Variation] = maybe("the first sense with other assumptions")
-    verification: Verification = maybe("verification by displacement, of a building of walls on a plan")
+    verification: Verification = maybe("displacement-based verification of a building that is given in plan")
     band_N: list[float] = maybe("least and greatest base shear of all variants and the deck's own", "N")
 
     def judged(self, demand: Demand) -> Verdict:

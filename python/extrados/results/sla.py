@@ -193,7 +193,9 @@ class Sla(SlaCurve, KindResults):
     )
     measured: Comparison = maybe("the measured curve of the deck beside the first sense's")
     scatter: Scatter = maybe("repetitions with other seeds")
-    verification: Verification = maybe("verification by displacement, of a wall that its own masses push")
+    verification: Verification = maybe(
+        "displacement-based verification of a wall on which the horizontal forces of its own masses act"
+    )
     stones: bool = fact("whether the model is of blocks with joints, whose peak acceleration is a static limit load")
     hinges: list[str] = maybe("of blocks: joints that are open but for an edge at the peak")
 

@@ -75,16 +75,20 @@ class Ensemble(Annual):
     uplifted: int = fact("runs that rock")
     uplift_probability: float | None = fact("share of the runs that rock")
     uplift_confidence_interval: list[float] = fact("its score interval", source="Wilson 1927")
-    mean_peak_rotation_ratio: float | None = fact("mean of the greatest rotation over the critical one; collapse is 1")
-    deviation_peak_rotation_ratio: float | None = fact("standard deviation of that ratio")
-    median_peak_rotation_ratio: float | None = fact("median of that ratio")
+    mean_peak_rotation_ratio: float | None = fact(
+        "mean of the peak rotation over the critical rotation; a run that collapses counts as 1"
+    )
+    deviation_peak_rotation_ratio: float | None = fact(
+        "standard deviation of the peak rotation over the critical rotation"
+    )
+    median_peak_rotation_ratio: float | None = fact("median of the peak rotation over the critical rotation")
     confidence: float = fact("level of all intervals")
     restitution: float | None = fact(
         "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
     )
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     critical_rotation_rad: float = fact("rotation from which gravity causes collapse", "rad")
-    initial_rotation_ratio: float = fact("rotation at the start over the critical one")
+    initial_rotation_ratio: float = fact("rotation at the start over the critical rotation")
     motions: int = fact("number of motions")
     conditions: Conditions = fact("over the runs: whether blocks slide or hinges form elsewhere")
     collapse_probability_by_rule: dict[str, float] = maybe(
@@ -152,22 +156,32 @@ class OverLevels(Annual):
     count: list[int] = fact("motions with a result, at each level")
     failed: int = fact("runs without a result")
     collapsed: list[int] = fact("motions that cause collapse, at each level")
-    collapse_probability: list[float | None] = fact("their share, at each level")
-    confidence_interval: list[list[float]] = fact("score intervals of that share", source="Wilson 1927")
-    uplifted: list[int] = fact("motions that make it rock, at each level")
-    uplift_probability: list[float | None] = fact("their share, at each level")
-    uplift_confidence_interval: list[list[float]] = fact("score intervals of that share", source="Wilson 1927")
-    mean_peak_rotation_ratio: list[float | None] = fact(
-        "mean of the greatest rotation over the critical one, at each level; collapse is 1"
+    collapse_probability: list[float | None] = fact("share of the motions that cause collapse, at each level")
+    confidence_interval: list[list[float]] = fact("score intervals of the collapse probability", source="Wilson 1927")
+    uplifted: list[int] = fact("number of motions that make the structure rock, at each intensity level")
+    uplift_probability: list[float | None] = fact("share of the motions that make the structure rock, at each level")
+    uplift_confidence_interval: list[list[float]] = fact(
+        "score intervals of the share that rocks", source="Wilson 1927"
     )
-    deviation_peak_rotation_ratio: list[float | None] = fact("standard deviation of that ratio, at each level")
-    median_peak_rotation_ratio: list[float | None] = fact("median of that ratio, at each level; collapse is 1")
+    mean_peak_rotation_ratio: list[float | None] = fact(
+        "mean of the peak rotation over the critical rotation, at each level; a motion that causes collapse counts as 1"
+    )
+    deviation_peak_rotation_ratio: list[float | None] = fact(
+        "standard deviation of the peak rotation over the critical rotation, at each level"
+    )
+    median_peak_rotation_ratio: list[float | None] = fact(
+        "median of the peak rotation over the critical rotation, at each level; a motion that causes collapse counts as 1"
+    )
     peak_rotation_ratio_16: list[float | None] = fact(
-        "ratio that 16 % of the motions stay within, at each level; null: collapse",
+        "peak rotation over the critical rotation that 16 % of the motions do not exceed, at each level; null: collapse",
         source="Vamvatsikos and Cornell 2002",
     )
-    peak_rotation_ratio_50: list[float | None] = fact("ratio that half of them stay within; null: collapse")
-    peak_rotation_ratio_84: list[float | None] = fact("ratio that 84 % of them stay within; null: collapse")
+    peak_rotation_ratio_50: list[float | None] = fact(
+        "peak rotation over the critical rotation that half of the motions do not exceed, at each level; null: collapse"
+    )
+    peak_rotation_ratio_84: list[float | None] = fact(
+        "peak rotation over the critical rotation that 84 % of the motions do not exceed, at each level; null: collapse"
+    )
     median_pga_g: list[float | None] = fact("median peak acceleration of the scaled motions, at each level", "g")
     confidence: float = fact("level of all intervals")
     restitution: float | None = fact(
@@ -175,7 +189,7 @@ class OverLevels(Annual):
     )
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     critical_rotation_rad: float = fact("rotation from which gravity causes collapse", "rad")
-    initial_rotation_ratio: float = fact("rotation at the start over the critical one")
+    initial_rotation_ratio: float = fact("rotation at the start over the critical rotation")
     median: float | None = maybe(
         "median of the lognormal curve of collapse at a level, in intensity_unit", source="Baker 2015"
     )
@@ -250,21 +264,25 @@ class OverDurations(KindResults):
     """fragility: generated motions of several durations; lists hold one value a duration."""
 
     durations_s: list[float] = fact("durations of the motions", "s")
-    mean_peak_rotation_ratio: list[float | None] = fact("mean of the greatest rotation over the critical one, at each")
-    deviation_peak_rotation_ratio: list[float | None] = fact("standard deviation of that ratio")
-    collapse_probability: list[float | None] = fact("share of the motions that cause collapse, at each")
-    uplift_probability: list[float | None] = fact("share of the motions that make it rock, at each")
+    mean_peak_rotation_ratio: list[float | None] = fact(
+        "mean of the peak rotation over the critical rotation, at each duration"
+    )
+    deviation_peak_rotation_ratio: list[float | None] = fact(
+        "standard deviation of the peak rotation over the critical rotation, at each duration"
+    )
+    collapse_probability: list[float | None] = fact("share of the motions that cause collapse, at each duration")
+    uplift_probability: list[float | None] = fact("share of the motions that make the structure rock, at each duration")
     confidence_interval: list[list[float]] = fact("score intervals of the collapse probability", source="Wilson 1927")
     confidence: float = fact("level of these intervals")
     count: list[int] = fact("motions with a result, at each")
     failed: int = fact("runs without a result")
     collapsed: list[int] = fact("motions that cause collapse, at each")
-    uplifted: list[int] = fact("motions that make it rock, at each")
+    uplifted: list[int] = fact("number of motions that make the structure rock, at each duration")
     restitution: float | None = fact(
         "coefficient of restitution: angular velocity after / before an impact; null on a compliant base"
     )
     critical_rotation_rad: float = fact("rotation from which gravity causes collapse", "rad")
-    initial_rotation_ratio: float = fact("rotation at the start over the critical one")
+    initial_rotation_ratio: float = fact("rotation at the start over the critical rotation")
     median_pga_g: list[float | None] = fact("median peak acceleration at each duration", "g")
     conditions: Conditions = fact("over all runs: whether blocks slide or hinges form elsewhere")
 
@@ -291,7 +309,7 @@ class Resonance(KindResults):
     cap_g: float = fact("cap of the ground acceleration", "g")
     cap_ratio: float = fact("cap over the uplift acceleration")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
-    initial_rotation_ratio: float = fact("rotation at the start over the critical one")
+    initial_rotation_ratio: float = fact("rotation at the start over the critical rotation")
     half_cycles: int = fact("changes of sign of the motion")
     collapse_time_s: float | None = fact("time from which its rotation is past recovery", "s")
     switch_times_s: list[float] = fact("when the motion changes sign", "s")

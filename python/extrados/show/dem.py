@@ -235,7 +235,7 @@ def _energies(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         style.legend_above(low)
         saved = style.save(fig, folder, f"{name}-energy")
     return saved, (
-        f"Kinetic energy, and the whole ledger; it closes to {100 * _stored(run, name).energy_residual_ratio:.2g} % of the energy that went round."
+        f"Kinetic energy, and all terms of the energy balance. The error of the balance is {100 * _stored(run, name).energy_residual_ratio:.2g} % of the total energy exchanged."
     )
 
 

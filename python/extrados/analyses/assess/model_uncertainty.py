@@ -46,7 +46,7 @@ def estimate_collapse(rows: list[StrategyVerdict], fragility: KindResults | None
     if not contributions:
         return CollapseProbability(
             probability=None, low=None, high=None, contributions=[], without=without, **dynamic,
-            statement=said.strip() or "No probability of collapse is given: no strategy has both a critical scale factor and tests in the verification book.",
+            statement=said.strip() or "No probability of collapse is given: no strategy has both a critical scale factor and comparisons with known results in the verification book.",
             method=left.strip(),
         )  # fmt: skip
     p = sum(one.weight * one.probability for one in contributions)
@@ -113,7 +113,7 @@ def _entry(row: StrategyVerdict) -> ModelUncertainty | str:
         return "no result"
     entries = [one for one in uncertainties_of(of(row.strategy).kind) if one.quantity in CAPACITIES]
     if row.axis != STATIC or not entries:
-        return "no tests of its capacity in the verification book"
+        return "the verification book has no comparisons of its capacity with known results"
     if row.violated:
         return "assumptions that do not hold"
     if row.margin is None:

@@ -112,11 +112,12 @@ def _refuse_sizes(options: LocalMechanism) -> None:
     for name, users in ONLY.items():
         if name in options.model_fields_set and getattr(options, name) and options.mechanism not in users:
             raise Refused(
-                f"{options.mechanism} does not use {name}: remove it ({', '.join(users)} do)", ("analysis", name)
+                f"mechanism '{options.mechanism}' does not use {name}: remove this key, which is only for {', '.join(users)}",
+                ("analysis", name),
             )
     if options.interlocking is not None and options.side_walls is not None:
         raise Refused(
-            "teeth hold a facade that leaves its side walls behind: leave interlocking, or side_walls, out",
+            "interlocking is for a facade that separates from its side walls, side_walls for one that moves with them: remove one of the two keys",
             ("analysis", "interlocking"),
         )
     if options.interlocking is not None and options.interlocking.unit_height > top - options.hinge_height:

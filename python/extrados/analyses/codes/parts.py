@@ -175,7 +175,7 @@ def _nz_wall(part: Part, spectrum: Callable[[float, float], float] | None, state
     """The wall cracks at mid height into two halves of one thickness; the load on top acts at the middle of the wall's half."""
     barred, demand, capacity, note = "", None, None, ""
     if part.element != "vertical-bending":
-        barred = f"the rule is for walls that span one way between floors, this is none ({part.element})"
+        barred = f"the rule applies only to walls that span one way between floors; this wall does not ({part.element})"
     elif part.load < 0.0 or part.height is None or part.thickness is None:
         barred = "the sizes of the wall are not known"
     else:

@@ -65,11 +65,13 @@ def follow(context: Context, options: Dem, trial: Trial, name: str = "dem") -> R
         )
     if found.residual > 0.01:
         result.warnings.append(
-            f"the energy ledger is off by {100 * found.residual:.2g} % of the energy that went round"
+            f"the error of the energy balance is {100 * found.residual:.2g} % of the total energy exchanged"
         )
     result.warnings += dem_model.unconverged(found.effort) + chaos["violated"]
     if numbers["still_moving"]:
-        result.warnings.append("it still moves at the end of the run: a longer end_time may show another outcome")
+        result.warnings.append(
+            "the structure still moves at the end of the run: a longer end_time may give another outcome"
+        )
     if trial.idle:
         result.warnings.append("nothing moves it: add [motion], [[initial.movements]] or [initial] rotation_ratio")
     if result.status == "ok":

@@ -85,11 +85,13 @@ def run(context: Context, options: Dem, model: SolidModel) -> Result:
         result.warnings.append(f"contacts slide by up to {1e3 * seen.sliding.peak:.3g} mm")
     if found.residual > 0.01:
         result.warnings.append(
-            f"the energy ledger is off by {100 * found.residual:.2g} % of the energy that went round"
+            f"the error of the energy balance is {100 * found.residual:.2g} % of the total energy exchanged"
         )
     result.warnings += dem_model.unconverged(found.effort) + chaos["violated"]
     if r.still_moving:
-        result.warnings.append("it still moves at the end of the run: a longer end_time may show another outcome")
+        result.warnings.append(
+            "the structure still moves at the end of the run: a longer end_time may give another outcome"
+        )
     if moved is None:
         result.warnings.append("nothing moves it: add [motion]")
     result.answer = solid_answer(r, moved is None)

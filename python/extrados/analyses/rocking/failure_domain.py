@@ -369,7 +369,12 @@ def run(context: Context, options: FailureDomain) -> Result:
         "duration": Array(durations, ("duration",), "s", "t_p of step and rectangular pulses, else the period T_p"),
         "amplitude": Array(amplitudes / GRAVITY, ("amplitude",), "g"),
         "outcome": Array(curves.codes, ("duration", "amplitude"), "", "0 no hinging, 1 recovery, 2 Mode I, 3 Mode II"),
-        "mode_I": Array(curves.mode_i / GRAVITY, ("duration",), "g", "lowest amplitude of collapse, of either mode"),
+        "mode_I": Array(
+            curves.mode_i / GRAVITY,
+            ("duration",),
+            "g",
+            "lowest amplitude that causes collapse, with or without an impact",
+        ),
         "pocket": Array(
             curves.pocket / GRAVITY, ("duration",), "g", "lowest amplitude of the first safe region above the curve"
         ),
@@ -512,8 +517,9 @@ def _over_uplift(durations: np.ndarray, pocket: np.ndarray, model: Rocker) -> di
     return {
         "frequency_ratio": 2.0 * np.pi / durations * model.time_unit,
         "pocket_begins_ratio": pocket / model.unit_acceleration,
-        "mode_names": "mode_I: lowest failing amplitude of either mode; below mode_II the failure comes after an impact "
-        "(mode 1, with impact, of Zhang and Makris 2001); mode_II: lowest without impact (their mode 2)",
+        "mode_names": "mode_I: lowest amplitude that causes collapse, with or without an impact; where mode_I is less than "
+        "mode_II, the block overturns after an impact (mode 1 of Zhang and Makris 2001). mode_II: lowest amplitude that "
+        "causes collapse without an impact (mode 2 of Zhang and Makris)",
     }
 
 

@@ -138,7 +138,7 @@ def rocking_result(
     settled = response.settled if over is None else not over.contacts.still_moving
     if not settled and not response.interrupted:
         result.warnings.append(
-            f"it still rocks at the end time of {response.stop_time:g} s: the outcome is open, give a longer end_time"
+            f"the structure still rocks at the end time of {response.stop_time:g} s: the outcome is open, set a longer end_time"
         )
     r = out.Rocking(
         rotation_of=of,
@@ -205,7 +205,7 @@ def rocking_result(
             response.ledger,
             ("time",),
             "J",
-            "work of the ground less the energy lost at impacts and taken by restraints",
+            "work done by the ground motion, minus the energy lost at impacts, minus the energy absorbed by restraints",
         ),
         "impact_time": Array(np.array([t for t, _ in impacts]), ("impact",), "s"),
         "required_friction": Array(friction, ("time", "joint"), "", "coefficient of friction needed"),

@@ -132,7 +132,7 @@ def _result(
     result.warnings += violated
     if not settled and not r.interrupted:
         result.warnings.append(
-            f"it still moves enough to overturn at the end time of {r.stop_time:g} s: the outcome is open, give a longer end_time"
+            f"the block still moves enough to overturn at the end time of {r.stop_time:g} s: the outcome is open, set a longer end_time"
         )
     if rigid is not None and rigid[0] != r.outcome:
         result.warnings.append(f"on a rigid base, with Housner's impact, the outcome is another one: {rigid[0]}")
@@ -167,7 +167,7 @@ def _result(
         "vertical": Array(r.vertical, ("time",), "m/s^2", "vertical ground acceleration"),
         "kinetic": Array(r.kinetic, ("time",), "J"),
         "potential": Array(potential, ("time",), "J", "with that of the springs, above that at rest"),
-        "ledger": Array(r.ledger, ("time",), "J", "work of the ground less the energy taken by the base"),
+        "ledger": Array(r.ledger, ("time",), "J", "work done by the ground motion, minus the energy absorbed by the compliant base"),
         "impact_time": Array(np.array(impacts), ("impact",), "s", "an edge lands"),
         "pressed": Array(pressed, ("time", "end"), "m", "range of the base that pushes, from the foot of the centre"),
         "required_friction": Array(friction[:, None], ("time", "joint"), "", "coefficient of friction needed"),

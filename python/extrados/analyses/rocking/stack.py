@@ -103,7 +103,7 @@ def _result(
     result.warnings += violated
     if not r.settled and not r.interrupted:
         result.warnings.append(
-            f"it still rocks at the end time of {r.stop_time:g} s: the outcome is open, give a longer end_time"
+            f"the blocks still rock at the end time of {r.stop_time:g} s: the outcome is open, set a longer end_time"
         )
     index = drawn_times(r.time, r.rotation.T, options)
     result.tables["rocking"] = TableData(
@@ -127,7 +127,7 @@ def _result(
         "vertical": Array(r.vertical, ("time",), "m/s^2", "vertical ground acceleration"),
         "kinetic": Array(r.kinetic, ("time",), "J"),
         "potential": Array(r.potential, ("time",), "J"),
-        "ledger": Array(r.ledger, ("time",), "J", "work of the ground less the energy lost at impacts"),
+        "ledger": Array(r.ledger, ("time",), "J", "work done by the ground motion, minus the energy lost at impacts"),
         "impact_time": Array(np.array(impacts), ("impact",), "s"),
         "required_friction": Array(needed, ("time", "joint"), "", "coefficient of friction needed"),
         **geometry_arrays(model.assembly),

@@ -159,10 +159,16 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
         max_length=50,
     )
     main_stage: str | None = key(
-        None, "name of the stage whose numbers are those of the analysis; default the last push, or the last stage"
+        None,
+        "name of the stage whose results are reported as the results of the analysis; default the last push, or the last "
+        "stage if no stage is a push",
     )
     mesh: ShellOptions = key(ShellOptions(), "elements, [analysis.mesh]")
-    constant_damage: bool = key(True, "bring the weight on with damage before the push", source="thesis 4.3.1")
+    constant_damage: bool = key(
+        True,
+        "the weight grows from 0 to 1 and causes damage before the push; false: the push acts on undamaged walls",
+        source="thesis 4.3.1",
+    )
     events: int = key(20_000, "most events", ge=1, le=100_000_000)
     target_displacement: Length | None = key(None, "stop where the control displacement reaches it", gt=0)
     stop_fraction: float = key(0.0, "stop when the load drops below this part of its peak", ge=0, lt=1)
@@ -187,7 +193,7 @@ class Pushover(Staged, CrackOptions, BuildingAnalysis):
     probes: list[Length] = key([], "report the envelope's load at these displacements", max_length=100)
     frame: FrameRules | None = key(None, "strengths of its piers by formulas of codes, [analysis.frame]")
     verification: Verification = key(
-        Verification(), "verification by displacement, of a building of walls on a plan, [analysis.verification]"
+        Verification(), "displacement-based verification of a building that is given in plan, [analysis.verification]"
     )
     variants: list[Variant] = key(
         [], "the first sense again with other assumptions: a band of curves, [[analysis.variants]]", max_length=50

@@ -53,7 +53,7 @@ def refuse_alike(building: Building, options: Sla) -> bool:
     random_mesh = options.mesh.pattern == "random" or bool(getattr(building.structure, "outline", None))
     if not random_mesh and options.strength_variation == 0.0:
         raise Refused(
-            'seeds need a random mesh (mesh.pattern = "random") or for strength_variation above 0',
+            'seeds need a random mesh (mesh.pattern = "random") or a strength_variation above 0',
             ("analysis", "seeds"),
         )
     return random_mesh

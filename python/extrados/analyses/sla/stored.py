@@ -81,7 +81,10 @@ def events_of_curve(result: Result, unit: float, curve: Curve, prefix: str) -> N
     if not prefix:
         for name in ("damage_start", "damage_end"):
             result.arrays[name] = Array(
-                getattr(curve, name).T, ("all_points", "damage_row"), "", "damage, for a run that continues"
+                getattr(curve, name).T,
+                ("all_points", "damage_row"),
+                "",
+                "damage, from which a later run can continue this run",
             )
     d, p = curve.envelope(unit)
     result.arrays[f"{prefix}envelope_displacement"] = Array(d, (f"{prefix}envelope",), "m", "monotone envelope")
@@ -114,7 +117,7 @@ def curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> 
         if not prefix:
             result.arrays["state_damage"] = Array(
                 np.stack([s.damage.T for s in states]), (*dims, "all_points", "damage_row"), "",
-                "damage before the event, for a run that continues",
+                "damage before the event, from which a later run can continue this run",
             )  # fmt: skip
         result.arrays[f"{prefix}state_load"] = Array(curve.force(unit)[[s.event for s in states]], dims, "N", "load")
         result.arrays[f"{prefix}state_displacement"] = Array(

@@ -275,7 +275,9 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         max_length=100,
     )
     constant_damage: bool = key(
-        True, "bring A from 0 to 1 with damage before B; without it B acts on the undamaged wall", source="thesis 4.3.1"
+        True,
+        "loads A grow from 0 to 1 and cause damage before loads B act; false: loads B act on the undamaged wall",
+        source="thesis 4.3.1",
     )
     directions: list[Literal["+", "-"]] = key(
         ["+"], "senses of B, each from the same start", min_length=1, max_length=2
@@ -288,7 +290,8 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
         max_length=50,
     )
     main_stage: str | None = key(
-        None, "name of the stage whose numbers and figures are those of the analysis; default the last"
+        None,
+        "name of the stage whose results and figures are reported as those of the analysis; default the last stage",
     )
     control: list[Watch] = key(
         [], "displacement of the curve, a sum of terms; default the mean displacement under B", max_length=50
@@ -347,7 +350,7 @@ class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     strength_seed: int = key(1, "of the strength field", ge=0, le=2**31 - 1)
     verification: Verification = key(
         Verification(),
-        "verification by displacement, of a wall that its own masses push to +x, [analysis.verification]",
+        "displacement-based verification of a wall on which the horizontal forces of its own masses act to +x, [analysis.verification]",
     )
     resume_from: str | None = key(
         None,

@@ -152,7 +152,9 @@ def run(context: Context, options: Resonance) -> Result:
         "time": Array(r.time[keep], ("time",), "s"),
         "rotation": Array(r.rotation[keep], ("time",), "rad"),
         "ground": Array(r.ground[keep], ("time",), "m/s^2"),
-        "ledger": Array(r.ledger[keep], ("time",), "J", "work of the ground less the energy lost at impacts"),
+        "ledger": Array(
+            r.ledger[keep], ("time",), "J", "work done by the ground motion, minus the energy lost at impacts"
+        ),
     }
     result.tables["resonance"] = TableData(
         {"switch": optimum.switches, "peak_rotation": np.abs(optimum.peaks[1:])},

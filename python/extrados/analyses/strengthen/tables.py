@@ -123,7 +123,9 @@ class Change(Table):
     )
     start: float | str | None = key(None, "value without the intervention; default that of the deck")
     stop: float | str = key(about='greatest change considered, in the unit of the key or as text such as "40 cm"')
-    count: int = key(9, "values between both at which the capacity is computed", ge=3, le=200)
+    count: int = key(
+        9, "number of values from `start` to `stop`, both included, at which the capacity is computed", ge=3, le=200
+    )
 
 
 class Weights(Table):

@@ -81,7 +81,9 @@ def make_brickwork(
         raise BadGeometry("the openings leave nothing of the wall")
     joints = _joints(wall, small)
     if all(b != GROUND for *_, b in joints):
-        raise BadGeometry("the openings leave no masonry on the ground")
+        raise BadGeometry(
+            "the openings take the full width at ground level: no masonry is left there. Make the openings narrower or raise them"
+        )
     return stones_and_joints([outline(box) for box in wall.boxes], wall.names, joints, density, depth)
 
 

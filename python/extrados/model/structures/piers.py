@@ -43,5 +43,7 @@ def make_piers(length: float, height: float, openings: Sequence[Box], density: f
         for i, k, p, q in contacts(bodies, length)
     ]
     if all(b != GROUND for *_, b in joints):
-        raise BadGeometry("the openings leave no masonry on the ground")
+        raise BadGeometry(
+            "the openings take the full width at ground level: no masonry is left there. Make the openings narrower or raise them"
+        )
     return stones_and_joints([outline(body) for body in bodies], names, joints, density, depth)

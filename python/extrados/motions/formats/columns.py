@@ -176,7 +176,7 @@ def _refuse_factor(text: Lines, said: str) -> None:
     if found and float(found[1]) != 1.0:
         raise text.error(
             0,
-            f"the header says '{found[0].strip()}', and no factor of a header is applied: multiply the values, and delete the words",
+            f"the header says '{found[0].strip()}', but the program applies no factor from a header: multiply the values by the factor and delete these words",
         )
 
 
