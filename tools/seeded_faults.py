@@ -65,10 +65,11 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
     "fortran/motion": (("test_motion",), ("unit/test_motion_core.py", "unit/test_generated.py"), "motion/"),
     "fortran/dem": (
         ("test_dem",),
-        ("unit/test_dem_core.py", "unit/test_dem_rules.py", "unit/test_dem_nonsmooth.py", "unit/test_dem_analysis.py"),
+        ("unit/test_dem_core.py", "unit/test_dem_rules.py", "unit/test_dem_nonsmooth.py", "unit/test_dem_analysis.py",
+         "unit/test_dem_ties.py"),
         "dem/",
     ),
-    "fortran/dem3": ((), ("unit/test_dem3_core.py", "unit/test_dem3_nonsmooth.py", "unit/test_dem_solids.py"), "solid/dem"),
+    "fortran/dem3": ((), ("unit/test_dem3_core.py", "unit/test_dem3_nonsmooth.py", "unit/test_dem_solids.py", "unit/test_dem_ties.py"), "solid/dem"),
     "fortran/nonsmooth": ((), ("unit/test_dem_nonsmooth.py", "unit/test_dem3_nonsmooth.py"), "solid/dem-nonsmooth"),
     "fortran/limit": (
         (),
@@ -87,7 +88,7 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
          "unit/test_vault_shells.py", "unit/test_shell_joints.py"),
         "shell/ or building/one-way",
     ),
-    "fortran/frame": ((), ("unit/test_frame_elements.py", "unit/test_frame_view.py", "unit/test_frame_analyses.py"), "frame/"),
+    "fortran/frame": ((), ("unit/test_frame_elements.py", "unit/test_frame_view.py", "unit/test_frame_analyses.py", "unit/test_frame_fragility.py"), "frame/"),
     "c/quake": (("test_quake", "test_motion"), ("unit/test_motion_core.py", "unit/test_generated.py"), "motion/"),
     "c/sparse": (("test_sparse", "test_sla"), ("unit/test_sla_events.py", "unit/test_vertex.py"), "sla/"),
     "c/common": (("test_handles", "test_threads", "test_blas"), ("unit/test_border.py", "unit/test_cli.py"), "limit/oppenheim"),

@@ -168,7 +168,7 @@ def test_a_free_part_answers_at_its_own_period() -> None:
     low = r.checks["NTC activation at SLD (at height z)"]
     s_s = 1.2  # 1.40 - 0.40 F_0 a_g/g is above its bound of 1.2
     period, first = ntc.own_period(h, t, rho, young), 0.05 * 10.0**0.75
-    a_z = 2.5 * 0.05 * s_s * 0.8 * 9.0 / 7.0 * math.sqrt(1.01)  # 10 m: three storeys
+    a_z = 2.5 * 0.05 * s_s * 0.8 * 4.0 / 3.0 * math.sqrt(1.01)  # 10 m: four storeys
     assert 1.10 * 0.3**-0.20 * 0.3 > first > 1.10 * 0.3**-0.20 * 0.3 / 3.0, "on the plateau"
     amplified = 1.1 / math.sqrt(0.05)
     assert period < 0.8 * first

@@ -14,6 +14,7 @@ from extrados.analyses.codes.kinematics import Overturning, Weight, capacity, in
 from extrados.decks.reader import make_deck
 from extrados.limit.linkage import laden
 from extrados.schema.constants import GRAVITY
+from extrados.schema.table import storeys_in
 
 #: Results of a local mechanism that an immobile part must not change
 CAPACITY = (
@@ -273,6 +274,12 @@ def test_the_place_of_a_mechanism_comes_from_the_geometry() -> None:
     assert found(hinge_height=3.0, base_height=0.0).base_height_m == 0.0
     other = found(hinge_height=3.0, base_height=7.0, building_height=14.0)
     assert (other.base_height_m, other.building_height_m) == (7.0, 14.0)
+
+
+@pytest.mark.parametrize(("height", "storeys"), [(2.0, 1), (6.0, 2), (7.0, 3), (9.0, 3), (10.0, 4)])
+def test_a_begun_storey_counts(height: float, storeys: int) -> None:
+    """More storeys amplify more, gamma_1 = 3 n/(2 n + 1): rounding down would be unsafe."""
+    assert storeys_in(height) == storeys
 
 
 def test_e_star_by_links_is_said_where_it_differs_from_that_by_stones() -> None:

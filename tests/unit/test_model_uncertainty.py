@@ -1,7 +1,10 @@
 """The probability of collapse of an assessment: closed forms of lognormal margins, and simulated tests."""
 
+import csv
 import math
+import tomllib
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,8 +14,9 @@ from scipy.stats import t as student
 from extrados.analyses.assess.asking import no_row
 from extrados.analyses.assess.model_uncertainty import estimate_collapse, percent
 from extrados.analyses.assess.strategies import of
+from extrados.results import uncertainty
 from extrados.results.assess import StrategyVerdict
-from extrados.results.statistics import Ensemble
+from extrados.results.statistics import Ensemble, OverLevels
 from extrados.results.uncertainty import ModelUncertainty, collapse_probability, uncertainties_of
 
 WALLS = ModelUncertainty("walls", ("tilt",), "capacity in acceleration", "experiment", 21, 0.95, 0.2, "", 1.0)
@@ -116,6 +120,26 @@ def test_the_share_under_the_motion_itself_comes_first() -> None:
     every = estimate_collapse(rows, Ensemble.model_construct(count=16, collapsed=16))
     assert f"at least {percent(16 / (16 + z * z))}: 16 of 16" in every.statement
     assert estimate_collapse(rows, Ensemble.model_construct(count=0, collapsed=0)).in_motion is None
+
+
+@pytest.mark.parametrize(
+    ("intensity", "levels", "collapsed"),
+    [("scale", [0.5, 1.0], 9), ("scale", [0.5, 1.2], None), ("pga", [0.5, 1.0], None)],
+)
+def test_levels_of_another_intensity_are_not_the_hazard(
+    intensity: str, levels: list[float], collapsed: int | None
+) -> None:
+    runs = OverLevels.model_construct(intensity=intensity, levels=levels, count=[20, 20], collapsed=[1, 9])
+    moving = estimate_collapse([row("tilt", margin=1.2)], runs).in_motion
+    assert (moving and moving.collapsed) == collapsed
+
+
+def test_the_table_names_the_analyses_of_the_verification_book() -> None:
+    book = Path(__file__).parents[2] / "tools" / "verification_strategies.toml"
+    of_book = {one["name"]: one["analyses"] for one in tomllib.loads(book.read_text())["strategy"]}
+    with Path(uncertainty.__file__).with_name("model_uncertainty.csv").open(newline="") as table:
+        for line in csv.DictReader(table):
+            assert line["analyses"].split() == of_book[line["strategy"]]
 
 
 def test_violated_assumptions_and_unknown_margins_contribute_nothing() -> None:

@@ -151,7 +151,7 @@ def test_a_chain_of_blocks_starts_where_limit_analysis_says(name: str) -> None:
 
 def test_parts_at_a_height_by_hand() -> None:
     """EN 1998-1 4.3.5 (of the parapet no period is known: resonance) and the floor spectrum of NTC: plateau 2.5 0.15 g of the first
-    mode, gamma_1 = 9/7 of three storeys in 10 m, psi z/H."""
+    mode, gamma_1 = 4/3 of four storeys in 10 m, psi z/H."""
     parapet, chimney = (
         run(n, "EN1998")["local-mechanism"].checks["EN 1998-1 part of a building"] for n in ("parapet", "chimney")
     )
@@ -160,7 +160,7 @@ def test_parts_at_a_height_by_hand() -> None:
     shape = 3.0 * 1.8 / (1.0 + (1.0 - 0.05 / first) ** 2) - 0.5
     assert (chimney.demand, chimney.capacity) == (pytest.approx(0.15 * shape), pytest.approx(0.3))
     r = run("chimney", "NTC")["local-mechanism"]
-    a_z, amplified = 9.0 / 7.0 * 2.5 * 0.15 * 0.8 * math.sqrt(1.01), 1.1 / math.sqrt(0.05)
+    a_z, amplified = 4.0 / 3.0 * 2.5 * 0.15 * 0.8 * math.sqrt(1.01), 1.1 / math.sqrt(0.05)
     felt = amplified * a_z / (1.0 + (amplified - 1.0) * (1.0 - 0.05 / (0.8 * first)) ** 1.6)
     check = r.checks["NTC activation (at height z)"]
     assert check.demand == pytest.approx(felt) and check.capacity == pytest.approx(0.3 / 1.35)

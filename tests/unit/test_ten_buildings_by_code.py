@@ -102,7 +102,7 @@ def acceleration(height: float, part: float, period: float, damping: float) -> f
     [
         pytest.param("tower", 5.0 / 24.0, 2.5, None, 0, marks=pytest.mark.verify),
         pytest.param("garden wall", 0.4 / 2.0, 0.2, None, 0, marks=pytest.mark.verify),
-        ("parapet", 0.3, 0.15, 0.9, 3), pytest.param("chimney", 0.3, 0.3, 0.8, 3, marks=pytest.mark.verify),
+        ("parapet", 0.3, 0.15, 0.9, 4), pytest.param("chimney", 0.3, 0.3, 0.8, 4, marks=pytest.mark.verify),
         pytest.param("statue on a pedestal", 1.0 / 3.0, 0.3, 0.4, 1, marks=pytest.mark.verify),
     ],
 )  # fmt: skip

@@ -12,6 +12,7 @@ from extrados.analyses.limit import trains
 from extrados.analyses.limit.tables import MovingLoad, TrainName
 from extrados.analyses.limit.trains import train_of
 from extrados.decks.reader import DeckError, make_deck
+from extrados.model.errors import BadGeometry
 
 
 @pytest.mark.parametrize(
@@ -114,6 +115,31 @@ def test_a_train_beyond_the_permissible_limit_state_leaves_the_verdict_open() ->
     assert run["moving-load"].permissible_factor < 1.0
     verdict = run.analyses[0]["verdict"]
     assert verdict["outcome"] == "open" and "permissible limit state" in verdict["violated"][0]
+
+
+def test_impact_multiplies_the_train_of_the_permissible_limit_state_too() -> None:
+    """The dynamic factor is an effect of the motion: as heavy a train without it has the same multiple."""
+    still, moving = (
+        extrados.run(of_service(count=3, **keys))["moving-load"].permissible_factor
+        for keys in (
+            {"serviceability": {"live": 1.5}},
+            {"serviceability": {}, "factors": {"dynamic": 1.5, "live": 2.0}},
+        )
+    )
+    assert moving == pytest.approx(still, rel=1e-9)
+
+
+def test_spandrel_walls_thicker_than_the_default_depth_are_refused() -> None:
+    """Blocks without a depth are 1 m deep: two walls of 0.6 m would leave soil of negative weight."""
+    stone = {"name": "stone", "points": [[0, 0], [1, 0], [1, 1], [0, 1]]}
+    keys = {"kind": "blocks", "block": [stone], "fill": {"cover": 0.4}}
+    for wall in (0.6, 0.4):
+        deck = make_deck({"structure": {**keys, "spandrels": {"thickness": wall}}, "analysis": {"kind": "tilt"}})
+        if wall < 0.5:
+            assert deck.building.blocks().fill is not None
+            continue
+        with pytest.raises(BadGeometry, match="leave no fill between them; the depth is 1 m"):
+            deck.building.blocks()
 
 
 def test_the_permissible_limit_state_needs_a_strength_and_a_train() -> None:

@@ -414,7 +414,7 @@ class MovingLoad(KindResults):
     adequacy_factor: float = maybe("multiple of the factored train, or load, that causes collapse")
     live_load_factor: float = maybe("partial factor times dynamic factor by which the train is multiplied before")
     permissible_factor: float = maybe(
-        "permissible limit state: multiple of the unfactored train, times its serviceability factor, up to which a thrust line "
+        "permissible limit state: multiple of the train, times its serviceability and dynamic factors, up to which a thrust line "
         "exists with stresses below the permissible one and the passive pressure of service"
     )
     permissible_place_m: float = maybe("x of the first axle at which the permissible factor is least", "m")

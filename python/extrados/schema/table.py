@@ -1,5 +1,6 @@
 """The base of every deck table."""
 
+from math import ceil
 from typing import Annotated, Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Field, create_model, field_validator, model_validator
@@ -48,7 +49,7 @@ STOREY = 3.0
 
 def storeys_in(height: float) -> int:
     """Storeys of a building so high [m] whose number is not given; more storeys amplify more, so that one alone is unsafe."""
-    return max(1, round(height / STOREY))
+    return max(1, ceil(height / STOREY - 1e-9))
 
 
 class FloorBelow(Table):
@@ -61,7 +62,7 @@ class FloorBelow(Table):
     )
     building_damping: float = key(0.05, "damping ratio of the building", gt=0, le=0.3)
     storeys: int | None = key(
-        None, "storeys N of the building: gamma_1 = 3 N/(2 N + 1); default one for each 3 m of its height", ge=1, le=50,
+        None, "storeys N of the building: gamma_1 = 3 N/(2 N + 1); default one for each begun 3 m of its height", ge=1, le=50,
         source="Circ. 7/2019 [C7.2.10]",
     )  # fmt: skip
 

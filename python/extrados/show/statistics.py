@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from extrados.results.codes import CodeChecks, LocalMechanism
+from extrados.results.codes import Checked
 from extrados.results.rocking import COLLAPSE, RECOVERY
 from extrados.results.statistics import (
     Ensemble,
@@ -476,11 +476,10 @@ def draw_harmonic_map(run: Stored, name: str, folder: Path) -> list[tuple[str, s
 
 def draw_code_checks(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Demand over capacity of each rule of `code-checks` or of a local mechanism."""
-    found = run[name]
-    checks = found.checks if isinstance(found, LocalMechanism) else run.results_of(name, CodeChecks).checks
+    found = run.results_of(name, Checked)
     rows = [
         (rule, c.demand / c.capacity, c.code)
-        for rule, c in checks.items()
+        for rule, c in found.checks.items()
         if c.verdict in ("holds", "fails") and c.demand is not None and c.capacity is not None and c.capacity > 0.0
     ]
     if not rows:
@@ -495,11 +494,11 @@ def draw_code_checks(run: Stored, name: str, folder: Path) -> list[tuple[str, st
         ax.set_xlabel("demand over capacity")
         alternatives = (
             " The NTC checks at SLV are alternatives: one satisfied check suffices."
-            if any(check.alternative for check in run.results_of(name, CodeChecks).checks.values())
+            if any(check.alternative for check in found.checks.values())
             else ""
         )
         pale = " Pale bars: formulas for comparison." if any(not code for _, _, code in rows) else ""
         return [(style.save(fig, folder, name), (
             f"Demand over capacity of each rule that applies; above 1 the check is not satisfied.{alternatives}{pale} "
-            f"{run.results_of(name, CodeChecks).overall().statement}"
+            f"{found.overall().statement}"
         ))]  # fmt: skip

@@ -604,6 +604,10 @@ class _Work:
                 raise Interrupted from None
             self.not_done.append(f"sensitivity: {stop}")
         if margins.stopped:
+            if "dem" in self.results:
+                self.not_done.append(
+                    "stiffness of the joints and moving supports by discrete elements: the time ran out"
+                )
             raise OutOfTime
         self._move_elements()
 

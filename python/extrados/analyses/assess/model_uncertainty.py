@@ -13,6 +13,8 @@ from extrados.results.verdict import KindResults
 CAPACITIES = ("capacity in acceleration", "peak load")
 #: Strategies whose critical scale factor is a static capacity over the peak
 STATIC = "acceleration"
+#: Distance from 1 within which a factor on the motions is the hazard itself
+SAME = 1e-9
 
 
 def estimate_collapse(rows: list[StrategyVerdict], fragility: KindResults | None = None) -> CollapseProbability:
@@ -75,9 +77,11 @@ def estimate_collapse(rows: list[StrategyVerdict], fragility: KindResults | None
 
 
 def _in_motion(rows: list[StrategyVerdict], fragility: KindResults | None) -> CollapseInMotion | None:
-    """The share of collapses at the hazard itself; None where no motion could be run."""
+    """The share of collapses at the hazard itself; None where no motion could be run, or no level is the hazard."""
     if isinstance(fragility, OverLevels):
         k = int(np.argmin(np.abs(np.array(fragility.levels) - 1.0)))
+        if fragility.intensity != "scale" or abs(fragility.levels[k] - 1.0) > SAME:
+            return None
         count, collapsed = fragility.count[k], fragility.collapsed[k]
     elif isinstance(fragility, Ensemble):
         count, collapsed = fragility.count, fragility.collapsed

@@ -278,7 +278,7 @@ class LocalMechanism(BuildingAnalysis):
     )
     storeys: int | None = key(
         None,
-        "storeys N of the building, for the modal participation; default one for each 3 m of its height",
+        "storeys N of the building, for the modal participation; default one for each begun 3 m of its height",
         ge=1,
         le=50,
     )

@@ -331,7 +331,7 @@ def _permissible(
 ) -> dict[str, object]:
     """Of the permissible limit state: least factor over all places [-], its place [m] and the permissible stress [Pa].
 
-    All partial factors are one. Limit analysis with the permissible stress as strength gives the greatest multiple of the
+    All partial factors are one; the dynamic factor, an effect of the motion, multiplies the train here too. Limit analysis with the permissible stress as strength gives the greatest multiple of the
     train under which a thrust line exists that no joint carries with more; 0 where none exists without the train.
     """
     building = context.building
@@ -346,7 +346,7 @@ def _permissible(
     found: dict[str, object] = {"permissible_stress_Pa": stress}
     if not LimitAnalysis(assembly, friction, strength=stress, loads=dead).stands():
         return found | {"permissible_factor": 0.0, "permissible_place_m": float(job.places[0])}
-    given, live = train_of(options, assembly.depth), service.live * strip
+    given, live = train_of(options, assembly.depth), service.live * options.factors.dynamic * strip
     train = replace(job.train, forces=given.forces * live, even=given.even * (1.0, 1.0, live))
     one = replace(job, assembly=assembly, friction=friction, strength=stress, dead=dead, train=train)
     factor = sweep(context, "permissible", one, len(one.places), "permissible limit state", slow=True).whole()["factor"]

@@ -204,7 +204,7 @@ class Serviceability(Table):
     passive_share: float = key(
         0.0, "share of `fill.passive` that acts under service loads, whose movements are small", ge=0, le=1
     )
-    live: float = key(1.0, "factor on the moving load", gt=0, le=10)
+    live: float = key(1.0, "factor on the moving load, besides `factors.dynamic`", gt=0, le=10)
 
 
 class MovingLoad(LimitAnalysisTable):

@@ -254,6 +254,10 @@ class Blocks(Structure):
 
     def assembly(self, density: float, folder: Path) -> Assembly:
         inspection, depth = self._inspected(folder)
+        try:
+            refuse_without_fill(self.fill, self.surfacing, self.spandrels, depth)
+        except ValueError as error:  # the depth of the file, or the default
+            raise BadGeometry(str(error)) from None
         made = assemble(inspection, density, depth)
         top = max(float(outline[:, 1].max()) for outline in made.outlines)
         return covered(made, top, density, self.fill, self.surfacing, self.spandrels)
