@@ -11,7 +11,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from extrados._build_info import VERSION
-from extrados.core.frame import Link
 from extrados.decks.reader import Deck
 from extrados.model.errors import BadGeometry
 from extrados.views.frame.options import FrameOptions
@@ -62,13 +61,15 @@ def plain_name(text: str) -> str:
     return re.sub(r"[^\w .-]", "_", text)
 
 
-def _is_rod(frame: EquivalentFrame, link: Link) -> bool:
+def _is_rod(frame: EquivalentFrame, k: int) -> bool:
     """Whether a link is not that of a corner, between vertical displacements and rotations of two nodes."""
+    link = frame.links[k]
     nodes = {node.freedoms for node in frame.nodes if node.level}
     return len(link.freedoms) != 4 or link.freedoms[:2] not in nodes or link.freedoms[2:] not in nodes
 
 
-def _rod(link: Link) -> str:
+def _rod(frame: EquivalentFrame, k: int) -> str:
+    link = frame.links[k]
     return (
         f"# Not exported: tie rod, stiffness {link.stiffness:.6g} N/m, strength {link.strengths[1]:.6g} N, "
         f"prestress {link.prestress:.6g} N"
@@ -76,7 +77,7 @@ def _rod(link: Link) -> str:
 
 
 def _tell_rods(frame: EquivalentFrame, form: str) -> None:
-    rods = sum(_is_rod(frame, link) for link in frame.links)
+    rods = sum(_is_rod(frame, k) for k in range(len(frame.links)))
     if rods:
         log.warning("%s: not exported: %d links of tie rods; comments give their values", form, rods)
 
@@ -136,9 +137,9 @@ def _links(frame: EquivalentFrame) -> Iterator[str]:
     """Corners and floors; nodes of corners from 20001, material and element of link k 30001 + k."""
     at: dict[tuple[int, ...], int] = {node.freedoms: k for k, node in enumerate(frame.nodes) if node.level}
     number = 0
-    for link in frame.links:
-        if _is_rod(frame, link):
-            yield _rod(link)
+    for number_of_link, link in enumerate(frame.links):
+        if _is_rod(frame, number_of_link):
+            yield _rod(frame, number_of_link)
             continue
         tags = []
         for sign, freedoms, arm in ((1, link.freedoms[:2], link.parts[1]), (-1, link.freedoms[2:], -link.parts[3])):
@@ -228,7 +229,7 @@ def tables(deck: Deck) -> str:
         text.append(
             f"{floor.storey} {floor.kind} {floor.young or 0:.6g} {floor.thickness or 0:.6g} {floor.load:.6g} {names}"
         )
-    text += [_rod(link).replace("#", "!", 1) for link in frame.links if _is_rod(frame, link)]
+    text += [_rod(frame, k).replace("#", "!", 1) for k in range(len(frame.links)) if _is_rod(frame, k)]
     text += ["/loads", "! node vertical_force moment"]
     for k, node in enumerate(frame.nodes, 1):
         if node.level:
