@@ -31,3 +31,13 @@ def test_strength_in_shear_of_a_pier(shear, least, most):
     values = [[float(x) for x in line.split()[:8]] for line in found]
     assert values and all(least <= v[7] <= most for v in values)
     assert all(v[6] == 0.3 for v in values)
+
+
+@pytest.mark.parametrize("form", ["opensees-frame", "frame-tables"])
+def test_tie_rods_are_left_out_in_so_many_words(form, caplog):
+    floor = {"storey": 1, "young": 5e7, "thickness": 0.05, "load": 4e3}
+    data = deck({"kind": "frame-pushover"}, floors=[floor])
+    data["structure"]["rods"] = [{"start": [0, 0, 3], "end": [6, 4, 3], "area": 5e-4, "material": "steel"}]
+    data["materials"] = {"steel": {"young": 2e11}}
+    text = exported(make_deck(data), form)
+    assert "tie rod, stiffness 1.38675e+07 N/m" in text and "not exported: 1 links of tie rods" in caplog.text
