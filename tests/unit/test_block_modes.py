@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import extrados
+from extrados.show.frame import draw_modes
 
 YOUNG, DENSITY = 2e9, 2000.0
 
@@ -58,3 +59,23 @@ def test_frequencies_fall_with_size_and_with_soft_joints():
         for joints in ({"normal_stiffness": stiff, "shear_stiffness": stiff}, {})
     )
     assert soft == pytest.approx(firm * np.sqrt(0.1 / 1.1), rel=0.03)  # the whole joint at the foot counts: 1/n
+
+
+def test_stiffness_of_a_type_of_joints_is_that_of_these_joints():
+    every = [f"joint {k}" for k in range(17)]
+    typed = modes(arch(16), types=[{"joints": every, "normal_stiffness": 1e9}])
+    assert typed == modes(arch(16), normal_stiffness=1e9) != modes(arch(16))
+    one = modes(arch(16), types=[{"joints": every[:1], "normal_stiffness": 1e9}])
+    assert typed[0]["frequency_Hz"] < one[0]["frequency_Hz"] < modes(arch(16))[0]["frequency_Hz"]
+
+
+def test_shear_stiffness_is_by_default_a_part_of_the_normal_one():
+    default = modes(arch(16), normal_stiffness=1e9)
+    assert default == modes(arch(16), normal_stiffness=1e9, shear_stiffness=1e9)  # shear_ratio is 1
+    assert modes(arch(16), normal_stiffness=1e9, shear_ratio=0.1)[0]["frequency_Hz"] < default[0]["frequency_Hz"]
+
+
+def test_figure_of_the_case(tmp_path):
+    run = extrados.run("cases/arch/modes.toml")
+    ((file, caption),) = draw_modes(run, "modes", tmp_path)
+    assert "of the blocks" in caption and any(tmp_path.iterdir()) and file

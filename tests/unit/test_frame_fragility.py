@@ -6,7 +6,8 @@ from test_frame_analyses import deck
 
 import extrados
 from extrados.analyses.context import Context
-from extrados.analyses.frame.fragility import Histories
+from extrados.analyses.frame.fragility import Curves, Histories, last_exceeded
+from extrados.analyses.frame.modes import NoEquilibrium
 from extrados.analyses.frame.sampled import Sample, sample_of, varied
 from extrados.analyses.motion_source import source_of
 from extrados.decks.reader import make_deck
@@ -118,3 +119,55 @@ def test_the_confidence_factor_is_a_factor_on_all_strengths():
     sampled = varied(made.building, options, {"strength": 1.0 / 1.35})
     for a, b in zip(divided.elements, sampled.elements, strict=True):
         assert (a.cohesion, a.tension, a.strength) == pytest.approx((b.cohesion, b.tension, b.strength))
+
+
+class Weak(Sample):
+    """Its first building does not carry its weight."""
+
+    def frame(self, k):
+        if k == 0:
+            raise NoEquilibrium("no equilibrium", ())
+        return super().frame(k)
+
+
+def test_buildings_that_do_not_carry_their_weight_count_as_collapsed(monkeypatch):
+    made = make_deck(given(uncertain=SPREAD))
+    options = made.analyses[0]
+    source, _ = source_of(Context(made), None)
+    plain = sample_of(made.building, options.frame, options.uncertain, 3, 0)
+    weak = Weak(plain.building, plain.options, plain.uncertain, plain.draws)
+    rows = Histories(weak, options, source).run(0, 2, 1)
+    assert rows["exceeded"][0].all() and rows["unstable"].tolist() == [True, False] and (rows["reason"] == "").all()
+    rows = Curves(weak, options).run(0, 2, 1)
+    assert (rows["capacity"][0] == 0.0).all() and (rows["capacity"][1] > 0.0).all() and (rows["reason"] == "").all()
+    monkeypatch.setattr("extrados.analyses.frame.fragility.sample_of", lambda *_: weak)
+    (analysis,) = extrados.run(given(by="pushover", uncertain=SPREAD), threads=1).analyses
+    states = analysis["results"]["limit_states"]
+    assert all(one["exceeded"] >= 1 and one["median_g"] is None for one in states)
+    assert any("count as collapsed" in text for text in analysis["warnings"])
+
+
+def test_a_push_without_a_curve_makes_its_building_unknown(monkeypatch):
+    from extrados.analyses.codes import capacity_curve
+
+    plain, calls = capacity_curve.oscillator_of, []
+
+    def fails_once(*arguments):
+        calls.append(1)
+        return None if len(calls) == 1 else plain(*arguments)
+
+    monkeypatch.setattr(capacity_curve, "oscillator_of", fails_once)
+    (analysis,) = extrados.run(given(by="pushover", uncertain=SPREAD), threads=1).analyses
+    assert any("1 of 3 pairs of motion and building are left out" in text for text in analysis["warnings"])
+    assert any("has no rising branch" in text for text in analysis["warnings"])
+
+
+def test_the_last_exceeded_state_names_a_run():
+    hit = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [1, 1, 1]], bool)
+    assert last_exceeded(hit).tolist() == ["", "strength", "first-limit", "first-limit", "collapse"]
+
+
+def test_uncertain_strengths_are_not_divided_too():
+    data = given(by="pushover", uncertain=SPREAD, frame=FRAME | {"confidence_factor": 1.2})
+    (analysis,) = extrados.run(data, threads=1).analyses
+    assert analysis["status"] == "refused" and "confidence_factor" in analysis["reason"]

@@ -50,7 +50,7 @@ VALUES = {
     "joints.softening": ("exponential", "linear", {"tension": 1e5, "fracture_energy": 10.0}),
     "joints.normal_stiffness": (1e10, 3e10),
     "joints.shear_stiffness": (1e10, 3e10),
-    "joints.shear_ratio": (0.3, 0.6),
+    "joints.shear_ratio": (0.3, 0.6, {"normal_stiffness": 1e10}),
     "joints.stiffness_rule": ("consistent", "thesis"),
     "joints.damping": ("corner", "rotation"),
     "joints.damping_ratio": (0.3, 0.7),

@@ -90,3 +90,19 @@ def test_a_turned_plan_is_the_same(tmp_path, angle):
 def test_what_cannot_be_read(tmp_path, faces, walls, why):
     with pytest.raises(BadGeometry, match=why):
         deck_of_plan(drawn(tmp_path, faces, WINDOW), walls, [], None, [3.0])
+
+
+def test_assumed_masonry_and_short_pieces_are_stated(tmp_path):
+    pier = [(20, 0), (20.5, 0), (20.5, 0.4), (20, 0.4), (20, 0)]
+    _, deck = walls_in(deck_of_plan(drawn(tmp_path, [*FACES, pier]), ["A-WALL"], ["A-GLAZ"], None, [3.0]))
+    assumed = " ".join(deck.structure.assumed)
+    assert "compressive strength 3 MPa" in assumed and "diagonal strength 50 kPa" in assumed
+    assert deck.building.material.density == 1800 and deck.building.joints.cohesion == 1e5
+    assert "the longest 0.50 m" in assumed
+
+
+def test_too_many_walls_are_refused_before_they_are_joined(tmp_path, monkeypatch):
+    monkeypatch.setattr("extrados.bridges.plan_drawing.MOST_WALLS", 4)
+    monkeypatch.setattr("extrados.bridges.plan_drawing.joined", lambda _: pytest.fail("joined"))
+    with pytest.raises(BadGeometry, match="5 walls, at most 4"):
+        deck_of_plan(drawn(tmp_path), ["A-WALL"], ["A-GLAZ"], None, [3.0])

@@ -4,6 +4,8 @@ The walls stand side by side in parallel planes, each along X: all nodes of a wa
 are springs between these displacements, and corners are vertical springs. This is the frame of frame-pushover.
 """
 
+import logging
+import re
 from collections.abc import Iterator
 
 import numpy as np
@@ -14,11 +16,13 @@ from extrados.model.errors import BadGeometry
 from extrados.views.frame.options import FrameOptions
 from extrados.views.frame.plan import EquivalentFrame, Strip
 
+log = logging.getLogger(__name__)
+
 #: Distance of the planes of the walls [m]
 APART = 20.0
 #: Slope of the softening in shear and residual friction of the element, which this program does not have
 DROP_DRIFT, SHEAR_FACTOR = 0.05, 1.2
-#: Compressive strength that stands for an unlimited one [Pa]
+#: Strength in place of an unlimited one [Pa]
 STRONG = 1e12
 
 
@@ -34,15 +38,48 @@ def frame_of(deck: Deck) -> EquivalentFrame:
 
 
 def _material(frame: EquivalentFrame, k: int) -> dict[str, float]:
-    """E, G, fc, mu, c of an element. fc is 1/0.85 of the stress block; c is the least strength without pressure."""
+    """E, G, fc, mu, c of an element. fc is 1/0.85 of the stress block; c of a pier is its least strength without pressure, of a
+    spandrel the shear at the moments of its hinges."""
     element = frame.elements[k]
     area = element.depth * element.thickness
     shear = SHEAR_FACTOR * element.shear_stiffness * element.length / area
-    sound = [x for x in (element.cohesion, element.tension / element.slenderness) if x > 0.0]
+    if not element.pier:
+        shear_strength = min(2.0 * element.moment / (element.length * area), STRONG)
+    elif element.shear == "none":
+        shear_strength = STRONG
+    else:
+        shear_strength = min(
+            (x for x in (element.cohesion, element.tension / element.slenderness) if x > 0.0), default=0.0
+        )
     return {
-        "E": element.young, "G": shear, "fc": min(element.strength / 0.85, STRONG), "mu": element.friction or 0.4,
-        "c": min(sound, default=1.0),
+        "E": element.young, "G": shear, "fc": min(element.strength / 0.85, STRONG), "mu": element.friction, "c": shear_strength,
     }  # fmt: skip
+
+
+def plain_name(text: str) -> str:
+    """A text of a deck on one line, without signs that another program takes for commands."""
+    return re.sub(r"[^\w .-]", "_", text)
+
+
+def _is_rod(frame: EquivalentFrame, k: int) -> bool:
+    """Whether a link is not that of a corner, between vertical displacements and rotations of two nodes."""
+    link = frame.links[k]
+    nodes = {node.freedoms for node in frame.nodes if node.level}
+    return len(link.freedoms) != 4 or link.freedoms[:2] not in nodes or link.freedoms[2:] not in nodes
+
+
+def _rod(frame: EquivalentFrame, k: int) -> str:
+    link = frame.links[k]
+    return (
+        f"# Not exported: tie rod, stiffness {link.stiffness:.6g} N/m, strength {link.strengths[1]:.6g} N, "
+        f"prestress {link.prestress:.6g} N"
+    )
+
+
+def _tell_rods(frame: EquivalentFrame, form: str) -> None:
+    rods = sum(_is_rod(frame, k) for k in range(len(frame.links)))
+    if rods:
+        log.warning("%s: not exported: %d links of tie rods; comments give their values", form, rods)
 
 
 def _node_place(frame: EquivalentFrame, k: int) -> np.ndarray:
@@ -58,7 +95,8 @@ def _middle(strip: Strip) -> np.ndarray:
 def macroelements(deck: Deck) -> str:
     """A Tcl script for OpenSees with Macroelement3d: the weight, then a push along x in proportion to the masses."""
     frame = frame_of(deck)
-    title = " ".join(deck.title.split()) or deck.path
+    _tell_rods(frame, "opensees-frame")
+    title = plain_name(" ".join(deck.title.split()) or deck.path)
     lines = [
         f"# {title}: by extrados {VERSION}; N, m. Needs the OpenSees of EPFL (EESD) with Macroelement3d.",
         "# Walls stand side by side, each along X. Shear of the element: one Mohr-Coulomb law, c the least strength without pressure.",
@@ -87,7 +125,7 @@ def _elements(frame: EquivalentFrame) -> Iterator[str]:
         m = _material(frame, k)
         axis, sort = ("0 0 1", "-pier") if e.pier else ("1 0 0", "-spandrel")
         drifts = f"-driftF {e.drifts[0]:.6g} 0.0 -driftS {e.drifts[1]:.6g} 0.0" if e.pier else ""
-        yield f"# {strip.name}"
+        yield f"# {plain_name(strip.name)}"
         yield (
             f"element Macroelement3d {k + 1} {strip.nodes[0] + 1} {strip.nodes[1] + 1} {10001 + k} {axis} 0 1 0 {sort} "
             f"{e.length:.6g} {e.depth:.6g} {e.thickness:.6g} {m['E']:.6g} {m['G']:.6g} {m['fc']:.6g} {m['mu']:.6g} {m['c']:.6g} "
@@ -97,11 +135,11 @@ def _elements(frame: EquivalentFrame) -> Iterator[str]:
 
 def _links(frame: EquivalentFrame) -> Iterator[str]:
     """Corners and floors; nodes of corners from 20001, material and element of link k 30001 + k."""
-    at = {node.freedoms: k for k, node in enumerate(frame.nodes) if node.level}
+    at: dict[tuple[int, ...], int] = {node.freedoms: k for k, node in enumerate(frame.nodes) if node.level}
     number = 0
-    for link in frame.links:
-        if len(link.freedoms) != 4 or link.freedoms[:2] not in at or link.freedoms[2:] not in at:
-            yield "# A tie rod is not exported."
+    for number_of_link, link in enumerate(frame.links):
+        if _is_rod(frame, number_of_link):
+            yield _rod(frame, number_of_link)
             continue
         tags = []
         for sign, freedoms, arm in ((1, link.freedoms[:2], link.parts[1]), (-1, link.freedoms[2:], -link.parts[3])):
@@ -164,12 +202,13 @@ def _loads(frame: EquivalentFrame) -> Iterator[str]:
 def tables(deck: Deck) -> str:
     """The frame as tables of text, in the order of the input of TREMURI: materials, walls, nodes, elements, loads."""
     frame = frame_of(deck)
+    _tell_rods(frame, "frame-tables")
     plan = frame.plan
-    text = [f"! {' '.join(deck.title.split()) or deck.path}: by extrados {VERSION}; N, m. Tables of a frame of macro-elements",
+    text = [f"! {plain_name(' '.join(deck.title.split()) or deck.path)}: by extrados {VERSION}; N, m. Tables of a frame of macro-elements",
             "/walls", "! number x0 y0 angle_rad name"]  # fmt: skip
     for w, wall in enumerate(plan.walls, 1):
         angle = float(np.arctan2(wall.direction[1], wall.direction[0]))
-        text.append(f"{w} {wall.start[0]:.4f} {wall.start[1]:.4f} {angle:.6f} {wall.name}")
+        text.append(f"{w} {wall.start[0]:.4f} {wall.start[1]:.4f} {angle:.6f} {plain_name(wall.name)}")
     kinds = list(dict.fromkeys(tuple(_material(frame, k).values()) for k in range(len(frame.elements))))
     text += ["/materials", "! number E G fc mu c"]
     text += [f"{k} " + " ".join(f"{v:.6g}" for v in values) for k, values in enumerate(kinds, 1)]
@@ -186,10 +225,11 @@ def tables(deck: Deck) -> str:
         )
     text += ["/floors", "! level kind young thickness load walls"]
     for floor in plan.floors:
-        names = ",".join(plan.walls[w].name for w, _, _ in plan.around(floor))
+        names = ",".join(plain_name(plan.walls[w].name) for w, _, _ in plan.around(floor))
         text.append(
             f"{floor.storey} {floor.kind} {floor.young or 0:.6g} {floor.thickness or 0:.6g} {floor.load:.6g} {names}"
         )
+    text += [_rod(frame, k).replace("#", "!", 1) for k in range(len(frame.links)) if _is_rod(frame, k)]
     text += ["/loads", "! node vertical_force moment"]
     for k, node in enumerate(frame.nodes, 1):
         if node.level:

@@ -72,7 +72,9 @@ def deck_of_plan(
     lines = _lines(drawn.marks, walls)
     if not len(lines):
         raise BadGeometry(f"{file.path.name}: the layers {', '.join(walls)} hold no lines")
-    found = joined(walls_of(lines, thickness))
+    pieces = walls_of(lines, thickness)
+    found = [wall for wall in pieces if wall.length > LEAST + wall.thickness]
+    short = [wall.length for wall in pieces if wall.length <= LEAST + wall.thickness]
     if not found:
         raise BadGeometry(
             f"{file.path.name}: no two parallel lines lie {THIN:g} to {THICK:g} m apart: draw faces, or give the thickness of axes"
@@ -80,7 +82,7 @@ def deck_of_plan(
     if len(found) > MOST_WALLS:
         raise BadGeometry(f"{file.path.name}: {len(found)} walls, at most {MOST_WALLS}")
     marks = _lines(drawn.marks, openings)
-    return _written([_opened(wall, marks) for wall in found], bool(openings), file.path.name, storeys)
+    return _written([_opened(wall, marks) for wall in joined(found)], short, bool(openings), file.path.name, storeys)
 
 
 def _lines(marks: Mapping[str, np.ndarray], layers: Sequence[str]) -> np.ndarray:
@@ -94,7 +96,8 @@ def _lines(marks: Mapping[str, np.ndarray], layers: Sequence[str]) -> np.ndarray
 
 
 def walls_of(lines: np.ndarray, thickness: float | None) -> list[DrawnWall]:
-    """Walls of lines (k, 4) [m] that are their faces, or their axes where a thickness is given; with gaps as openings."""
+    """Walls of lines (k, 4) [m] that are their faces, or their axes where a thickness is given; with gaps as openings.
+    Short pieces, such as the ends of walls, are among them."""
     way = lines[:, 2:] - lines[:, :2]
     way = way / np.hypot(*way.T)[:, None]
     way[(way[:, 0] < -1e-9) | ((np.abs(way[:, 0]) <= 1e-9) & (way[:, 1] < 0.0))] *= -1.0
@@ -171,7 +174,6 @@ def _along(
     return [
         DrawnWall(a * d + mid * normal, b * d + mid * normal, thick, [(p - a, q - a) for p, q in gaps])
         for (a, b), gaps in walls
-        if b - a > LEAST + thick
     ]
 
 
@@ -223,11 +225,21 @@ def _opened(wall: DrawnWall, lines: np.ndarray) -> DrawnWall:
     return replace(wall, openings=[(a, b) for a, b in merged if b - a > CLOSE])
 
 
-def _written(walls: list[DrawnWall], windows: bool, name: str, storeys: Sequence[float]) -> str:
-    """The deck: openings of a layer are windows, gaps are doors in the first storey and windows above."""
+def _written(walls: list[DrawnWall], short: Sequence[float], windows: bool, name: str, storeys: Sequence[float]) -> str:
+    """The deck: openings of a layer are windows, gaps are doors in the first storey and windows above. short: lengths [m] of the
+    pieces left out."""
     title = name.replace('"', "'").replace("\\", "/")
     sills = f"sills and heads of openings: doors {DOOR[0]:g} to {DOOR[1]:g} m, windows {WINDOW[0]:g} to {WINDOW[1]:g} m"
-    said = [f"Walls are read from the drawing {title}; it gives no heights.", f"Assumed {sills}."]
+    said = [
+        f"Walls are read from the drawing {title}; it gives no heights.",
+        f"Assumed {sills}.",
+        "Assumed masonry: density 1800 kg/m^3, modulus 1.5 GPa, Poisson 0.25, compressive strength 3 MPa, cohesion 0.1 MPa, "
+        "diagonal strength 50 kPa.",
+    ]
+    if short:
+        said.append(
+            f"Left out: {len(short)} pieces at most {LEAST:g} m longer than thick, such as ends of walls; the longest {max(short):.2f} m."
+        )
     text = [
         f'title = "Building of {title}"', "", "[structure]", 'kind = "building"',
         f"storeys = [{', '.join(f'{h:g}' for h in storeys)}]",

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.patches import Patch, Rectangle
 
-from extrados.results.frame import FrameFragility, FrameModes, FramePushover
+from extrados.results.frame import FrameFragility, FrameModes, FramePushover, Modes
 from extrados.results.store import Stored
 from extrados.show import style
 from extrados.show.verification import draw_verification
@@ -123,7 +123,8 @@ def _walls(run: Stored, name: str, folder: Path, state: np.ndarray, word: str, t
 
 def draw_modes(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Displacements of the masses on the plan, or of blocks in their section, in the first modes."""
-    r = run.results_of(name, FrameModes)
+    blocks = isinstance(run[name], Modes)
+    r = run.results_of(name, Modes) if blocks else run.results_of(name, FrameModes)
     place, shape = run.array(name, "place"), run.array(name, "shape")
     count = min(3, len(r.modes))
     scale = 0.15 * float(np.ptp(place[:, :2], axis=0).max())

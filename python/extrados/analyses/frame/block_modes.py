@@ -22,22 +22,25 @@ SHEAR_FACTOR = 1.2
 def matrices(building: Building, blocks: Assembly) -> tuple[np.ndarray, np.ndarray]:
     """Stiffness and mass (3 n, 3 n) for the displacements x, y and the rotation of n blocks [N/m, kg and products with m]."""
     n, joints = len(blocks.mass), building.joints
+    # 1/k_n and 1/k_s of every joint, 0 where the deck gives no stiffness
+    normal = building.joint_property("normal_stiffness")
+    tangential = np.full_like(normal, joints.shear_stiffness) if joints.shear_stiffness else joints.shear_ratio * normal
+    springs = np.nan_to_num(1.0 / np.array([normal, tangential]).T)
     tables = [building.materials[name] if name else building.material for name in blocks.materials or [None] * n]
     young = np.array([one.young for one in tables])
     shear = young / (2.0 * (1.0 + np.array([one.poisson for one in tables])))
     stiffness, mass = np.zeros((3 * n, 3 * n)), np.zeros((3 * n, 3 * n))
     for j, pair in enumerate(blocks.ends):
-        normal, tangent, length = blocks.normal[j], blocks.tangent[j], blocks.length[j]
-        compliance = np.array([1.0 / k if k else 0.0 for k in (joints.normal_stiffness, joints.shear_stiffness)])
+        axes, length, compliance = (blocks.normal[j], blocks.tangent[j]), blocks.length[j], springs[j].copy()
         rows = np.zeros((3, 3 * n))
         for block, sign in zip(pair, (1.0, -1.0), strict=True):
             if block == GROUND:
                 continue
             arm = blocks.middle[j] - blocks.centroid[block]
-            height = abs(float(arm @ normal))
+            height = abs(float(arm @ axes[0]))
             compliance += height / young[block], SHEAR_FACTOR * height / shear[block]
             turned = np.array([-arm[1], arm[0]])
-            for row, axis in enumerate((normal, tangent)):
+            for row, axis in enumerate(axes):
                 rows[row, 3 * block : 3 * block + 3] = sign * np.array([*axis, axis @ turned])
             rows[2, 3 * block + 2] = sign
         along, across = blocks.depth * length / compliance
@@ -57,6 +60,9 @@ def run(context: Context, options: Modes) -> Result:
     result = Result("modes")
     building = context.building
     blocks = building.blocks()
+    given = building.joints.model_fields_set
+    if "shear_ratio" in given and np.isnan(building.joint_property("normal_stiffness")).all():
+        context.warnings.append("joints.shear_ratio has no effect: no joint has a normal_stiffness.")
     stiffness, mass = matrices(building, blocks)
     count = min(options.modes, len(mass))
     values, shapes = eigh(stiffness, mass, subset_by_index=[0, count - 1])

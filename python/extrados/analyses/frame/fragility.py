@@ -16,7 +16,7 @@ from extrados.analyses.codes import capacity_curve as cc
 from extrados.analyses.codes.actions import code_of, spectrum_of_motion
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.frame.history import AFTER, control_of, damped
-from extrados.analyses.frame.modes import modes_of, rest_of, way_of
+from extrados.analyses.frame.modes import NoEquilibrium, modes_of, rest_of, way_of
 from extrados.analyses.frame.pushover import MODES, pushes_of, row_of, storeys_of
 from extrados.analyses.frame.sampled import Sample, sample_of
 from extrados.analyses.frame.tables import FrameFragility, FramePushover
@@ -42,6 +42,7 @@ STATES: tuple[out.FrameLimitState, ...] = ("strength", "first-limit", "collapse"
 PERCENTILES = (16, 50, 84)
 #: Motions without a count of their own; points of a curve
 MOTIONS, GRID = 100, 200
+UNSTABLE = "the frame has no equilibrium under its weight"
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,8 @@ class Histories:
     source: Source
 
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
-        """Whether each limit state is exceeded (3), intensity and PGA [g], greatest drift, displacement [m] and base shear [N]."""
+        """Whether each limit state is exceeded (3), intensity and PGA [g], greatest drift, displacement [m] and base shear [N]; a
+        building that does not carry its weight (unstable) exceeds all states."""
         kept: dict[int, EquivalentFrame] = {}  # of the motion whose levels follow one another
 
         def one(k: int) -> dict[str, np.ndarray]:
@@ -66,7 +68,7 @@ class Histories:
         levels = self.options.levels
         motion, level = divmod(k, 1 if levels is None else len(levels))
         row: dict[str, Any] = {name: np.nan for name in ("intensity", "pga", "drift", "displacement", "shear")}
-        row |= {"exceeded": np.zeros(3, np.int8), "reason": ""}
+        row |= {"exceeded": np.zeros(3, np.int8), "unstable": False, "reason": ""}
         (ground,) = self.source.grounds(motion, 1, 1)
         if isinstance(ground, str):
             return _arrays(row | {"reason": ground})
@@ -80,6 +82,8 @@ class Histories:
                 kept.clear()
                 kept[motion] = self.sample.frame(motion)
             row |= _moved(kept[motion], self.options, Motion("", ground), scale)
+        except NoEquilibrium:
+            row |= {"exceeded": np.ones(3, np.int8), "unstable": True}
         except (Refused, BadGeometry, CoreError) as error:
             row["reason"] = str(error)
         return _arrays(row)
@@ -97,7 +101,7 @@ def _moved(frame: EquivalentFrame, options: FrameFragility, motion: Motion, scal
         _, damping = damped(frame, core, options)
         path = core.move(frame.unit(way), scale * motion.sample(time), options.time_step, damping)
     if path.stop == "no equilibrium under the weight":
-        raise Refused("the frame has no equilibrium under its weight", ("structure", "walls"))
+        raise NoEquilibrium(UNSTABLE, ("structure", "walls"))
     return {
         "exceeded": np.array(exceeded(frame, path, way), np.int8), "drift": float(path.drift[:, frame.piers_at].max()),
         "displacement": float(np.abs(control_of(frame, path, way)).max()), "shear": float(np.abs(path.shear).max()),
@@ -133,7 +137,7 @@ class Curves:
 
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
         """oscillator (pushes, 4): T* [s], F_y*/m* [m/s^2], d_y* [m], Gamma; capacity (pushes, 3): d [m] of STATES, NaN where a push
-        has no rising branch; period [s] and greatest base shear [N]."""
+        has no rising branch, 0 of a building that does not carry its weight; greatest base shear [N]."""
         return stacked(self._member, first, count)
 
     def _member(self, k: int) -> dict[str, np.ndarray]:
@@ -145,12 +149,17 @@ class Curves:
             for i, (curve, oscillator) in enumerate(pushed(frame, self.options)):
                 more["shear"][i] = curve.force.max(initial=0.0)
                 if oscillator is None:
+                    more["reason"] = np.array(f"push {i + 1} of {count} has no rising branch")
                     continue
-                law, start = oscillator.law, cc.capacity_of(curve, oscillator, "DL")
+                law = oscillator.law
                 row["oscillator"][i] = (
                     oscillator.period, law.yield_load / oscillator.mass, law.yield_displacement, oscillator.participation,
                 )  # fmt: skip
-                row["capacity"][i] = start, min(curve.limits.get("first", np.inf), curve.ultimate), curve.ultimate
+                row["capacity"][i] = [
+                    min(curve.limits.get(k, np.inf), curve.ultimate) for k in ("strength", "first", "drift")
+                ]
+        except NoEquilibrium:
+            row["capacity"][:] = 0.0
         except (Refused, BadGeometry, CoreError) as error:
             more["reason"] = np.array(str(error))
         return row | more
@@ -171,6 +180,8 @@ def pushed(
         pushes = pushes_of(frame, given, modes_of(frame, rest_of(frame, core).tangent, MODES), level)
         for push in pushes:
             path = core.push(push.forces, push.control, target, given.steps, given.drop)
+            if path.stop == "no equilibrium under the weight":
+                raise NoEquilibrium(UNSTABLE, ("structure", "walls"))
             row = out.FramePush(**row_of(frame, push, path))
             curve = capacity_curve_of(frame, push, path, row, push.mode.shape)
             found.append((curve, cc.oscillator_of(curve) if path.multiple.max() > 0.0 else None))
@@ -179,6 +190,11 @@ def pushed(
 
 def run(context: Context, options: FrameFragility) -> Result:
     """Curves of all limit states; see the deck reference."""
+    if options.uncertain and options.frame.confidence_factor != 1.0:
+        raise Refused(
+            "uncertain strengths are spread about their means: without a confidence factor of the frame",
+            ("analysis", "frame", "confidence_factor"),
+        )
     context.warnings += context.building.frame(options.frame).remarks
     source, there = source_of(context, options.seed)
     motions = options.count or there or MOTIONS
@@ -209,6 +225,16 @@ def _tell_lost(reasons: np.ndarray, what: str, result: Result) -> None:
         result.warnings.append(f"{len(lost)} of {len(reasons)} {what} have no result; the first: {lost[0]}")
 
 
+def _tell_unstable(unstable: np.ndarray, what: str, result: Result) -> None:
+    """How many members count as collapsed before any motion; Refused where all do."""
+    if unstable.all():
+        raise Refused(UNSTABLE, ("structure", "walls"))
+    if unstable.any():
+        result.warnings.append(
+            f"{int(unstable.sum())} of {len(unstable)} {what} have no equilibrium under the weight: they count as collapsed."
+        )
+
+
 def _by_histories(context: Context, options: FrameFragility, job: Histories, motions: int, result: Result) -> None:
     levels = None if options.levels is None else np.array(sorted(options.levels))
     runs = motions * (1 if levels is None else len(levels))
@@ -219,6 +245,7 @@ def _by_histories(context: Context, options: FrameFragility, job: Histories, mot
         return
     rows = swept.arrays
     _tell_lost(rows["reason"], "histories", result)
+    _tell_unstable(rows["unstable"].astype(bool), "histories", result)
     good = rows["reason"] == ""
     if not good.any():
         raise Refused(f"no history has a result; the first: {rows['reason'][0]}", ("motion",))
@@ -237,10 +264,9 @@ def _by_histories(context: Context, options: FrameFragility, job: Histories, mot
             share = [float(hit[at == j, k].mean()) if (at == j).any() else None for j in range(len(levels))]
             states[k] = one.model_copy(update={"probability": share})
     _describe(options, states, motions, x, result, histories=int(good.sum()), **more)
-    words = np.array(["", *STATES])[hit.astype(int) @ np.ones(3, int)]
     result.tables["histories"] = TableData(
         {"motion": swept.members[good] // (1 if levels is None else len(levels)) + 1, "intensity": x, "pga": rows["pga"][good],
-         "drift": drift, "displacement": rows["displacement"][good], "base_shear": rows["shear"][good], "limit_state": words},
+         "drift": drift, "displacement": rows["displacement"][good], "base_shear": rows["shear"][good], "limit_state": last_exceeded(hit)},
         {"intensity": "g", "pga": "g", "displacement": "m", "base_shear": "N"},
     )  # fmt: skip
     result.arrays |= {
@@ -248,6 +274,12 @@ def _by_histories(context: Context, options: FrameFragility, job: Histories, mot
         "drift": Array(drift, ("run",), "", "greatest chord rotation of a pier"),
         "exceeded": Array(hit.astype(np.int8), ("run", "limit_state"), "", "1: the limit state is exceeded"),
     }
+
+
+def last_exceeded(hit: np.ndarray) -> np.ndarray:
+    """Of exceeded states (runs, 3) the last of STATES, "" without one. They are not nested: a pier may reach its drift limit
+    before a storey its strength."""
+    return np.array(["", *STATES])[(hit * np.arange(1, 4)).max(axis=1)]
 
 
 def _percentile(drift: np.ndarray, fell: np.ndarray, percent: float) -> float | None:
@@ -311,6 +343,7 @@ def _by_pushovers(
         return
     rows = swept.arrays
     _tell_lost(rows["reason"], "buildings", result)
+    _tell_unstable((rows["capacity"] == 0.0).all(axis=(1, 2)), "buildings", result)
     grounds = source.grounds(0, motions, context.threads)
     _tell_lost(np.array([g if isinstance(g, str) else "" for g in grounds]), "motions", result)
     found = [(k, g) for k, g in enumerate(grounds) if not isinstance(g, str)]
@@ -320,17 +353,22 @@ def _by_pushovers(
         raise Refused("fewer than two motions have a building with a capacity curve", ("motion",))
     if not good.all():
         result.warnings.append(
-            f"{int((~good).sum())} of {len(good)} pairs of motion and building have no capacity curve."
+            f"{int((~good).sum())} of {len(good)} pairs of motion and building are left out: not all pushes have a capacity curve."
         )
-    carried, log = carried[good], np.log(carried[good])
-    half = norm.ppf(0.5 + 0.5 * options.confidence) / np.sqrt(len(log))
+    carried = carried[good]
+    half = norm.ppf(0.5 + 0.5 * options.confidence) / np.sqrt(len(carried))
+    peak = np.array([intensity_of(g, options)[0] for _, g in found])[good]
     states = []
     for k, state in enumerate(STATES):
-        middle, spread = float(log[:, k].mean()), float(log[:, k].std(ddof=1))
-        interval = float(np.exp(middle - half * spread)), float(np.exp(middle + half * spread))
-        peak = np.array([intensity_of(g, options)[0] for _, g in found])[good]
+        fit, interval = None, None
+        # no lognormal variable is 0
+        if (carried[:, k] > 0.0).all():
+            log = np.log(carried[:, k])
+            middle, spread = float(log.mean()), float(log.std(ddof=1))
+            fit = float(np.exp(middle)), spread
+            interval = float(np.exp(middle - half * spread)), float(np.exp(middle + half * spread))
         hits = int((peak > carried[:, k]).sum())
-        states.append(_state(state, hits, len(log), (float(np.exp(middle)), spread), interval, options))
+        states.append(_state(state, hits, len(carried), fit, interval, options))
     more = _knowledge(context, options, sample, rows, [g for _, g in found], result) if options.uncertain else {}
     _describe(options, states, motions, carried.ravel(), result, buildings=buildings, **more)
     result.arrays["carried"] = Array(
@@ -343,21 +381,23 @@ def _by_pushovers(
 
 
 def _carried(ground: Ground, options: FrameFragility, rows: dict[str, np.ndarray], building: int) -> np.ndarray:
-    """Intensity (3) [g] of a motion at which N2 reaches each limit state of a building: the least of its pushes."""
+    """Intensity (3) [g] of a motion at which N2 reaches each limit state of a building: the least of its pushes; 0 where it
+    does not carry its weight, NaN where a push has no capacity curve."""
+    if (rows["capacity"][building] == 0.0).all():
+        return np.zeros(3)
+    if not np.isfinite(rows["oscillator"][building]).all():
+        return np.full(3, np.nan)
     time, values = Motion("", ground).series()
     step, peak = float(time[1] - time[0]), float(np.abs(values).max())
     corner = cc.corner_of(core_motion.response_spectra(values, step, cc.PERIODS, [cc.DAMPING]).psa.reshape(-1))
     spectrum = spectrum_of_motion(values, step, peak)
     factors = []
-    for (period, strength, start, gamma), capacity in zip(
+    for (_, strength, start, gamma), capacity in zip(
         rows["oscillator"][building], rows["capacity"][building], strict=True
     ):
-        if not np.isfinite(period):
-            continue
         oscillator = cc.Oscillator(1.0, gamma, Bilinear(strength / start, strength, start, capacity[2] / gamma))
         factors.append([cc.n2_factor(oscillator, spectrum, corner, d / gamma) for d in capacity])
-    least = np.min(factors, axis=0) if factors else np.full(3, np.nan)
-    return np.asarray(intensity_of(ground, options)[0] * least)
+    return np.asarray(intensity_of(ground, options)[0] * np.min(factors, axis=0))
 
 
 def _knowledge(
@@ -377,6 +417,12 @@ def _knowledge(
     alone = Sample(sample.building, frame_options, {}, np.zeros((1, 0)))
     design = Curves(alone, options).run(0, 1, context.threads)
     each = [_carried(g, options, design, 0)[2] for g in grounds]
+    if not np.isfinite(each).all():
+        result.warnings.append(
+            f"No comparison with strengths divided by the confidence factor {factor:.3g}: that building has no capacity curve "
+            f"({design['reason'][0]})."
+        )
+        return {}
     middle = grounds[int(np.argsort(each)[len(each) // 2])]
     reached = float(_carried(middle, options, design, 0)[2])
     drawn = np.array([_carried(middle, options, rows, k)[2] for k in range(len(sample.draws))])

@@ -34,12 +34,16 @@ def way_of(degrees: float) -> np.ndarray:
     return np.round(np.array([np.cos(angle), np.sin(angle)]), 15)
 
 
+class NoEquilibrium(Refused):
+    """A frame that does not carry its weight."""
+
+
 def rest_of(frame: EquivalentFrame, core: Frame) -> Rest:
-    """Equilibrium under the weight; Refused without one."""
+    """Equilibrium under the weight; NoEquilibrium without one."""
     try:
         return core.at_rest()
     except CoreError as error:
-        raise Refused(
+        raise NoEquilibrium(
             f"the frame has no equilibrium under its weight ({error}): a pier without load, or a wall that nothing joins with others",
             ("structure", "walls"),
         ) from None

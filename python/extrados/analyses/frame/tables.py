@@ -54,7 +54,7 @@ class Modes(BuildingAnalysis):
 
     kind: Literal["modes"]
     view: ClassVar = "blocks"
-    uses: ClassVar = (*ELASTIC, "joints.normal_stiffness", "joints.shear_stiffness")
+    uses: ClassVar = (*ELASTIC, "joints.normal_stiffness", "joints.shear_stiffness", "joints.shear_ratio")
     starter_structure: ClassVar = "arch"
     modes: int = key(6, "how many modes", ge=1, le=100)
 
