@@ -158,7 +158,7 @@ def test_a_push_without_a_curve_makes_its_building_unknown(monkeypatch):
 
     monkeypatch.setattr(capacity_curve, "oscillator_of", fails_once)
     (analysis,) = extrados.run(given(by="pushover", uncertain=SPREAD), threads=1).analyses
-    assert any("1 of 3 pairs of motion and building are left out" in text for text in analysis["warnings"])
+    assert any("1 of 3 pairs of motion and building are not considered" in text for text in analysis["warnings"])
     assert any("has no rising branch" in text for text in analysis["warnings"])
 
 

@@ -436,7 +436,7 @@ def test_fragility_and_curves_on_a_base_that_gives_way() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "word"), [("restitution", "stiffness"), ("density", "no stones"), ("damping_ratio", "stiffness")]
+    ("name", "word"), [("restitution", "stiffness"), ("density", "one rigid block"), ("damping_ratio", "stiffness")]
 )
 def test_what_is_not_uncertain_of_it(name: str, word: str) -> None:
     """What impacts lose follows from the base; without dashpots nothing of them is uncertain."""

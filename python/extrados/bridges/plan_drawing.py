@@ -227,7 +227,7 @@ def _opened(wall: DrawnWall, lines: np.ndarray) -> DrawnWall:
 
 def _written(walls: list[DrawnWall], short: Sequence[float], windows: bool, name: str, storeys: Sequence[float]) -> str:
     """The deck: openings of a layer are windows, gaps are doors in the first storey and windows above. short: lengths [m] of the
-    pieces left out."""
+    pieces that are not considered."""
     title = name.replace('"', "'").replace("\\", "/")
     sills = f"sills and heads of openings: doors {DOOR[0]:g} to {DOOR[1]:g} m, windows {WINDOW[0]:g} to {WINDOW[1]:g} m"
     said = [

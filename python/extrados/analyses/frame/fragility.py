@@ -353,7 +353,7 @@ def _by_pushovers(
         raise Refused("fewer than two motions have a building with a capacity curve", ("motion",))
     if not good.all():
         result.warnings.append(
-            f"{int((~good).sum())} of {len(good)} pairs of motion and building are left out: not all pushes have a capacity curve."
+            f"{int((~good).sum())} of {len(good)} pairs of motion and building are not considered: not all pushes have a capacity curve."
         )
     carried = carried[good]
     half = norm.ppf(0.5 + 0.5 * options.confidence) / np.sqrt(len(carried))
