@@ -238,7 +238,7 @@ def _written(walls: list[DrawnWall], short: Sequence[float], windows: bool, name
     ]
     if short:
         said.append(
-            f"Left out: {len(short)} pieces at most {LEAST:g} m longer than thick, such as ends of walls; the longest {max(short):.2f} m."
+            f"Not considered: {len(short)} pieces at most {LEAST:g} m longer than thick, such as ends of walls; the longest {max(short):.2f} m."
         )
     text = [
         f'title = "Building of {title}"', "", "[structure]", 'kind = "building"',
