@@ -59,6 +59,8 @@ CHEAP = ("tilt", "local-mechanism", "code-checks")
 FORCES_OF_RUNS = 5
 #: Changes of a capacity, or of a mass, that are named
 NAMED = 0.01
+#: Of the target: rounding of the bisection that raises a force until it is met without dilatancy
+SLACK = 1e-3
 
 
 @dataclass
@@ -474,6 +476,10 @@ class _Work:
     ) -> out.Intervention:  # fmt: skip
         worth = worth or Worth(None)
         met = required is not None
+        # The target is met only where the least state without dilatancy reaches it too; the size is that of the upper bound.
+        sure = met and (worth.beside is None or worth.beside > (1.0 - SLACK) * self.measure.target)
+        if met and not sure:
+            reason = "the size meets the target only by the upper bound of limit analysis (dilatant friction)"
         more: dict[str, Any] = {"key": key} if key else {}
         if tie is not None and required is not None:
             more["stiffness_N_m"] = stiffness
@@ -493,7 +499,7 @@ class _Work:
             ]  # fmt: skip
         after = worth.value if met else None
         return out.Intervention(
-            name=name, kind=kind, place=place, unit=unit, meets_target=met, required_size=required, greatest_capacity=greatest,
+            name=name, kind=kind, place=place, unit=unit, meets_target=sure, required_size=required, greatest_capacity=greatest,
             capacity_after=after, safety_factor_after=_over(after, self.measure.demand),
             next_mechanism=worth.mechanism, bound=worth.bound if met else None,
             ranges=ranges, length_m=length, force_N=force, volume_m3=volume,
