@@ -101,7 +101,7 @@ contains
       status = status_ok
    end subroutine tie_set_new
 
-   !> The same ties again, none where there are none
+   !> A copy of the ties; a set without ties if there are no ties
    subroutine tie_set_copy(from, to, status)
       type(tie_set), intent(in) :: from
       type(tie_set), intent(out) :: to

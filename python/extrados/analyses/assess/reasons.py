@@ -192,8 +192,8 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
 def _by_passages(
     facts: Facts, mine: list[Pair], text: str, level: float, factor: float, numbers: dict[str, float | None]
 ) -> Reason | None:
-    """The passages over the capacity one by one, each as a constant lateral acceleration of what it has on average; those left out of which
-    another is as strong and as long."""
+    """The passages over the capacity one by one, each as a constant lateral acceleration equal to its mean. A passage is not considered if
+    another one is as strong and as long."""
     worst, longest = None, 0.0
     for length, mean in sorted(passages(facts.motion, level), key=lambda p: (-p[1], -p[0])):
         if length <= longest:

@@ -175,7 +175,7 @@ class Margins:
         self.known: dict[tuple[str, float], np.ndarray] = {}
 
     def ask(self, wanted: list[tuple[str, float]]) -> None:
-        """Compute what is not known; OutOfTime after the deadline, batches.Unfinished where the user stopped it."""
+        """Compute the margins that are missing; OutOfTime after the deadline, batches.Unfinished where the user stopped it."""
         new = [w for w in dict.fromkeys(wanted) if w not in self.known]
         if not new:
             return

@@ -15,7 +15,7 @@ Strategy = Literal[
 ]
 
 
-#: Of the budget: what is kept for the sensitivity, where the deck requests it
+#: Share of the budget that is kept for the sensitivity if the deck requests it
 KEPT = 0.25
 
 

@@ -211,7 +211,7 @@ def _elastic(model: ShellModel, options: Pushover) -> dict[str, Any]:
 
 
 def _facing(model: ShellModel) -> np.ndarray:
-    """Cosine of each wall's direction to the push: forces of a section are those of what is above on what is below."""
+    """Cosine of each wall's direction to the push: forces of a section act from the part above on the part below."""
     return np.array([float(wall.along @ model.along[:2]) for wall in model.mesh.walls])
 
 

@@ -1,6 +1,7 @@
 """A wall and the options of its deck made into a model of the core: freedoms, groups, nodal loads."""
 
 import re
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -30,7 +31,7 @@ MOST_CHANGES_OF_JOINTS = 1000
 FLOOR_OF_JOINTS = 1e-11
 
 
-class EventModel:
+class EventModel(ABC):
     """What the event loop takes from a model: a wall in its plane, or a building of shells."""
 
     if TYPE_CHECKING:
@@ -62,9 +63,9 @@ class EventModel:
         @property
         def steps_alone(self) -> bool: ...
 
+    @abstractmethod
     def open(self, options: Any, threads: int) -> core.Model:
         """The model in the core; Refused names a free node or a bad element."""
-        raise NotImplementedError
 
 
 @dataclass

@@ -20,12 +20,12 @@ from extrados.views.building import Building
 
 #: Directions in plan of the load where the deck names none [deg]
 AROUND = (0.0, 90.0, 180.0, 270.0)
-#: Shares of the blocks that move, by which mechanisms are told apart
+#: Shares of the blocks that move, which distinguish mechanisms
 SHARES = 20
-#: Of the target: what the accuracy of the conic solver leaves between both bounds
+#: Gap between both bounds, over the target, that the accuracy of the conic solver leaves
 ACCURACY = 1e-6
-#: Of the greatest capacity: where a tie that never yields is taken to have reached it. A cone bends the curve there, so that a smaller
-#: share asks for a force without a use
+#: Gap to the greatest capacity, over that capacity, at which a tie that never yields is taken to have reached it. Friction cones bend the curve
+#: there: a smaller gap would require a large force for no gain
 REACHED = 1e-3
 
 
